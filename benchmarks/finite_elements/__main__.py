@@ -1,0 +1,41 @@
+"""Prints the tables of the finite-element check, makes its figures, or makes the calibration again."""
+
+from __future__ import annotations
+
+import argparse
+
+from benchmarks.finite_elements import comparison, coupling
+
+TABLES = {
+    "models": comparison.model_table,
+    "plane_strain": comparison.plane_strain_table,
+    "poisson": comparison.poisson_table,
+    "convergence": comparison.convergence_table,
+    "coupling": coupling.coupling_table,
+    "double_contact": coupling.double_contact_table,
+    "held_out": comparison.held_out_table,
+    "variants": comparison.variants_table,
+    "outside": comparison.outside_table,
+    "spots": comparison.spots,
+}
+
+
+def main() -> None:
+    """Run what the command line asks for: `models` (about 5 s) without an argument."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.finite_elements", description=__doc__)
+    parser.add_argument("what", nargs="*", default=["models"], choices=[*TABLES, "figures", "calibrate"])
+    for what in parser.parse_args().what:
+        if what in TABLES:
+            print(f"\n{what}\n", *TABLES[what](), sep="\n")
+        elif what == "figures":
+            from benchmarks.finite_elements.figures import write_figures
+
+            print(*write_figures(), sep="\n")
+        else:
+            from benchmarks.finite_elements.calibration_file import calibrate
+
+            print(*calibrate().items(), sep="\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,63 @@
+"""The classifier on indicators as a skops file: loading lists the types inside and executes nothing unknown."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+
+from diagnostics.baselines import FeatureClassifier
+from diagnostics.features import FeatureSettings
+from siggen.errors import UsageError
+
+NAMES_FILE = "feature_names.json"
+
+
+def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identity: str, folder: Path) -> Path:
+    """Write `classifier.skops` and `feature_names.json` (features, states, settings, identity); return the former."""
+    import skops.io
+
+    path = folder / "classifier.skops"
+    skops.io.dump(model.pipeline, path)
+    facts = {
+        "features": model.features,
+        "classes": model.classes,
+        "strength": model.strength,
+        "note": model.note,
+        "settings": asdict(settings),
+        "identity": identity,
+    }
+    (folder / NAMES_FILE).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    return path
+
+
+def untrusted_types(path: Path) -> tuple[str, ...]:
+    """Return the types in a skops file that skops does not trust by itself."""
+    import skops.io
+
+    return tuple(skops.io.get_untrusted_types(file=path))
+
+
+def load_classifier(folder: Path) -> FeatureClassifier:
+    """Read a classifier written by `save_classifier`.
+
+    Raises
+    ------
+    UsageError
+        If the file is missing, damaged, or holds types from outside scikit-learn and numpy; it is then not loaded.
+    """
+    import skops.io
+
+    path = folder / "classifier.skops"
+    try:
+        found = untrusted_types(path)
+        facts = json.loads((folder / NAMES_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise UsageError(f"{folder}: no readable classifier.skops with {NAMES_FILE} ({error})") from error
+    if found:
+        raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
+    pipeline = skops.io.load(path, trusted=[])
+    return FeatureClassifier(
+        pipeline, tuple(facts["features"]), tuple(facts["classes"]), float(facts["strength"]), str(facts["note"])
+    )

@@ -1,0 +1,91 @@
+"""The card that goes with saved models: what they are, on what they were trained, what their scores mean."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from diagnostics.evaluation import Interval
+from diagnostics.realism import meaning_of_scores
+
+if TYPE_CHECKING:
+    from diagnostics.training import Judged, Training
+
+
+def model_card(training: Training, dataset: Any) -> str:
+    """Return the card as Markdown.
+
+    Parameters
+    ----------
+    training : Training
+        The judged classifiers.
+    dataset : siggen Dataset
+        The set they were trained on.
+    """
+    parts = [
+        f"# Gear fault classifiers trained on {dataset.path.name}",
+        meaning_of_scores(dataset.config),
+        "## Data",
+        _data(training, dataset),
+        "## Files",
+        _files(training),
+        "## Scores on test specimens",
+        _scores(training),
+        "## Limits",
+        "Trained on simulated records only. Do not use the scores as an estimate of performance on measured records.",
+    ]
+    if training.notes:
+        parts += ["## Notes", "\n".join(f"* {note}" for note in training.notes)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _data(training: Training, dataset: Any) -> str:
+    count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
+    channels = ", ".join(f"{channel.name} [{channel.unit}]" for channel in dataset.channels)
+    return "\n".join(
+        [
+            f"* identity of the set: `{dataset.manifest['identity']}`",
+            f"* states: {', '.join(training.split.classes)}",
+            f"* specimens: {count}; no specimen is in two splits",
+            f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
+        ]
+    )
+
+
+def _files(training: Training) -> str:
+    lines = [
+        "* `classifier.skops`: medians for undefined values, standardisation, logistic regression "
+        f"(C = {training.classifier.strength:g}, chosen on validation specimens) on {len(training.classifier.features)} "
+        "indicators; `feature_names.json` lists them in order, with the settings of their definitions",
+    ]
+    if training.network:
+        facts = training.network.facts
+        windows = facts.windows
+        lines += [
+            f"* `cnn.safetensors`: 1-D network with a wide first layer, on windows of {windows.revolutions} pinion "
+            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles; input "
+            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2; normalisation is part of the network",
+            "* `cnn.onnx`: the same, input `windows`, output `logits`; average the class probabilities over the windows "
+            f"of a record, {windows.hop_revolutions} revolutions apart",
+        ]
+    return "\n".join(lines)
+
+
+def _scores(training: Training) -> str:
+    head = "| classifier | accuracy | macro-AUROC | macro-AUROC with permuted labels |\n|---|---|---|---|"
+    return "\n".join([head, *(_row(found) for found in training.judged)]) + (
+        "\n\nIntervals: 95 %, bootstrap over test specimens."
+    )
+
+
+def _row(found: Judged) -> str:
+    permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
+    return f"| {found.name} | {interval_text(found.scores.accuracy)} | {interval_text(found.scores.macro_auroc)} | {permuted} |"
+
+
+def interval_text(found: Interval) -> str:
+    """Return value and limits with two decimals, or 'undefined'."""
+    if found.value != found.value:
+        return "undefined"
+    if found.low != found.low:
+        return f"{found.value:.2f} (no interval)"
+    return f"{found.value:.2f} [{found.low:.2f}, {found.high:.2f}]"

@@ -1,0 +1,58 @@
+"""Records of a set as numpy arrays, one at a time in the order of the files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+LABEL_NAMES = (
+    *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
+    *("fault", "severity", "damaged_area_mm2", "damaged_area_share", "mesh_stiffness_loss"),
+    *("teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"),
+)
+"""Columns that go along with the indicators; scalars only, so that they fit a CSV file."""
+
+TACHO_NAME = "tacho_s"
+BATCH_ROWS = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """One record: labels by column name, signals (n,) float32 by channel name, pulse times (k,) [s]."""
+
+    labels: Mapping[str, Any]
+    channels: Mapping[str, np.ndarray]
+    tacho_s: np.ndarray
+    fs_hz: float
+
+
+def recordings(dataset: Any, splits: Sequence[str] | None = None) -> Iterator[Recording]:
+    """Yield the records of a set.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    splits : sequence of str, optional
+        Splits to read, in this order; default all.
+    """
+    columns = [*LABEL_NAMES, *(channel.column for channel in dataset.channels), TACHO_NAME]
+    for split in dataset.splits if splits is None else splits:
+        for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
+            yield from _rows(batch, dataset)
+
+
+def _rows(batch: Any, dataset: Any) -> Iterator[Recording]:
+    labels = batch.select(list(LABEL_NAMES)).to_pylist()
+    # flatten() respects the offset of a sliced batch, .values does not
+    signals = {
+        channel.name: batch.column(channel.column).flatten().to_numpy().reshape(batch.num_rows, -1)
+        for channel in dataset.channels
+    }
+    tacho = batch.column(TACHO_NAME)
+    for row in range(batch.num_rows):
+        channels = {name: signal[row] for name, signal in signals.items()}
+        yield Recording(labels[row], channels, np.asarray(tacho[row].values), dataset.fs_hz)

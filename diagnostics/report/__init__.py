@@ -1,0 +1,1 @@
+"""The report of a set: figures, sentences and one self-contained page."""

@@ -1,0 +1,117 @@
+"""All figures of a report by file name, with their captions; what cannot be drawn becomes a note."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from diagnostics.feature_table import FeatureMatrix
+from diagnostics.report import score_figures, stiffness_figures, vibration_figures
+from diagnostics.report.examples import HEALTHY, example_set
+from diagnostics.report.style import state_colours
+from diagnostics.separability import Separability
+from diagnostics.training import TITLES, Training
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HARMONICS = (1, 2, 3)
+INDICATORS_SHOWN = 4
+
+
+@dataclass(slots=True)
+class Drawing:
+    """Figures with captions by file name, by section of the report, and notes on what is missing."""
+
+    vibration: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    indicators: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def figures(self) -> dict[str, tuple[Figure, str]]:
+        """Return all figures by file name."""
+        return {**self.vibration, **self.damage, **self.scores, **self.indicators}
+
+
+def draw(
+    dataset: Any,
+    matrix: FeatureMatrix,
+    classes: tuple[str, ...],
+    training: Training | None,
+    found: list[Separability],
+) -> Drawing:
+    """Draw everything the report shows."""
+    healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
+    colours = state_colours(classes, healthy)
+    drawing = Drawing()
+    _draw_vibration(drawing, dataset, colours)
+    _draw_damage(drawing, dataset, matrix, classes, colours)
+    if training:
+        _draw_scores(drawing, training)
+    shown = distinct_features(found, INDICATORS_SHOWN)
+    if shown:
+        figure = score_figures.indicator_figure(matrix, shown, classes, colours)
+        drawing.indicators["indicators"] = (
+            figure,
+            "The strongest single indicators of different definition, all specimens.",
+        )
+    return drawing
+
+
+def distinct_features(found: list[Separability], count: int) -> list[Separability]:
+    """Return the strongest features of different definition (the same one in two channels counts once)."""
+    chosen: dict[str, Separability] = {}
+    for entry in found:
+        chosen.setdefault(entry.feature.split("__")[0], entry)
+    return list(chosen.values())[:count]
+
+
+def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> None:
+    examples = example_set(dataset)
+    which = (
+        f"specimen {examples.specimen_id}, channel {examples.channel}, {examples.speed_hz:.3g}\u00a0Hz, "
+        f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
+    )
+    figure = vibration_figures.waveform_figure(examples, colours)
+    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}.")
+    spectra = [example.spectrum for example in examples.examples if example.spectrum]
+    if not spectra:
+        drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
+        return
+    for harmonic in HARMONICS:
+        figure = vibration_figures.spectrum_figure(examples, colours, harmonic)
+        caption = f"Order spectrum (Hann, {spectra[0].revolutions} pinion revolutions) around mesh harmonic {harmonic}: {which}."
+        drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
+
+
+def _draw_damage(
+    drawing: Drawing, dataset: Any, matrix: FeatureMatrix, classes: tuple[str, ...], colours: dict[str, str]
+) -> None:
+    figure = stiffness_figures.stiffness_loss_figure(matrix.labels, classes, colours)
+    drawing.damage["stiffness_loss"] = (
+        figure,
+        "Largest relative loss of mesh stiffness against healthy, from the labels.",
+    )
+    try:
+        import siggen
+
+        # provided lazily by the package, computed from the configuration; a set can be read without its physics
+        curves = siggen.mesh_stiffness_curves(dataset.path / "config.yaml")
+        figure = stiffness_figures.stiffness_figure(curves, colours)
+    except Exception as error:  # noqa: BLE001 - whatever the physics says, the report on the records stands
+        drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {error}")
+        return
+    drawing.damage["stiffness"] = (figure, "Mesh stiffness of specimen 0 in every state while the damaged teeth mesh.")
+
+
+def _draw_scores(drawing: Drawing, training: Training) -> None:
+    specimens = training.judged[0].scores.specimens
+    caption = f"Scores on {specimens} test specimens with 95 % intervals from resampled specimens; dashed: chance."
+    drawing.scores["scores"] = (score_figures.score_figure(training), caption)
+    caption = "Permutation control: the same training with shuffled labels (dots) must scatter around 0.5."
+    drawing.scores["permuted"] = (score_figures.permutation_figure(training), caption)
+    for judged in training.judged:
+        figure = score_figures.confusion_figure(judged)
+        caption = f"Confusion matrix on test records, {TITLES[judged.name]}: count and share of the true state."
+        drawing.scores[f"confusion_{judged.name}"] = (figure, caption)

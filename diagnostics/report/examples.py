@@ -1,0 +1,99 @@
+"""The records that stand for their states in the report: one specimen, one operating point, one channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from diagnostics.recording import TACHO_NAME
+from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resample_to_angle
+from diagnostics.signal.synchronous_average import hann_weights
+
+HEALTHY = "healthy"
+
+
+@dataclass(frozen=True, slots=True)
+class OrderSpectrum:
+    """Hann spectrum of a record over whole pinion revolutions: pinion orders (n,) and amplitudes (n,) [m/s^2]."""
+
+    order: np.ndarray
+    amplitude_m_s2: np.ndarray
+    revolutions: int
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One state of the chosen specimen."""
+
+    state: str
+    fault: str
+    signal_m_s2: np.ndarray
+    tacho_s: np.ndarray
+    spectrum: OrderSpectrum | None
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleSet:
+    """Examples of all states of one specimen, and what they have in common."""
+
+    examples: tuple[Example, ...]
+    specimen_id: int
+    channel: str
+    speed_hz: float
+    torque_nm: float
+    teeth: tuple[int, int]
+    fs_hz: float
+
+    @property
+    def healthy(self) -> Example | None:
+        """The first healthy example."""
+        return next((example for example in self.examples if example.fault == HEALTHY), None)
+
+
+def example_set(dataset: Any, channel: int = 0) -> ExampleSet:
+    """Return the states of the specimen that has most of them, at its first operating point.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set.
+    channel : int
+        Position of the channel.
+    """
+    columns = ["record_id", "specimen_id", "state", "state_id", "operating_point_id", "repeat", "fault"]
+    rows = dataset.labels(columns=columns).to_pylist()
+    groups: dict[tuple[int, int], list[dict[str, Any]]] = {}
+    for row in rows:
+        if row["repeat"] == 0:
+            groups.setdefault((row["operating_point_id"], row["specimen_id"]), []).append(row)
+    _, chosen = max(groups.items(), key=lambda item: (len(item[1]), -item[0][0], -item[0][1]))
+    found = dataset.channels[channel]
+    records = [dataset.record(row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
+    first = records[0]
+    return ExampleSet(
+        examples=tuple(_example(record, found.column, dataset.fs_hz) for record in records),
+        specimen_id=int(first["specimen_id"]),
+        channel=found.name,
+        speed_hz=float(first["speed_hz"]),
+        torque_nm=float(first["torque_nm"]),
+        teeth=(int(first["teeth_pinion"]), int(first["teeth_gear"])),
+        fs_hz=dataset.fs_hz,
+    )
+
+
+def _example(record: dict[str, Any], column: str, fs_hz: float) -> Example:
+    signal, tacho_s = record[column], record[TACHO_NAME]
+    spectrum = order_spectrum(signal, tacho_s, fs_hz, int(record["teeth_pinion"])) if len(tacho_s) > 1 else None
+    return Example(record["state"], record["fault"], signal, tacho_s, spectrum)
+
+
+def order_spectrum(signal: np.ndarray, tacho_s: np.ndarray, fs_hz: float, teeth_pinion: int) -> OrderSpectrum:
+    """Return the Hann spectrum of a record over all its whole pinion revolutions."""
+    from scipy import fft
+
+    grid = angle_grid(tacho_s, teeth_pinion * SAMPLES_PER_TOOTH)
+    steps = resample_to_angle(signal, fs_hz, grid)
+    amplitude = 4.0 * np.abs(fft.rfft(steps * hann_weights(steps.size))) / steps.size
+    return OrderSpectrum(np.arange(amplitude.size) / grid.revolutions, amplitude, grid.revolutions)

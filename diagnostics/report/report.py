@@ -1,0 +1,191 @@
+"""The report of a set: features, training, figures, metrics and one page that says what it all means."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.extras import missing_packages, require_packages
+from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings, feature_table, write_table
+from diagnostics.progress import Stage, silent_stage
+from diagnostics.report import html, tables
+from diagnostics.report.drawing import Drawing, draw
+from diagnostics.report.sentences import summary
+from diagnostics.report.style import png_bytes, styled
+from diagnostics.separability import Separability, separability, separability_table
+from diagnostics.training import Training, save_models, train_models, training_metrics
+from siggen.errors import DatasetError
+
+SECTIONS = (
+    ("vibration", "Signals"),
+    ("damage", "Damage"),
+    ("scores", "Scores"),
+    ("indicators", "Indicators"),
+)
+
+
+def write_report(dataset: Any, folder: Path, seed: int, *, cnn: bool = True, stage: Stage = silent_stage) -> Path:
+    """Compute everything and write `report.html`, `metrics.json`, tables, figures and models; return the page's path.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    folder : Path
+        Created where missing; files of an earlier report are replaced.
+    seed : int
+        Seeds bootstrap, permutations and network.
+    cnn : bool
+        Whether to train the network; without torch it is left out with a note.
+    stage : Stage
+        Told of every step.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib or scikit-learn are missing.
+    """
+    require_packages("the report", "matplotlib", "sklearn", "skops")
+    folder.mkdir(parents=True, exist_ok=True)
+    with stage("indicators", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
+        table = feature_table(dataset, advance=advance)
+    matrix = feature_matrix(table)
+    with stage("separability", 1) as advance:
+        found = separability(matrix, seed)
+        advance()
+    training, notes = _trained(dataset, table, folder / "models", seed, cnn, stage)
+    with stage("figures", 1) as advance, styled():
+        drawing = draw(dataset, matrix, states(matrix), training, found)
+        advance()
+    drawing.notes += [*notes, *undefined_notes(table)]
+    _write_tables(table, found, folder)
+    sentences = summary(dataset.config, training, found)
+    metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
+    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return _write_page(dataset, folder, matrix, training, found, drawing, sentences)
+
+
+def states(matrix: FeatureMatrix) -> tuple[str, ...]:
+    """Return the states in the order of the configuration."""
+    order = dict(zip(matrix.labels["state"].tolist(), matrix.labels["state_id"].tolist(), strict=True))
+    return tuple(sorted(order, key=lambda state: order[state]))
+
+
+def _trained(
+    dataset: Any, table: pa.Table, folder: Path, seed: int, cnn: bool, stage: Stage
+) -> tuple[Training | None, list[str]]:
+    """Train what the set allows; what it does not allow becomes a note, since the rest of the report stands."""
+    notes = []
+    missing = missing_packages("torch", "safetensors") if cnn else ()
+    if missing:
+        notes.append(f"No network: {', '.join(missing)} not installed (pip install 'siggen[cnn]').")
+    for with_network in dict.fromkeys((cnn and not missing, False)):
+        try:
+            training = train_models(dataset, table, seed, cnn=with_network, stage=stage)
+        except DatasetError as error:
+            notes.append(f"{'No network' if with_network else 'No classifier'}: {error}")
+            continue
+        return training, [*dict.fromkeys(notes), *training.notes, *save_models(training, table, dataset, folder)]
+    return None, notes[-1:]
+
+
+def undefined_notes(table: pa.Table) -> list[str]:
+    """Return how often each reason for undefined indicators occurs."""
+    reasons, counts = np.unique([note for note in table.column("notes").to_pylist() if note], return_counts=True)
+    return [f"{count} of {table.num_rows} records: {reason}." for reason, count in zip(reasons, counts, strict=True)]
+
+
+def _write_tables(table: pa.Table, found: list[Separability], folder: Path) -> None:
+    entries = separability_table(found)
+    write_table(table, folder / "features.parquet")
+    write_table(entries, folder / "separability.parquet")
+    write_table(entries, folder / "separability.csv")
+
+
+def report_metrics(
+    dataset: Any,
+    table: pa.Table,
+    seed: int,
+    sentences: list[str],
+    training: Training | None,
+    found: list[Separability],
+    notes: list[str],
+) -> dict[str, Any]:
+    """Return the content of `metrics.json`; undefined numbers are null."""
+    settings = feature_settings(table)
+    return {
+        "set": dataset.path.name,
+        "identity": dataset.manifest["identity"],
+        "records": table.num_rows,
+        "seed": seed,
+        "summary": sentences,
+        "notes": notes,
+        "feature_settings": {name: getattr(settings, name) for name in type(settings).__dataclass_fields__},
+        "training": training_metrics(training) if training else None,
+        "separability": {"specimens": "all", "features": [_entry(entry) for entry in found]},
+    }
+
+
+def _entry(entry: Separability) -> dict[str, Any]:
+    return {
+        "feature": entry.feature,
+        "auc": {state: area.numbers() for state, area in entry.auc.items()},
+        "spearman_damaged_area": entry.spearman.numbers(),
+        "defined_share": entry.defined_share if math.isfinite(entry.defined_share) else None,
+    }
+
+
+def _write_page(
+    dataset: Any,
+    folder: Path,
+    matrix: FeatureMatrix,
+    training: Training | None,
+    found: list[Separability],
+    drawing: Drawing,
+    sentences: list[str],
+) -> Path:
+    pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in drawing.figures().items()}
+    (folder / "figures").mkdir(exist_ok=True)
+    for name, (png, _) in pictures.items():
+        (folder / "figures" / f"{name}.png").write_bytes(png)
+    parts = [
+        html.heading(f"Diagnostics of {dataset.path.name}", 1),
+        html.paragraph(sentences[0], "first"),
+        *(html.paragraph(sentence) for sentence in sentences[1:]),
+        tables.set_table(matrix.labels, states(matrix)),
+    ]
+    for section, title in SECTIONS:
+        blocks = [html.figure_block(*pictures[name]) for name in getattr(drawing, section)]
+        parts += [html.heading(title), *_section_tables(section, training, found), html.figure_grid(blocks)]
+    parts += [html.heading("Notes"), *(html.paragraph(note, "note") for note in (*drawing.notes, _provenance(dataset)))]
+    path = folder / "report.html"
+    path.write_text(html.page(f"Diagnostics of {dataset.path.name}", parts), encoding="utf-8")
+    return path
+
+
+def _section_tables(section: str, training: Training | None, found: list[Separability]) -> list[str]:
+    if section == "scores":
+        return (
+            [tables.score_table(training)]
+            if training
+            else [html.paragraph("No classifier was trained, see the notes.")]
+        )
+    if section == "indicators":
+        text = (
+            f"All {len(found)} features on all specimens: nothing is trained here, so none has to be held back. AUC 0.5 means "
+            "no separation, 0 and 1 a perfect one. Limits: 95 %, resampled specimens. A click on a column's head sorts."
+        )
+        return [html.paragraph(text), tables.separability_html(found)]
+    return []
+
+
+def _provenance(dataset: Any) -> str:
+    return (
+        f"Set {dataset.path.name}, identity {dataset.manifest['identity']}, {len(dataset.channels)} channels at "
+        f"{dataset.fs_hz:g} Hz, records of {dataset.duration_s:g} s. Shaft angles come from the once-per-revolution pulses."
+    )

@@ -1,0 +1,111 @@
+"""Figures of scores: values with intervals, confusion matrices, the permutation control, the strongest indicators."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnostics.feature_table import FeatureMatrix
+from diagnostics.report.style import new_figure
+from diagnostics.separability import Separability
+from diagnostics.training import TITLES, Judged, Training
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ACCURACY_COLOUR, AREA_COLOUR, CHANCE_COLOUR = "#1f6f8b", "#b01e3c", "#8a97a3"
+
+
+def score_figure(training: Training) -> Figure:
+    """Return accuracy and macro-AUROC of every classifier with intervals; dashed lines are chance."""
+    figure, axes = new_figure(1, 2, height_in=0.95 + 0.5 * len(training.judged), sharey=True)
+    chance = 1.0 / len(training.split.classes)
+    panels = (("Accuracy [-]", ACCURACY_COLOUR, chance), ("Macro-AUROC [-]", AREA_COLOUR, 0.5))
+    for axis, (title, colour, level) in zip(axes[0], panels, strict=True):
+        axis.axvline(level, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0)
+        for row, judged in enumerate(training.judged):
+            found = judged.scores.accuracy if axis is axes[0, 0] else judged.scores.macro_auroc
+            axis.plot(
+                [found.low, found.high], [row, row], color=colour, linewidth=2.5, alpha=0.5, solid_capstyle="butt"
+            )
+            axis.plot(found.value, row, marker="o", markersize=6, color=colour)
+        axis.set_xlim(0.0, 1.03)
+        axis.set_xlabel(title)
+    axes[0, 0].set_yticks(range(len(training.judged)), [judged.name for judged in training.judged])
+    axes[0, 0].set_ylim(len(training.judged) - 0.5, -0.5)
+    return figure
+
+
+def confusion_figure(judged: Judged) -> Figure:
+    """Return the confusion matrix of one classifier on the test records: counts and shares of the true state."""
+    classes, counts = judged.scores.classes, judged.scores.confusion
+    figure, axes = new_figure(height_in=1.4 + 0.55 * len(classes))
+    axis = axes[0, 0]
+    share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    axis.imshow(share, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for (row, column), count in np.ndenumerate(counts):
+        colour = "white" if share[row, column] > 0.55 else "#1c2733"
+        axis.text(column, row, f"{count}\n{share[row, column]:.0%}", ha="center", va="center", color=colour, fontsize=9)
+    axis.set_xticks(range(len(classes)), classes)
+    axis.set_yticks(range(len(classes)), classes)
+    axis.grid(visible=False)
+    axis.set_xlabel("Predicted state")
+    axis.set_ylabel("True state")
+    axis.set_title(TITLES[judged.name], loc="left", fontweight="bold")
+    return figure
+
+
+def permutation_figure(training: Training) -> Figure:
+    """Return macro-AUROC after training on permuted labels (dots) beside the true one (diamond)."""
+    shown = [judged for judged in training.judged if judged.permuted_auroc.size]
+    figure, axes = new_figure(height_in=1.2 + 0.55 * len(shown))
+    axis = axes[0, 0]
+    axis.axvline(0.5, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0, label="chance")
+    for row, judged in enumerate(shown):
+        areas = judged.permuted_auroc
+        spread = 0.35 * (np.arange(areas.size) / max(areas.size - 1, 1) - 0.5) if areas.size > 1 else np.zeros(1)
+        label = ("permuted labels", "true labels") if row == 0 else (None, None)
+        axis.plot(areas, row + spread, linestyle="none", marker="o", markersize=4, color=CHANCE_COLOUR, label=label[0])
+        value = judged.scores.macro_auroc.value
+        axis.plot(value, row, linestyle="none", marker="D", markersize=7, color=AREA_COLOUR, label=label[1])
+    axis.set_xlim(0.0, 1.03)
+    axis.set_ylim(len(shown) - 0.5, -0.5)
+    axis.set_yticks(range(len(shown)), [judged.name for judged in shown])
+    axis.set_xlabel("Macro-AUROC on test specimens [-]")
+    figure.legend(loc="outside upper center", ncols=3, fontsize=9)
+    return figure
+
+
+def indicator_figure(
+    matrix: FeatureMatrix, found: list[Separability], classes: tuple[str, ...], colours: dict[str, str]
+) -> Figure:
+    """Return the values of the strongest indicators by state, one row each, a dot per record."""
+    figure, axes = new_figure(len(found), 1, height_in=0.6 + 1.25 * len(found), sharex=True)
+    for axis, entry in zip(axes[:, 0], found, strict=True):
+        _draw_indicator(axis, matrix, entry.feature, classes, colours)
+    axes[-1, 0].set_xticks(range(len(classes)), classes)
+    axes[-1, 0].set_xlabel("State (one dot per record)")
+    return figure
+
+
+def _draw_indicator(
+    axis: Any, matrix: FeatureMatrix, feature: str, classes: tuple[str, ...], colours: dict[str, str]
+) -> None:
+    values = matrix.values[:, matrix.names.index(feature)]
+    for position, state in enumerate(classes):
+        chosen = values[matrix.labels["state"] == state]
+        spread = 0.5 * (np.arange(chosen.size) / max(chosen.size - 1, 1) - 0.5)
+        axis.plot(
+            position + spread, chosen, linestyle="none", marker="o", markersize=3, alpha=0.6, color=colours[state]
+        )
+    if (values > 0).all() and values.max() > 30.0 * values.min():
+        axis.set_yscale("log")
+    axis.set_ylabel(f"[{unit_of(feature)}]")
+    axis.set_title(feature, loc="left", fontsize=9, fontweight="bold")
+
+
+def unit_of(feature: str) -> str:
+    """Return the unit of a feature by its name: m/s^2 for levels and amplitudes, 1 for ratios."""
+    level = ("rms", "average_rms", "difference_rms", "mesh_amplitude", "sideband_index")
+    return "m/s²" if feature.startswith(level) else "-"

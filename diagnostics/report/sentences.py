@@ -1,0 +1,134 @@
+"""The summary of a report, written from its numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from diagnostics.evaluation import Interval, error_share_limit
+from diagnostics.realism import meaning_of_scores
+from diagnostics.separability import Separability
+from diagnostics.training import TITLES, Judged, Training
+
+CHANCE_MARGIN = 0.1
+"""A mean macro-AUROC under permuted labels that is farther from 0.5 than this is called suspicious."""
+
+
+def summary(config: dict[str, Any], training: Training | None, found: list[Separability]) -> list[str]:
+    """Return the sentences of the summary; the first says what scores on this set mean.
+
+    Parameters
+    ----------
+    config : dict
+        Configuration of the set.
+    training : Training, optional
+        None where no classifier could be trained.
+    found : list of Separability
+        All features, strongest first.
+    """
+    sentences = [meaning_of_scores(config)]
+    if training:
+        sentences += [scores_sentence(training), certainty_sentence(training), control_sentence(training)]
+    return [*sentences, *indicator_sentences(found)]
+
+
+def percent(value: float) -> str:
+    """Return a share as whole percent."""
+    return f"{100.0 * value:.0f}\u00a0%"
+
+
+def _range(found: Interval) -> str:
+    return (
+        "no interval from one specimen" if math.isnan(found.low) else f"{percent(found.low)} to {percent(found.high)}"
+    )
+
+
+def scores_sentence(training: Training) -> str:
+    """Say how often each classifier named the right state."""
+    first = training.judged[0].scores
+    parts = [
+        f"{TITLES[judged.name]} {percent(judged.scores.accuracy.value)} ({_range(judged.scores.accuracy)}, "
+        f"macro-AUROC {judged.scores.macro_auroc.value:.2f})"
+        for judged in training.judged
+    ]
+    return (
+        f"On {first.records} records of {first.specimens} test specimens the right one of {len(first.classes)} states was "
+        f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(1.0 / len(first.classes))}."
+    )
+
+
+def certainty_sentence(training: Training) -> str:
+    """Say how far few specimens limit what the scores can tell."""
+    specimens = training.judged[0].scores.specimens
+    perfect = [judged for judged in training.judged if judged.scores.accuracy.value == 1.0]
+    if perfect:
+        return (
+            f"Without a single error on {specimens} specimens the interval has no width, yet up to "
+            f"{percent(error_share_limit(specimens))} of specimens with errors remain compatible with that (95\u00a0%, binomial)."
+        )
+    return f"Intervals are 95 % and come from resampling the {specimens} test specimens; with so many they are " + (
+        "rough." if specimens < 20 else "meaningful."
+    )
+
+
+def control_sentence(training: Training) -> str:
+    """Say what training on permuted labels gave, and whether that is chance."""
+    shown = [judged for judged in training.judged if judged.permuted_auroc.size]
+    parts = [_control(judged) for judged in shown]
+    suspicious = [
+        judged
+        for judged in shown
+        if judged.permuted_auroc.size > 1 and abs(judged.permuted_auroc.mean() - 0.5) > CHANCE_MARGIN
+    ]
+    verdict = (
+        f"{' and '.join(judged.name for judged in suspicious)} stay off chance, so the scores above are not to be trusted"
+        if suspicious
+        else "chance is 0.5, so nothing but the labels carries the scores"
+    )
+    return f"Trained on permuted labels the macro-AUROC is {' and '.join(parts)}; {verdict}."
+
+
+def _control(judged: Judged) -> str:
+    areas = judged.permuted_auroc
+    if areas.size == 1:
+        return f"{areas[0]:.2f} in a single short run for {TITLES[judged.name]}"
+    low, high = np.quantile(areas, [0.05, 0.95])
+    return f"{areas.mean():.2f} on average for {TITLES[judged.name]} ({areas.size} runs, 90 % within {low:.2f} to {high:.2f})"
+
+
+def indicator_sentences(found: list[Separability]) -> list[str]:
+    """Say which state is hardest, which single indicator does best there, and what follows the damaged area."""
+    sentences = []
+    hardest = hardest_state(found)
+    if hardest:
+        state, entry = hardest
+        area = entry.auc[state]
+        sentences.append(
+            f"The state hardest to tell from healthy is {state}: the best of {len(found)} single indicators, "
+            f"{entry.feature}, reaches an AUC of {area.value:.2f} ({area.low:.2f} to {area.high:.2f}; chosen on the same "
+            "specimens, therefore optimistic)."
+        )
+    followed = [entry for entry in found if math.isfinite(entry.spearman.value)]
+    if followed:
+        best = max(followed, key=lambda entry: abs(entry.spearman.value))
+        sentences.append(
+            f"The damaged area is followed best by {best.feature} (rank correlation {best.spearman.value:+.2f}, "
+            f"{best.spearman.low:+.2f} to {best.spearman.high:+.2f})."
+        )
+    return sentences
+
+
+def hardest_state(found: list[Separability]) -> tuple[str, Separability] | None:
+    """Return the state whose best single indicator is weakest, and that indicator."""
+    best: dict[str, tuple[float, Separability]] = {}
+    for entry in found:
+        for state, area in entry.auc.items():
+            distance = abs(area.value - 0.5)
+            if math.isfinite(distance) and (state not in best or distance > best[state][0]):
+                best[state] = (distance, entry)
+    if not best:
+        return None
+    state = min(best, key=lambda name: best[name][0])
+    return state, best[state][1]

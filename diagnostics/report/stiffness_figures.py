@@ -1,0 +1,51 @@
+"""Figures of what the damage does to the mesh: stiffness curves of one specimen, and the loss over all specimens."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnostics.report.style import new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colours: dict[str, str]) -> Figure:
+    """Return mesh stiffness over the pinion's angle, all states in one frame.
+
+    Parameters
+    ----------
+    curves : mapping of state to (angle_deg (k,), stiffness_n_per_m (k,))
+        What `siggen.mesh_stiffness_curves` returns.
+    colours : dict of str
+        Colour by state.
+    """
+    figure, axes = new_figure(height_in=3.4)
+    axis = axes[0, 0]
+    for state, (angle_deg, stiffness_n_per_m) in curves.items():
+        axis.plot(angle_deg, 1e-6 * np.asarray(stiffness_n_per_m), color=colours.get(state), label=state, linewidth=1.2)
+    axis.set_xlabel("Pinion angle [°]")
+    axis.set_ylabel("Mesh stiffness [N/µm]")
+    axis.margins(x=0.01)
+    figure.legend(loc="outside upper center", ncols=min(len(curves), 4), fontsize=9)
+    return figure
+
+
+def stiffness_loss_figure(labels: dict[str, np.ndarray], classes: tuple[str, ...], colours: dict[str, str]) -> Figure:
+    """Return the largest relative loss of mesh stiffness, a dot per specimen, over the states."""
+    figure, axes = new_figure(height_in=2.8)
+    axis = axes[0, 0]
+    for position, state in enumerate(classes):
+        chosen = labels["state"] == state
+        _, first = np.unique(labels["specimen_id"][chosen], return_index=True)
+        loss = 100.0 * labels["mesh_stiffness_loss"][chosen][first]
+        spread = 0.5 * (np.arange(loss.size) / max(loss.size - 1, 1) - 0.5)
+        axis.plot(position + spread, loss, linestyle="none", marker="o", markersize=4, alpha=0.7, color=colours[state])
+    axis.set_xticks(range(len(classes)), classes)
+    axis.set_xlabel("State (one dot per specimen)")
+    axis.set_ylabel("Largest stiffness loss [%]")
+    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
+    return figure

@@ -1,0 +1,77 @@
+"""Tables of a report: what the set holds, scores with intervals, every feature's separability."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from diagnostics.evaluation import Interval
+from diagnostics.report.html import Cell, table
+from diagnostics.separability import Separability
+from diagnostics.training import TITLES, Training
+
+
+def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
+    """Return records by state and split, and specimens by split."""
+    splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
+    rows = [
+        [
+            Cell(state),
+            *(Cell(str(int(((labels["state"] == state) & (labels["split"] == name)).sum()))) for name in splits),
+        ]
+        for state in classes
+    ]
+    count = [np.unique(labels["specimen_id"][labels["split"] == name]).size for name in splits]
+    return table(["Records of state", *splits], [*rows, [Cell("specimens"), *(Cell(str(number)) for number in count)]])
+
+
+def score_table(training: Training) -> str:
+    """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
+    rows = []
+    for judged in training.judged:
+        permuted = f"{judged.permuted_auroc.mean():.2f}" if judged.permuted_auroc.size else "–"
+        rows.append(
+            [
+                Cell(TITLES[judged.name], _details(judged.details)),
+                interval_cell(judged.scores.accuracy),
+                interval_cell(judged.scores.macro_auroc),
+                Cell(permuted),
+            ]
+        )
+    return table(["Classifier", "Accuracy", "Macro-AUROC", "Macro-AUROC, permuted labels"], rows)
+
+
+def _details(details: dict[str, Any]) -> str:
+    if "strength" in details:
+        return f"{details['features']} features, C = {details['strength']:g}"
+    return (
+        f"windows of {details['revolutions_per_window']} pinion revolutions × {details['samples_per_revolution']} samples, "
+        f"epoch {details['best_epoch']} of {details['epochs']}"
+    )
+
+
+def separability_html(found: list[Separability]) -> str:
+    """Return all features, strongest first; a click on a head sorts by another column."""
+    states = list(dict.fromkeys(state for entry in found for state in entry.auc))
+    rows = [
+        [
+            Cell(entry.feature),
+            *(interval_cell(entry.auc[state]) for state in states),
+            interval_cell(entry.spearman, sign=True),
+            Cell(f"{entry.defined_share:.0%}", value=entry.defined_share),
+        ]
+        for entry in found
+    ]
+    head = ["Feature", *(f"AUC healthy / {state}" for state in states), "Spearman, damaged area", "Defined"]
+    return table(head, rows, sortable=True, tall=True)
+
+
+def interval_cell(found: Interval, *, sign: bool = False) -> Cell:
+    """Return a value with its limits in small print."""
+    form = "+.2f" if sign else ".2f"
+    if not math.isfinite(found.value):
+        return Cell("undefined", value=math.nan)
+    limits = "" if math.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"
+    return Cell(f"{found.value:{form}}", limits, found.value)

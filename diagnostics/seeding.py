@@ -1,0 +1,21 @@
+"""Random generators of the diagnostics, keyed by what a draw is for; the only place here that makes one."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+
+
+class Purpose(IntEnum):
+    """What a draw is for; the integers keep streams apart, so never renumber."""
+
+    BOOTSTRAP = 1
+    PERMUTATION = 2
+    WINDOWS = 3
+
+
+def generator(seed: int, purpose: Purpose, owner: int = 0) -> np.random.Generator:
+    """Return the generator of one purpose and owner (repeat, epoch ...); equal arguments give equal streams."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(int(purpose), owner))
+    return np.random.Generator(np.random.Philox(sequence))

@@ -1,0 +1,138 @@
+"""A record resampled to equal steps of shaft angle, with the angle taken from the once-per-revolution pulses.
+
+The angle is a cubic spline through the exact pulse times (never the nominal speed: a droop of 0.2 % already destroys an
+average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline on the twice oversampled record;
+oversampling, spline prefilter and band limit are one multiplication in the frequency domain.
+Source: order tracking by interpolation is standard literature; the B-spline prefilter follows Unser 1999, the rest derived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SAMPLES_PER_TOOTH = 128
+"""Angle steps per mesh period: 128 keeps the band of a 51.2 kHz record above a mesh frequency of 400 Hz and one definition
+of every indicator below it."""
+
+OVERSAMPLING = 2
+EDGE_SAMPLES = 1024
+BAND_TAPER = 0.1
+"""Share of the output band over which the anti-alias limit falls from one to zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class AngleGrid:
+    """Times of equal steps of pinion angle between the first and the last pulse.
+
+    Attributes
+    ----------
+    time_s : (revolutions * samples_per_revolution,) float64
+        Times of the angle steps since the start of the record; the first step lies on the first pulse.
+    revolutions : int
+        Whole pinion revolutions between the first and the last pulse.
+    samples_per_revolution : int
+        Angle steps per pinion revolution.
+    slowest_hz : float
+        Lowest mean speed of one revolution; it sets the band limit against aliasing.
+    """
+
+    time_s: np.ndarray
+    revolutions: int
+    samples_per_revolution: int
+    slowest_hz: float
+
+
+def angle_grid(tacho_s: np.ndarray, samples_per_revolution: int) -> AngleGrid:
+    """Return the times of equal angle steps from the times of one pulse per pinion revolution.
+
+    Parameters
+    ----------
+    tacho_s : (k,) float64
+        Pulse times, increasing; from four pulses on the interpolation is cubic, below linear.
+    samples_per_revolution : int
+        Angle steps per revolution.
+
+    Raises
+    ------
+    ValueError
+        If fewer than two pulses came or their times do not increase.
+    """
+    pulses = np.asarray(tacho_s, dtype=np.float64)
+    if pulses.size < 2 or not np.all(np.diff(pulses) > 0):
+        raise ValueError(f"received {pulses.size} pulse times; at least 2 increasing ones are needed for an angle")
+    fraction = np.arange(samples_per_revolution) / samples_per_revolution
+    coefficients = _polynomials(pulses)
+    time_s = coefficients[0][:, None] * fraction
+    for row in coefficients[1:-1]:
+        time_s = (time_s + row[:, None]) * fraction
+    time_s = time_s + coefficients[-1][:, None]
+    return AngleGrid(time_s.ravel(), pulses.size - 1, samples_per_revolution, float(1.0 / np.diff(pulses).max()))
+
+
+def _polynomials(pulses: np.ndarray) -> np.ndarray:
+    """Return the coefficients of time over revolutions, highest power first, (powers, revolutions)."""
+    if pulses.size < 4:
+        return np.stack([np.diff(pulses), pulses[:-1]])
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(np.arange(pulses.size), pulses).c)
+
+
+def resample_to_angle(signal: np.ndarray, fs_hz: float, grid: AngleGrid) -> np.ndarray:
+    """Return the record at the angle steps, limited to the band that the steps can carry.
+
+    The error is below 3e-5 of the amplitude up to 0.25 fs and below 1e-3 up to 0.4 fs (tested), apart from the outermost
+    milliseconds of the record.
+
+    Parameters
+    ----------
+    signal : (n,) float
+        The record, sampled at `fs_hz` from time zero.
+    fs_hz : float
+        Sampling frequency [Hz].
+    grid : AngleGrid
+        Where to evaluate.
+
+    Returns
+    -------
+    (revolutions * samples_per_revolution,) float64
+    """
+    from scipy.ndimage import map_coordinates
+
+    limit = min(grid.samples_per_revolution * grid.slowest_hz / fs_hz, 1.0) / 2.0
+    padded = _extended(np.asarray(signal, dtype=np.float64))
+    coefficients = _spline_coefficients(padded, limit)
+    position = (grid.time_s * fs_hz + EDGE_SAMPLES) * OVERSAMPLING
+    return np.asarray(map_coordinates(coefficients, position[None, :], order=5, prefilter=False, mode="nearest"))
+
+
+def _extended(signal: np.ndarray) -> np.ndarray:
+    """Continue the record on both sides by tapered odd reflection, so that the FFT meets no step at its ends."""
+    from scipy.fft import next_fast_len
+
+    edge = min(EDGE_SAMPLES, signal.size - 1)
+    fade = 0.5 + 0.5 * np.cos(np.pi * np.arange(1, edge + 1) / edge)
+    length = next_fast_len(signal.size + 2 * EDGE_SAMPLES, real=True)
+    padded = np.zeros(length)
+    end = EDGE_SAMPLES + signal.size
+    padded[EDGE_SAMPLES:end] = signal
+    padded[EDGE_SAMPLES - edge : EDGE_SAMPLES] = ((2 * signal[0] - signal[1 : edge + 1]) * fade)[::-1]
+    padded[end : end + edge] = (2 * signal[-1] - signal[-2 : -edge - 2 : -1]) * fade
+    return padded
+
+
+def _spline_coefficients(padded: np.ndarray, limit: float) -> np.ndarray:
+    """Oversample, limit the band to `limit` cycles per sample and divide by the quintic B-spline's response."""
+    from scipy import fft
+
+    spectrum = fft.rfft(padded)
+    cycles = np.arange(spectrum.size) / padded.size
+    angle = 2.0 * np.pi * cycles / OVERSAMPLING
+    spline_response = (66.0 + 52.0 * np.cos(angle) + 2.0 * np.cos(2.0 * angle)) / 120.0
+    gain = OVERSAMPLING / spline_response
+    if limit < 0.5:
+        start = limit * (1.0 - BAND_TAPER)
+        gain *= 0.5 + 0.5 * np.cos(np.pi * np.clip((cycles - start) / (limit - start), 0.0, 1.0))
+    return np.asarray(fft.irfft(spectrum * gain, n=padded.size * OVERSAMPLING))

@@ -1,0 +1,72 @@
+"""Average of a record over whole revolutions of the pinion shaft or of the gear shaft.
+
+A mesh period holds a fixed number of angle steps, so one grid serves both shafts: a pinion revolution is z1 mesh periods, a
+gear revolution z2 (gear angle = pinion angle z1/z2). Source: synchronous averaging, standard literature (McFadden 1987).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class SynchronousAverage:
+    """One revolution of a shaft, averaged.
+
+    Attributes
+    ----------
+    signal : (teeth * samples_per_tooth,) float64
+        Average over `revolutions` revolutions of the shaft that carries `teeth` teeth.
+    teeth : int
+        Teeth of the averaged gear; mesh harmonic h is shaft order h * teeth.
+    revolutions : int
+        Whole revolutions averaged. What is locked to the other shaft cancels exactly only if this is a multiple of the other
+        gear's tooth number (over their common divisor), and falls about as 1/revolutions otherwise.
+    """
+
+    signal: np.ndarray
+    teeth: int
+    revolutions: int
+
+
+def whole_revolutions(angle_signal: np.ndarray, teeth: int, samples_per_tooth: int) -> int:
+    """Return how many whole revolutions of a shaft the angle signal holds."""
+    return angle_signal.size // (teeth * samples_per_tooth)
+
+
+def synchronous_average(
+    angle_signal: np.ndarray, teeth: int, samples_per_tooth: int, weights: np.ndarray | None = None
+) -> SynchronousAverage:
+    """Average an angle signal over all whole revolutions of the shaft with the given number of teeth.
+
+    Parameters
+    ----------
+    angle_signal : (n,) float64
+        Record at equal angle steps, `samples_per_tooth` per mesh period.
+    teeth : int
+        Teeth on the shaft.
+    samples_per_tooth : int
+        Angle steps per mesh period.
+    weights : (revolutions * teeth * samples_per_tooth,) float64, optional
+        Window over the averaged stretch, divided by its mean; with a Hann window the spectrum of the result is the Hann
+        spectrum of the stretch at whole shaft orders.
+
+    Raises
+    ------
+    ValueError
+        If the signal is shorter than one revolution.
+    """
+    revolutions = whole_revolutions(angle_signal, teeth, samples_per_tooth)
+    if revolutions < 1:
+        raise ValueError(f"received {angle_signal.size} angle steps; one revolution needs {teeth * samples_per_tooth}")
+    stretch = angle_signal[: revolutions * teeth * samples_per_tooth]
+    if weights is not None:
+        stretch = stretch * (weights / weights.mean())
+    return SynchronousAverage(stretch.reshape(revolutions, -1).mean(axis=0), teeth, revolutions)
+
+
+def hann_weights(samples: int) -> np.ndarray:
+    """Return the periodic Hann window of the given length."""
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(samples) / samples)

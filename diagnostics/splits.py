@@ -1,0 +1,75 @@
+"""The specimen-wise split of a set, checked: no specimen in two splits, every split usable."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.errors import DatasetError
+
+TRAIN, VALIDATION, TEST = "train", "validation", "test"
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenSplit:
+    """Record masks (n,) bool of the three splits, and the states in the order of the configuration."""
+
+    train: np.ndarray
+    validation: np.ndarray
+    test: np.ndarray
+    classes: tuple[str, ...]
+
+
+def check_specimens(specimen: np.ndarray, split: np.ndarray) -> None:
+    """Check that no specimen occurs in two splits.
+
+    Raises
+    ------
+    DatasetError
+        Naming the specimens that do: a score on them would measure memory, not diagnosis.
+    """
+    owners: dict[int, set[str]] = {}
+    for number, name in zip(specimen.tolist(), split.tolist(), strict=True):
+        owners.setdefault(number, set()).add(name)
+    shared = {number: sorted(names) for number, names in owners.items() if len(names) > 1}
+    if shared:
+        shown = ", ".join(f"specimen {number} in {' and '.join(names)}" for number, names in sorted(shared.items())[:5])
+        raise DatasetError(
+            f"{len(shared)} specimens occur in more than one split ({shown}); a specimen may be in one only, "
+            "otherwise the test repeats what was trained on. Generate the set again or correct its `split` column."
+        )
+
+
+def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
+    """Return the split of labelled records.
+
+    Parameters
+    ----------
+    labels : dict of str to (n,)
+        Columns `specimen_id`, `split`, `state`, `state_id`.
+
+    Raises
+    ------
+    DatasetError
+        If a specimen is in two splits, training or test has no specimen, or training has a single state.
+    """
+    check_specimens(labels["specimen_id"], labels["split"])
+    masks = {name: labels["split"] == name for name in (TRAIN, VALIDATION, TEST)}
+    counts = {name: int(np.unique(labels["specimen_id"][mask]).size) for name, mask in masks.items()}
+    for name in (TRAIN, TEST):
+        if counts[name] == 0:
+            raise DatasetError(
+                f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
+                "specimen each. Generate more specimens (`siggen generate --specimens`) or change `splits`."
+            )
+    order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
+    classes = tuple(sorted(order, key=lambda state: order[state]))
+    trained = sorted(set(labels["state"][masks[TRAIN]].tolist()))
+    if len(trained) < 2:
+        raise DatasetError(f"training has the single state {trained}; a classifier needs at least two states")
+    return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], classes)
+
+
+def _listed(counts: dict[str, int]) -> str:
+    return ", ".join(f"{name} {count}" for name, count in counts.items())

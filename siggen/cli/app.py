@@ -1,0 +1,69 @@
+"""The command `siggen`: one command per file, and what every error turns into."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Annotated
+
+import typer
+
+from siggen.cli.generate import generate
+from siggen.cli.plan import plan
+from siggen.cli.schema import schema
+from siggen.cli.show import show
+from siggen.cli.simulate import simulate
+from siggen.cli.tvms import tvms
+from siggen.cli.verify import verify
+from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
+
+TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
+
+# Command files import nothing slow at their top, so that all of them together start at once.
+COMMANDS = (plan, generate, verify, show, simulate, tvms, schema)
+
+app = typer.Typer(
+    help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Begin with: siggen plan configs/quickstart.yaml",
+)
+for command in COMMANDS:
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"siggen {version('siggen')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling."""
+
+
+def main() -> None:
+    """Run the command line; known errors become a message and their exit code, never a traceback."""
+    try:
+        app()
+    except SiggenError as error:
+        typer.echo(f"siggen: {error}", err=True)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        typer.echo("siggen: interrupted", err=True)
+        sys.exit(EXIT_INTERRUPTED)
+    except Exception as error:
+        if os.environ.get(TRACEBACK_VARIABLE):
+            raise
+        kind = type(error).__name__
+        typer.echo(f"siggen: unexpected {kind}: {error}; run again with {TRACEBACK_VARIABLE}=1 for details", err=True)
+        sys.exit(EXIT_UNEXPECTED)

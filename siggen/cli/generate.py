@@ -1,0 +1,102 @@
+"""`siggen generate`: a data set from a configuration, or the rest of one that was interrupted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from siggen.generation import Generation
+
+LISTED_FAILURES = 10
+
+
+def generate(
+    config: Annotated[Path, typer.Argument(help="YAML file of the set.", metavar="CONFIG")],
+    out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
+    ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
+    ] = None,
+) -> None:
+    """Generate a data set; the same command continues an interrupted one.
+
+    Exit codes: 0 done, 2 wrong configuration or folder, 3 done but some records failed, 130 interrupted.
+
+    Example: siggen generate configs/quickstart.yaml --out sets/quickstart
+    """
+    from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.generation import generate as generate_set
+    from siggen.loading import load_config
+
+    loaded = load_config(config, overrides or ())
+    with _progress() as show:
+        generation = generate_set(loaded, out, workers, show)
+    _report(generation)
+    typer.echo(str(generation.path))
+    if generation.failures:
+        raise typer.Exit(EXIT_RECORDS_FAILED)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[int, int], None] | None]:
+    """Show records, rate and time left on stderr; nothing where stderr is not a terminal."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn("records"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(compact=True),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("records", total=None, rate="")
+
+        def show(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+            speed = bar.tasks[0].speed
+            bar.update(task, rate=f"{speed:.3g}/s" if speed else "")
+
+        yield show
+
+
+def _report(generation: Generation) -> None:
+    """Say on stderr what was done and what failed."""
+    if generation.was_finished:
+        typer.echo(
+            f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)", err=True
+        )
+    else:
+        rate = generation.records_made / generation.seconds
+        taken_over = f", {generation.shards_taken_over} shards were there" if generation.shards_taken_over else ""
+        made = f"{generation.records_made} records in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
+        typer.echo(f"{generation.rows} records in the set; this run: {made}", err=True)
+    for failure in generation.failures[:LISTED_FAILURES]:
+        typer.echo(f"record {failure.record_id} failed: {failure.status} ({failure.reason})", err=True)
+    if generation.failures:
+        count = len(generation.failures)
+        typer.echo(f"{count} records could not be simulated; the set is usable, manifest.json lists them", err=True)

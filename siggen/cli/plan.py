@@ -1,0 +1,141 @@
+"""`siggen plan`: what a configuration would give, before anything is simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from siggen.config import Config
+
+
+def plan(
+    config: Annotated[Path, typer.Argument(help="YAML file of the set.", metavar="CONFIG")],
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
+) -> None:
+    """List the records, shards and size that a configuration would give.
+
+    Example: siggen plan configs/quickstart.yaml --set specimens=1000 --json
+    """
+    import json
+
+    from rich.console import Console
+
+    from siggen.loading import load_config
+
+    summary = plan_summary(load_config(config, overrides or ()))
+    if as_json:
+        typer.echo(json.dumps(summary, indent=2))
+        return
+    console = Console()
+    console.print(_overview(summary))
+    console.print(_states(summary))
+
+
+def plan_summary(config: Config) -> dict[str, Any]:
+    """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
+    from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
+
+    shard_plans = {split: shards(config, split) for split in SPLITS}
+    specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
+    records = config.specimens * config.records_per_specimen
+    raw_bytes = records * config.samples * 4 * len(config.channels)
+    return {
+        "name": config.name,
+        "identity": config.identity,
+        "specimens": config.specimens,
+        "records": records,
+        "channels": list(config.channels),
+        "fs_hz": config.fs_hz,
+        "duration_s": config.duration_s,
+        "signal_hours": records * config.duration_s / 3600,
+        "mesh_hz": list(_mesh_range_hz(config)),
+        "specimens_of_split": specimens,
+        "states": _state_counts(config, specimens),
+        "severity_share": _severity_shares(config),
+        "shards_of_split": {split: len(shard_plans[split]) for split in SPLITS},
+        "specimens_per_full_shard": specimens_per_shard(config),
+        "rows_per_group": rows_per_group(config),
+        "raw_bytes": raw_bytes,
+        "estimated_bytes_on_disk": estimated_bytes(config),
+    }
+
+
+def _mesh_range_hz(config: Config) -> tuple[float, float]:
+    from siggen.config import bounds
+
+    speeds = [bounds(point.speed_hz) for point in config.operating_points]
+    teeth = config.gears.pinion.teeth
+    return teeth * min(low for low, _ in speeds), teeth * max(high for _, high in speeds)
+
+
+def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, Any]]:
+    per_state = len(config.operating_points) * config.repeats
+    return [
+        {
+            "name": state.name,
+            "fault": state.fault,
+            "severity": state.severity,
+            "records_of_split": {split: count * per_state for split, count in specimens.items()},
+        }
+        for state in config.states
+    ]
+
+
+def _severity_shares(config: Config) -> dict[str, float]:
+    # every state has the same number of records, so the shares are those of the states
+    severities = [state.severity for state in config.states]
+    return {name: severities.count(name) / len(severities) for name in dict.fromkeys(severities)}
+
+
+def _overview(summary: dict[str, Any]) -> Table:
+    from rich.table import Table
+
+    table = Table(title=f"Plan of {summary['name']}", show_header=False, title_justify="left")
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    low_hz, high_hz = summary["mesh_hz"]
+    rows = {
+        "identity": summary["identity"],
+        "gearboxes": f"{summary['specimens']:,}  ({_per_split(summary['specimens_of_split'])})",
+        "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
+        "channels": ", ".join(summary["channels"]),
+        "hours of signal": f"{summary['signal_hours']:.3g}",
+        "mesh frequency": f"{low_hz:g} Hz" if low_hz == high_hz else f"{low_hz:g} to {high_hz:g} Hz",
+        "class balance": ", ".join(f"{name} {share:.0%}" for name, share in summary["severity_share"].items()),
+        "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "
+        f"{summary['specimens_per_full_shard']} gearboxes in a full one",
+        "size on disk": f"about {_megabytes(summary['estimated_bytes_on_disk'])}",
+        "size of signals": _megabytes(summary["raw_bytes"]),
+    }
+    for name, text in rows.items():
+        table.add_row(name, text)
+    return table
+
+
+def _megabytes(count: int) -> str:
+    return f"{count / 1e6:,.1f} MB"
+
+
+def _per_split(counts: dict[str, int]) -> str:
+    return ", ".join(f"{split} {count:,}" for split, count in counts.items())
+
+
+def _states(summary: dict[str, Any]) -> Table:
+    from rich.table import Table
+
+    splits = list(summary["specimens_of_split"])
+    table = Table("state", "fault", "severity", *splits, "all", title="Records", title_justify="left")
+    for state in summary["states"]:
+        counts = state["records_of_split"]
+        cells = [f"{counts[split]:,}" for split in splits]
+        table.add_row(state["name"], state["fault"], state["severity"], *cells, f"{sum(counts.values()):,}")
+    return table

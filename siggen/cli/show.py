@@ -1,0 +1,87 @@
+"""`siggen show`: one record of a finished set, as a table of labels or as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from siggen.dataset.reading import Dataset
+    from siggen.dataset.record import Channel
+
+
+def show(
+    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    record: Annotated[int, typer.Option("--record", min=0, help="Id of the record (column record_id).")],
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw instead of the table.")] = None,
+    channel: Annotated[str | None, typer.Option("--channel", help="Channel to draw; by default the first.")] = None,
+) -> None:
+    """Show the labels and damage of one record, or draw its waveform and its spectrum around the mesh harmonics.
+
+    Example: siggen show sets/quickstart --record 3 --png record3.png
+    """
+    from siggen.dataset.reading import open as open_set
+
+    dataset = open_set(folder)
+    found = dataset.record(record)
+    if png is not None:
+        from siggen.cli.record_figure import save_record_figure
+
+        save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
+        typer.echo(str(png))
+        return
+    from rich.console import Console
+
+    console = Console()
+    console.print(_labels(dataset, found))
+    if found["damage_count"]:
+        console.print(_damage(dataset, found))
+
+
+def _channel(dataset: Dataset, name: str | None) -> Channel:
+    from siggen.errors import UsageError
+
+    known = {channel.name: channel for channel in dataset.channels}
+    if name is not None and name not in known:
+        raise UsageError(f"--channel {name}: {dataset.path} has the channels {', '.join(known)}")
+    return dataset.channels[0] if name is None else known[name]
+
+
+def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
+    from rich.table import Table
+
+    table = Table(
+        "label", "value", "unit", title=f"Record {record['record_id']} of {dataset.path}", title_justify="left"
+    )
+    schema = dataset.labels(columns=None).schema
+    for field in schema:
+        unit = (field.metadata or {}).get(b"unit", b"").decode()
+        table.add_row(field.name, _text(record[field.name]), unit)
+    for channel in dataset.channels:
+        signal = record[channel.column]
+        rms, peak = float((signal.astype(float) ** 2).mean() ** 0.5), float(abs(signal).max())
+        table.add_row(channel.column, f"{len(signal)} samples, RMS {rms:.4g}, peak {peak:.4g}", channel.unit)
+    table.add_row("tacho_s", f"{len(record['tacho_s'])} pulses", "s")
+    return table
+
+
+def _damage(dataset: Dataset, record: Mapping[str, Any]) -> Table:
+    import pyarrow.compute as pc
+    from rich.table import Table
+
+    rows = dataset.damage(record["split"])
+    own = rows.filter(pc.equal(rows["record_id"], record["record_id"])).drop_columns(["record_id"])
+    names = [name for name in own.column_names if not name.startswith("polygon")]
+    table = Table(*names, title="Damage", title_justify="left")
+    for row in own.select(names).to_pylist():
+        table.add_row(*(_text(row[name]) for name in names))
+    return table
+
+
+def _text(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,55 @@
+"""What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
+
+from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
+from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
+from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.config.drawing import corners, draw
+from siggen.config.dynamics import Coupling, Dynamics, Rotor
+from siggen.config.gears import Gears, Wheel
+from siggen.config.number import Number, at, bounds, constant
+from siggen.config.operating_points import OperatingRange
+from siggen.config.overrides import apply_overrides
+from siggen.config.parsing import ParsedConfig, parse
+from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
+from siggen.config.states import State
+from siggen.config.stiffness import Stiffness
+from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
+
+__all__ = [
+    "BLOCK",
+    "SCHEMA_VERSION",
+    "Choice",
+    "ClusteredPits",
+    "Config",
+    "Coupling",
+    "DamageModel",
+    "Dynamics",
+    "Gears",
+    "LayeredPits",
+    "ListedPit",
+    "ListedPits",
+    "LogUniform",
+    "NoiseFloor",
+    "NoiseRatio",
+    "Normal",
+    "Number",
+    "OperatingRange",
+    "ParsedConfig",
+    "Rotor",
+    "Sensor",
+    "Splits",
+    "State",
+    "Stiffness",
+    "Uniform",
+    "Wheel",
+    "apply_overrides",
+    "at",
+    "bounds",
+    "constant",
+    "corners",
+    "draw",
+    "parse",
+    "parse_yaml",
+    "read_yaml",
+    "yaml_text",
+]

@@ -1,0 +1,110 @@
+"""The whole configuration, its canonical form and its identity."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cached_property
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from siggen.config.dynamics import Dynamics
+from siggen.config.gears import Gears
+from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
+from siggen.config.problems import refusal
+from siggen.config.section import Real, Section, Whole
+from siggen.config.sensors import Sensor
+from siggen.config.states import State, grown_from
+from siggen.config.stiffness import Stiffness
+from siggen.config.wording import Said
+from siggen.errors import Problem
+
+SCHEMA_VERSION = 1
+"""Version of the configuration's meaning, part of every identity; raised when a file comes to give other records."""
+
+BLOCK = 20
+"""Specimens per block in which the splits are met exactly."""
+
+
+CONFIG_NAME = Said("lower-case letters, digits, - and _, beginning with a letter or a digit")
+
+
+class Splits(Section):
+    """How many of every 20 specimens belong to each split."""
+
+    train: Annotated[Whole, Field(ge=0)] = Field(default=12, description="for fitting")
+    validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for choosing")
+    test: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for judging")
+
+    @model_validator(mode="after")
+    def _add_up(self) -> Splits:
+        counts = (self.train, self.validation, self.test)
+        if sum(counts) != BLOCK:
+            received = f"{' + '.join(map(str, counts))} = {sum(counts)}"
+            raise refusal([Problem("", received, f"allowed: train, validation and test that add up to {BLOCK}")])
+        return self
+
+
+class Config(Section):
+    """Everything a data set follows from."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$"), CONFIG_NAME] = Field(description="name of the set")
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(description="where all randomness begins")
+    specimens: Annotated[Whole, Field(ge=1)] = Field(description="number of gearboxes; not part of the identity")
+    fs_hz: Annotated[Real, Field(gt=0, le=1e7)] = Field(default=51_200.0, description="sampling rate")
+    duration_s: Annotated[Real, Field(gt=0, le=86_400)] = Field(default=1.0, description="length of a record")
+    mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
+        default=5, description="highest mesh harmonic that the sampling rate must carry at the highest speed"
+    )
+    repeats: Annotated[Whole, Field(ge=1)] = Field(default=1, description="records per state and operating point")
+    splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
+    gears: Gears = Field(description="the gear pair")
+    stiffness: Stiffness = Field(default=Stiffness(), description="model of the mesh stiffness")
+    dynamics: Dynamics = Field(default=Dynamics(), description="model of the gearbox")
+    operating_points: Annotated[OperatingRanges, OPERATING_POINTS] = Field(description="speeds and torques")
+    states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
+    sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of a record's channel."""
+        return round(self.fs_hz * self.duration_s)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels, `<sensor>_<axis>`, in the order of the file."""
+        return tuple(f"{sensor.name}_{axis}" for sensor in self.sensors for axis in sensor.axes)
+
+    @property
+    def records_per_specimen(self) -> int:
+        """Records of one specimen: all states at all operating points, repeats included."""
+        return len(self.states) * len(self.operating_points) * self.repeats
+
+    def grown_from(self, state_id: int) -> int | None:
+        """Return the index of the state whose damage a state contains, or None."""
+        return grown_from(self.states, state_id)
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the configuration with all defaults, as plain mappings and lists; parsing it gives an equal one."""
+        return {name: _plain(value) for name, value in self.model_dump(mode="json").items()}
+
+    @cached_property
+    def identity(self) -> str:
+        """SHA-256 (hexadecimal) of the canonical form without `specimens`: what the records follow from."""
+        content = {**self.canonical(), "schema_version": SCHEMA_VERSION}
+        del content["specimens"]
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _plain(value: Any) -> Any:
+    """Return a value in which -0.0 is 0.0, so that equal configurations read the same."""
+    match value:
+        case float():
+            return value + 0.0
+        case dict():
+            return {key: _plain(item) for key, item in value.items()}
+        case list():
+            return [_plain(item) for item in value]
+    return value

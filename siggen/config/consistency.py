@@ -1,0 +1,142 @@
+"""Checks across sections that need no gear physics; each looks only at the sections that are valid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from siggen.config.damage import ClusteredPits, LayeredPits, ListedPits
+from siggen.config.number import bounds
+from siggen.config.states import SEVERITIES, State
+from siggen.errors import Problem
+
+SIDEBANDS = 8
+"""Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
+
+SAMPLES_PER_PERIOD = 2.56
+"""Sampling rate over the highest frequency of interest; usual for vibration analysers, leaves room for the filter."""
+
+
+def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> list[Problem]:
+    """Return what is contradictory between the valid sections of a configuration."""
+    checks: list[Callable[[Mapping[str, Any], Mapping[str, object]], Iterable[Problem]]] = [
+        _sample_count,
+        _band,
+        _twice_named,
+        _growth,
+        _tooth_indices,
+    ]
+    return [problem for check in checks for problem in check(sections, raw)]
+
+
+def _sample_count(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "fs_hz" not in sections or "duration_s" not in sections:
+        return
+    samples = sections["fs_hz"] * sections["duration_s"]
+    if round(samples) < 2 or not math.isclose(samples, round(samples), rel_tol=1e-9):
+        received = f"{sections['duration_s']} s at {sections['fs_hz']} Hz = {samples} samples"
+        yield Problem("duration_s", received, "allowed: a whole number of at least 2 samples")
+
+
+def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if not {"fs_hz", "mesh_harmonics", "gears", "operating_points"} <= sections.keys():
+        return
+    teeth, harmonics = sections["gears"].pinion.teeth, sections["mesh_harmonics"]
+    speed_hz = max(bounds(point.speed_hz)[1] for point in sections["operating_points"])
+    needed_hz = SAMPLES_PER_PERIOD * (harmonics * teeth + SIDEBANDS) * speed_hz
+    if sections["fs_hz"] < needed_hz:
+        allowed = (
+            f"allowed: at least {needed_hz:.6g} Hz for mesh harmonic {harmonics} (mesh_harmonics) with its sidebands "
+            f"at the highest speed, {speed_hz:g} Hz with {teeth} teeth; or lower mesh_harmonics or the speed"
+        )
+        yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
+
+
+def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    for key in ("states", "sensors"):
+        names = _raw_names(raw, key)
+        for index, name in names.items():
+            first = next(i for i, other in names.items() if other == name)
+            if first < index:
+                yield Problem(
+                    f"{key}.{index}.name", f"'{name}'", f"allowed: a name that {key}.{first} does not have already"
+                )
+
+
+def _raw_names(raw: Mapping[str, object], key: str) -> dict[int, str]:
+    # from the raw file, so that a bad entry elsewhere does not make a good name look unknown
+    entries = raw.get(key)
+    listed = entries if isinstance(entries, (list, tuple)) else []
+    names = {i: _raw_name(entry) for i, entry in enumerate(listed)}
+    return {i: name for i, name in names.items() if isinstance(name, str)}
+
+
+def _raw_name(entry: object) -> object:
+    return entry.get("name") if isinstance(entry, Mapping) else getattr(entry, "name", None)
+
+
+def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    states: Mapping[int, State] = sections.get("states", {})
+    names = _raw_names(raw, "states")
+    for index, state in states.items():
+        if state.damage is None or state.grows_from == "none":
+            continue
+        earlier = [i for i in states if i < index and states[i].damage is not None]
+        if state.grows_from == "previous":
+            milder = earlier[-1] if earlier else None
+        else:
+            milder = next((i for i, name in names.items() if name == state.grows_from), None)
+            if milder is None or milder >= index or (milder in states and milder not in earlier):
+                candidates = ["previous", "none", *(states[i].name for i in earlier)]
+                allowed = f"allowed: an earlier state with damage: one of {', '.join(candidates)}"
+                yield Problem(f"states.{index}.grows_from", f"'{state.grows_from}'", allowed)
+                continue
+        if milder is not None and milder in states:
+            yield from _growth_problems(states[milder], state, f"states.{index}")
+
+
+def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
+    if SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
+        received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
+        yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
+    key = _count_that_adds_nothing(milder.damage, state.damage)
+    if key:
+        received = f"no pits beyond those of {milder.name}, which this state contains (grows_from)"
+        allowed = f"allowed: more pits than {milder.name} has, or grows_from: none"
+        yield Problem(f"{path}.damage.{key}", received, allowed)
+
+
+def _count_that_adds_nothing(milder: object, damage: object) -> str | None:
+    match milder, damage:
+        case ClusteredPits(), ClusteredPits():
+            same_teeth = (milder.gear, milder.teeth) == (damage.gear, damage.teeth)
+            return "count" if same_teeth and damage.count <= milder.count else None
+        case LayeredPits(), LayeredPits():
+            same_teeth = (milder.gear, milder.teeth) == (damage.gear, damage.teeth)
+            fewer = damage.layers <= milder.layers and damage.pits_per_layer <= milder.pits_per_layer
+            return "layers" if same_teeth and fewer else None
+    return None
+
+
+def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "gears" not in sections:
+        return
+    for index, state in sections.get("states", {}).items():
+        for key, gear, selected in _selected_teeth(state):
+            path, count = f"states.{index}.damage.{key}", getattr(sections["gears"], gear).teeth
+            if isinstance(selected, int):
+                if selected > count:
+                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")
+                continue
+            allowed = f"allowed: an index from 0 to {count - 1}, the {gear} has {count} teeth"
+            yield from (Problem(path, f"tooth {tooth}", allowed) for tooth in selected if tooth >= count)
+
+
+def _selected_teeth(state: State) -> Iterator[tuple[str, str, int | tuple[int, ...]]]:
+    """Yield the keys of a state that name teeth, the gear they belong to, and how many or which ones they name."""
+    match state.damage:
+        case ListedPits(pits=pits):
+            yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(pits))
+        case LayeredPits() | ClusteredPits() as damage:
+            yield "teeth", damage.gear, damage.teeth

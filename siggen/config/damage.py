@@ -1,0 +1,97 @@
+"""Damage of a state: layers of pits, a cluster of pits, or pits listed one by one (paper A, section 2.1, for the pit).
+
+Sizes are those of one pit: an ellipse on the flank with semi-axes across the face and along the profile, and a depth.
+A distribution of a size is drawn once per pit.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from siggen.config.number import Number, Within
+from siggen.config.section import Section, Whole
+from siggen.config.teeth import Teeth
+from siggen.config.wording import Said
+
+GearName: TypeAlias = Literal["pinion", "gear"]
+HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
+
+Length = Annotated[Number, Within(above=0)]
+Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",))]
+PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,))]
+
+READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
+
+
+class PitSize(Section):
+    """Size and floor of a pit."""
+
+    semi_axis_face_mm: Length = Field(description="half the length across the face")
+    semi_axis_profile_mm: Length = Field(description="half the length along the profile")
+    depth_mm: Length = Field(description="depth normal to the tooth's middle plane")
+    floor: Literal["flat", "dish"] = Field(
+        default="flat", description="flat floor, or a dish that is deepest in the middle"
+    )
+
+
+class LayeredPits(PitSize):
+    """Rows of equal count, one above the other, as in paper A."""
+
+    kind: Literal["layered"] = "layered"
+    gear: GearName = Field(default="pinion", description="damaged gear")
+    teeth: Teeth = Field(
+        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
+    )
+    layers: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="rows of pits")
+    pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
+    first_height_mm: Height = Field(default="pitch", description="height of the first row above the base circle")
+    height_reading: HeightReading = Field(default="axial", description=READING)
+    spacing_face_mm: Length = Field(default=1.0, description="between pits of a row")
+    spacing_profile_mm: Length = Field(default=0.4, description="between rows")
+    jitter_mm: Annotated[Number, Within(least=0)] = Field(
+        default=0.0, description="every pit is moved by up to this, along both directions"
+    )
+    face_centre_mm: PlaceOnFace = Field(
+        default=None, description="middle of the rows across the face; null: of the face"
+    )
+
+
+class ClusteredPits(PitSize):
+    """Pits scattered around a height."""
+
+    kind: Literal["clustered"] = "clustered"
+    gear: GearName = Field(default="pinion", description="damaged gear")
+    teeth: Teeth = Field(
+        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
+    )
+    count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
+    centre_height_mm: Height = Field(default="pitch", description="height above the base circle around which they lie")
+    height_reading: HeightReading = Field(default="axial", description=READING)
+    spread_profile_mm: Length = Field(description="standard deviation of the heights")
+    spread_face_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="standard deviation across the face about its middle; null: evenly over the face"
+    )
+
+
+class ListedPit(PitSize):
+    """One pit at a given place."""
+
+    gear: GearName = Field(default="pinion", description="damaged gear")
+    tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
+    height_mm: Height = Field(default="pitch", description="height of the centre above the base circle")
+    face_mm: Annotated[Number, Within(least=0)] = Field(description="centre across the face, from one end of the tooth")
+
+
+class ListedPits(Section):
+    """Pits one by one."""
+
+    kind: Literal["list"] = "list"
+    height_reading: HeightReading = Field(default="axial", description=READING)
+    pits: Annotated[tuple[ListedPit, ...], Field(min_length=1)] = Field(description="the pits")
+
+
+DamageModel: TypeAlias = LayeredPits | ClusteredPits | ListedPits
+
+DAMAGE = Said("null, or a mapping with kind: layered, clustered or list")

@@ -1,0 +1,58 @@
+"""Section `dynamics`: inertias, supports and couplings of the gearbox, and how its motion is integrated."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from siggen.config.number import Number, Within
+from siggen.config.section import Section, Whole
+
+
+class Rotor(Section):
+    """Mass of a gear and the bearings of its shaft (x along the centre line, y vertical)."""
+
+    mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="null: a solid steel disc of the pitch circle with its bore"
+    )
+    inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="about the shaft; null: of the same disc"
+    )
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8.5e7, description="horizontal")
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8.5e7, description="vertical")
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=2134.0, description="horizontal")
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=2134.0, description="vertical")
+
+
+class Coupling(Section):
+    """Torsional spring and damper between a gear and the machine on its shaft."""
+
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=330.0, description="torsional stiffness")
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0)] = Field(default=0.231, description="torsional damping")
+
+
+class Dynamics(Section):
+    """The gearbox as a system of rigid bodies on springs."""
+
+    model: Literal["8dof", "6dof"] = Field(default="8dof", description="6dof leaves out motor and load")
+    integrator: Literal["product", "runge_kutta"] = Field(default="product", description="how the motion is integrated")
+    steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
+        default=4, description="integration steps per sample"
+    )
+    mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.07, description="damping of the teeth in contact, as a share of the critical one"
+    )
+    backlash_um: Annotated[Number, Within(least=0)] = Field(
+        default=80.0, description="total play along the line of action"
+    )
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(
+        default=0.016107, description="of the driving machine"
+    )
+    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(
+        default=0.005153, description="of the driven machine"
+    )
+    pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
+    gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
+    input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
+    output_coupling: Coupling = Field(default=Coupling(), description="between gear and load")

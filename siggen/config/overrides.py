@@ -1,0 +1,84 @@
+"""Overrides such as `states.1.damage.count=3`: single values of a configuration set from a command line."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from siggen.config.problems import received_text
+from siggen.config.yaml_source import yaml_value
+from siggen.errors import ConfigError, Problem
+
+FORM = "allowed: a path and a value, such as gears.module_mm=3.5 or operating_points.0.speed_hz=25"
+
+
+def apply_overrides(raw: Mapping[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
+    """Return a copy of a raw configuration with values replaced, later overrides last.
+
+    The value is read as YAML. Entries of lists are addressed by their index. A key that the file leaves out is added;
+    one that does not exist at all is refused when the configuration is parsed.
+
+    Raises
+    ------
+    ConfigError
+        If an override is not of the form `path=value` or leads through something that is not there; all at once.
+    """
+    changed = copy.deepcopy(dict(raw))
+    problems = []
+    for override in overrides:
+        try:
+            _apply(changed, override)
+        except _Astray as astray:
+            problems.append(Problem(f"--set {override}", astray.received, astray.allowed))
+        except ConfigError as error:
+            problems += [Problem(f"--set {override}", p.received, p.allowed) for p in error.problems]
+    if problems:
+        raise ConfigError(problems, "overrides")
+    return changed
+
+
+class _Astray(Exception):  # noqa: N818 - caught a few lines above, never seen outside
+    def __init__(self, received: str, allowed: str) -> None:
+        self.received, self.allowed = received, allowed
+
+
+def _apply(target: dict[str, Any], override: str) -> None:
+    path, equals, text = override.partition("=")
+    parts = path.strip().split(".")
+    if not equals or not all(parts):
+        raise _Astray("no path=value", FORM)
+    value = yaml_value(text, override)
+    place: Any = target
+    for depth, part in enumerate(parts[:-1]):
+        place = _below(place, part, ".".join(parts[:depth]))
+    _put(place, parts[-1], value, ".".join(parts[:-1]))
+
+
+def _below(place: Any, part: str, path: str) -> Any:
+    if isinstance(place, list):
+        return place[_index(place, part, path)]
+    if not isinstance(place, dict):
+        raise _not_a_container(place, path)
+    if place.get(part) is None:
+        place[part] = {}
+    return place[part]
+
+
+def _put(place: Any, part: str, value: Any, path: str) -> None:
+    if isinstance(place, list):
+        place[_index(place, part, path)] = value
+    elif isinstance(place, dict):
+        place[part] = value
+    else:
+        raise _not_a_container(place, path)
+
+
+def _index(place: list[Any], part: str, path: str) -> int:
+    if not (part.isascii() and part.isdigit() and int(part) < len(place)):
+        raise _Astray(f"'{part}' as an entry of {path}", f"allowed: an index from 0 to {len(place) - 1}")
+    return int(part)
+
+
+def _not_a_container(place: Any, path: str) -> _Astray:
+    return _Astray(f"{received_text(place)} at {path}", "allowed: a path through mappings and lists of the file")

@@ -1,0 +1,98 @@
+"""From a mapping to a configuration, with all problems at once and the sections that are valid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from siggen.config.config import Config
+from siggen.config.consistency import consistency_problems
+from siggen.config.problems import missing_key, section_problems, unknown_key
+from siggen.config.wording import models_in
+from siggen.errors import Problem
+
+LISTS = ("states", "sensors")
+"""Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedConfig:
+    """What a mapping holds.
+
+    Parameters
+    ----------
+    config
+        The configuration; None if there are problems.
+    sections
+        Valid top-level values by key, with defaults for absent ones. `states` and `sensors` are mappings from the index
+        of an entry to the valid entry.
+    problems
+        Everything that is wrong, physics not considered.
+    """
+
+    config: Config | None
+    sections: Mapping[str, Any]
+    problems: tuple[Problem, ...]
+
+
+def parse(raw: Mapping[str, object]) -> ParsedConfig:
+    """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
+    sections: dict[str, Any] = {}
+    problems = [unknown_key(str(k), raw[k], list(Config.model_fields)) for k in raw if k not in Config.model_fields]
+    for name in Config.model_fields:
+        value, found = (
+            _entries(name, raw[name]) if name in LISTS and _is_filled_list(raw, name) else _section(name, raw)
+        )
+        problems += found
+        if value is not None:
+            sections[name] = value
+    problems += consistency_problems(sections, raw)
+    config = (
+        None if problems else Config.model_validate({**sections, **{n: tuple(sections[n].values()) for n in LISTS}})
+    )
+    return ParsedConfig(config, MappingProxyType(sections), tuple(problems))
+
+
+def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
+    return isinstance(raw.get(name), (list, tuple)) and bool(raw[name])
+
+
+def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
+    field = Config.model_fields[name]
+    if name not in raw:
+        if field.is_required():
+            return None, [missing_key(name, field)]
+        return field.get_default(call_default_factory=True), []
+    return _validated(_adapter(name), raw[name], (name,))
+
+
+def _entries(name: str, raw: Any) -> tuple[dict[int, Any], list[Problem]]:
+    entries, problems = {}, []
+    for index, item in enumerate(raw):
+        entry, found = _validated(_entry_adapter(name), item, (name, index))
+        problems += found
+        if entry is not None:
+            entries[index] = entry
+    return entries, problems
+
+
+def _validated(adapter: TypeAdapter[Any], value: object, location: tuple[str | int, ...]) -> tuple[Any, list[Problem]]:
+    try:
+        return adapter.validate_python(value), []
+    except ValidationError as error:
+        return None, section_problems(Config, error.errors(), location)
+
+
+@cache
+def _adapter(name: str) -> TypeAdapter[Any]:
+    return TypeAdapter(Config.model_fields[name].rebuild_annotation())
+
+
+@cache
+def _entry_adapter(name: str) -> TypeAdapter[Any]:
+    return TypeAdapter(models_in(Config.model_fields[name].annotation)[0])

@@ -1,0 +1,144 @@
+"""Problems of one section in words for an engineer: where, what came, what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from typing import get_args
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from siggen.config.wording import allowed_text, models_in
+from siggen.errors import Problem
+
+REFUSAL = "refusal"
+MISSING = "nothing"
+
+BRANCHES = frozenset({"layered", "clustered", "list", "noise_floor", "noise_ratio"})
+"""Tags by which pydantic names the branch of a union it took; no key of the file has such a name (tested)."""
+
+Location = tuple[int | str, ...]
+
+
+def received_text(value: object) -> str:
+    """Return a value of the YAML file as a reader of that file would name it."""
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return f"the text '{_shortened(value)}'"
+        case Mapping():
+            return f"a mapping with {_listed([str(key) for key in value])}" if value else "an empty mapping"
+        case list() | tuple():
+            return f"a list of {len(value)}"
+        case _:
+            return _shortened(repr(value))
+
+
+def refusal(problems: Sequence[Problem]) -> PydanticCustomError:
+    """Return an error to raise in a validator; paths of its problems are relative to what is validated."""
+    triples = [(p.path, p.received, p.allowed) for p in problems]
+    return PydanticCustomError(REFUSAL, "refused", {"problems": triples})
+
+
+def refused_problems(error: PydanticCustomError, prefix: str | int = "") -> list[Problem]:
+    """Return the problems of a refusal, below a prefix of their paths."""
+    triples = (error.context or {})["problems"]
+    return [Problem(joined(prefix, path), received, allowed) for path, received, allowed in triples]
+
+
+def joined(*parts: str | int) -> str:
+    """Return the path made of parts, without the empty ones."""
+    return ".".join(str(part) for part in parts if part != "")
+
+
+def nearest(word: str, known: Sequence[str]) -> str:
+    """Return "; did you mean 'x'?" for the known word next to a mistyped one, or nothing."""
+    close = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    return f"; did you mean '{close[0]}'?" if close else ""
+
+
+def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], below: Location = ()) -> list[Problem]:
+    """Translate pydantic's errors about something that lies `below` a section; paths begin at the section."""
+    return [p for error in errors if not _echoes(error) for p in _translated(model, (*below, *error["loc"]), error)]
+
+
+def _echoes(error: ErrorDetails) -> bool:
+    # a list whose entries are wrong is called too short as well, since only its good entries are counted
+    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
+
+
+def unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
+    """Return the problem of a key that does not exist at its place."""
+    key = path.rpartition(".")[2]
+    hint = nearest(key, known) or ";"
+    return Problem(path, received_text(value), f"there is no such key here{hint} known keys: {', '.join(known)}")
+
+
+def missing_key(path: str, field: FieldInfo) -> Problem:
+    """Return the problem of a key that has no default and is not there."""
+    return Problem(path, MISSING, f"this key is needed; allowed: {allowed_text(field)}")
+
+
+def _translated(model: type[BaseModel], location: Location, error: ErrorDetails) -> list[Problem]:
+    path = joined(*(part for part in location if part not in BRANCHES))
+    context = error.get("ctx", {})
+    match error["type"]:
+        case "refusal":
+            return [Problem(joined(path, sub), received, allowed) for sub, received, allowed in context["problems"]]
+        case "extra_forbidden":
+            return [unknown_key(path, error["input"], list(_model_at(model, location[:-1]).model_fields))]
+        case "union_tag_not_found" if isinstance(error["input"], Mapping):
+            return [Problem(joined(path, "kind"), MISSING, f"allowed: one of {_kinds_at(model, location)}")]
+        case "union_tag_invalid":
+            received = received_text(error["input"].get("kind"))
+            return [Problem(joined(path, "kind"), received, f"allowed: one of {_kinds_at(model, location)}")]
+        case "missing":
+            return [missing_key(path, _field_at(model, location))]
+        case _:
+            allowed = allowed_text(_field_at(model, location))
+            return [Problem(path, received_text(error["input"]), f"allowed: {allowed}")]
+
+
+def _kinds_at(model: type[BaseModel], location: Location) -> str:
+    kinds = [get_args(m.model_fields["kind"].annotation)[0] for m in models_in(_field_at(model, location).annotation)]
+    return ", ".join(kinds)
+
+
+def _field_at(model: type[BaseModel], location: Location) -> FieldInfo:
+    depth = max((i for i, part in enumerate(location) if isinstance(part, str) and part not in BRANCHES), default=-1)
+    if depth < 0:
+        return FieldInfo.from_annotation(model)
+    field = _model_at(model, location[:depth]).model_fields[str(location[depth])]
+    for part in location[depth + 1 :]:
+        if isinstance(part, int):
+            field = FieldInfo.from_annotation(get_args(field.annotation)[0])
+    return field
+
+
+def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
+    candidates = [model]
+    for part in location:
+        if part in BRANCHES:
+            candidates = [c for c in candidates if _is_branch(c, str(part))]
+        elif isinstance(part, str):
+            candidates = models_in(candidates[0].model_fields[part].annotation)
+    return candidates[0]
+
+
+def _is_branch(model: type[BaseModel], tag: str) -> bool:
+    kind = model.model_fields.get("kind")
+    return tag in get_args(kind.annotation) if kind else tag == getattr(model, "branch", "")
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:6])
+    return f"{shown}, ..." if len(names) > 6 else shown

@@ -1,0 +1,20 @@
+"""Base of every part of a configuration: frozen, and closed to unknown keys."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Section(BaseModel):
+    """A mapping of the YAML file; keys are the attributes."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+Real = Annotated[float, Field(strict=True)]
+"""A number that is never drawn (a setting, not a physical quantity of a specimen)."""
+
+Whole = Annotated[int, Field(strict=True)]
+"""A whole number: counts and indices; neither 18.0 nor true."""

@@ -1,0 +1,89 @@
+"""Section `sensors`: where accelerations are measured, and what the instrument does to them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from siggen.config.number import Number, Within, at
+from siggen.config.problems import received_text, refusal
+from siggen.config.section import Real, Section, Whole
+from siggen.config.wording import Said
+from siggen.errors import Problem
+
+SENSOR_NAME = Said("lower-case letters, digits and _, beginning with a letter")
+
+
+class NoiseFloor(Section):
+    """White noise of a given size; a distribution is drawn for every record and axis."""
+
+    branch: ClassVar[str] = "noise_floor"
+
+    floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
+
+
+class NoiseRatio(Section):
+    """White noise in proportion to the signal; a distribution is drawn for every record and axis."""
+
+    branch: ClassVar[str] = "noise_ratio"
+
+    snr_db: Annotated[Number, Within(least=-100, most=200)] = Field(description="power of signal over noise")
+
+
+def _noise_branch(value: object) -> str:
+    has_ratio = "snr_db" in value if isinstance(value, Mapping) else isinstance(value, NoiseRatio)
+    return "noise_ratio" if has_ratio else "noise_floor"
+
+
+Noise = Annotated[
+    Annotated[NoiseFloor, Tag("noise_floor")] | Annotated[NoiseRatio, Tag("noise_ratio")], Discriminator(_noise_branch)
+]
+
+
+class Sensor(Section):
+    """An accelerometer with one or two axes."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$"), SENSOR_NAME] = Field(
+        description="part of the channel's name"
+    )
+    place: Literal["pinion_bearing", "gear_bearing"] = Field(
+        default="pinion_bearing", description="where it is mounted"
+    )
+    axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
+        default=("vertical",), description="directions it measures, one channel each"
+    )
+    gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
+        default=1.0,
+        description="reading per true acceleration, drawn per specimen and axis; a list: one number per axis",
+    )
+    noise: Annotated[Noise | None, Said("null, or a mapping with floor_m_s2 or with snr_db")] = Field(
+        default=None, description="added before clipping and quantisation"
+    )
+    range_m_s2: Annotated[Real, Field(gt=0)] = Field(
+        default=500.0, description="readings are clipped at plus and minus this"
+    )
+    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
+        default=16, description="of the converter; null: not quantised"
+    )
+
+    @model_validator(mode="after")
+    def _axes_agree(self) -> Sensor:
+        problems = []
+        if len(set(self.axes)) < len(self.axes):
+            problems.append(Problem("axes", ", ".join(self.axes), "allowed: each axis once"))
+        if isinstance(self.gain, tuple) and len(self.gain) != len(self.axes):
+            received = received_text(self.gain)
+            problems.append(
+                Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
+            )
+        if problems:
+            raise refusal(problems)
+        return self
+
+    def drawn(self, rng: np.random.Generator) -> Sensor:
+        """Return the sensor of one specimen: one gain per axis, everything per record left as it is."""
+        gains = self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
+        return self.model_copy(update={"gain": tuple(at(gain, rng.random()) for gain in gains)})

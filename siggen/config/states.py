@@ -1,0 +1,92 @@
+"""Section `states`: the conditions of health in which every specimen is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from siggen.config.damage import DAMAGE, DamageModel
+from siggen.config.problems import MISSING, refusal
+from siggen.config.section import Section
+from siggen.config.wording import Said
+from siggen.errors import Problem
+
+SEVERITIES = ("healthy", "slight", "moderate", "severe")
+RESERVED_NAMES = ("previous", "none")
+STATE_NAME = Said("lower-case letters, digits, - and _, beginning with a letter")
+
+
+class State(Section):
+    """One condition: its label, its damage, and the milder state it has grown from."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]*$"), STATE_NAME] = Field(description="label of the state")
+    fault: Literal["healthy", "pitting", "spalling"] = Field(description="default: pitting with damage, else healthy")
+    severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
+        description="default: the state's name if that is a severity; healthy without damage"
+    )
+    grows_from: str = Field(
+        default="previous",
+        description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
+    )
+    damage: Annotated[
+        Annotated[DamageModel, Field(discriminator="kind")] | None,
+        DAMAGE,
+    ] = Field(default=None, description="null for a healthy state")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_labels(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            return value
+        damaged = value.get("damage") is not None
+        labels = {"fault": "pitting" if damaged else "healthy"}
+        name = value.get("name")
+        if not damaged:
+            labels["severity"] = "healthy"
+        elif name in SEVERITIES:
+            labels["severity"] = str(name)
+        return {**labels, **value}
+
+    @model_validator(mode="after")
+    def _labels_agree(self) -> State:
+        problems = [*self._name_problems(), *self._label_problems()]
+        if problems:
+            raise refusal(problems)
+        return self
+
+    def _name_problems(self) -> list[Problem]:
+        if self.name not in RESERVED_NAMES:
+            return []
+        return [
+            Problem("name", f"the text '{self.name}'", f"allowed: a name other than {' and '.join(RESERVED_NAMES)}")
+        ]
+
+    def _label_problems(self) -> list[Problem]:
+        problems = []
+        healthy_fault, healthy_severity = self.fault == "healthy", self.severity == "healthy"
+        if self.damage is None and not (healthy_fault and healthy_severity):
+            received = f"{MISSING}, with fault {self.fault} and severity {self.severity}"
+            problems.append(Problem("damage", received, "allowed: damage, or fault and severity both healthy"))
+        if self.damage is not None and healthy_fault:
+            problems.append(Problem("fault", "healthy, with damage", "allowed: pitting or spalling, or no damage"))
+        if self.damage is not None and healthy_severity:
+            problems.append(
+                Problem("severity", "healthy, with damage", "allowed: slight, moderate or severe, or no damage")
+            )
+        if self.damage is None and self.grows_from not in RESERVED_NAMES:
+            received = f"'{self.grows_from}', without damage"
+            problems.append(Problem("grows_from", received, "only a state with damage grows from another one"))
+        return problems
+
+
+def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
+    """Return the index of the state whose damage a state contains, or None if it begins with an intact gear."""
+    state = states[state_id]
+    if state.damage is None or state.grows_from == "none":
+        return None
+    earlier = [i for i in range(state_id) if states[i].damage is not None]
+    if state.grows_from == "previous":
+        return earlier[-1] if earlier else None
+    return next(i for i in earlier if states[i].name == state.grows_from)

@@ -1,0 +1,1 @@
+"""Plan, records, shards and manifest."""

@@ -1,0 +1,207 @@
+"""README.md of a set: what it holds, how it was made, what it can teach and what it cannot, and how to load it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+import yaml
+
+from siggen.dataset.manifest import SPLITS
+from siggen.dataset.record import SCHEMA_VERSION, channels, damage_schema, record_schema
+from siggen.dataset.sidecar import Sidecar
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+LICENSE = "cc-by-4.0"
+TAGS = (
+    "synthetic",
+    "vibration",
+    "gearbox",
+    "gear-pitting",
+    "condition-monitoring",
+    "predictive-maintenance",
+    "time-series",
+)
+SIZE_LIMITS = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M"))
+LARGEST_SIZE = "1M<n<10M"
+
+PERFECT_GEARS = """* **The gears have no manufacturing errors.** A healthy gearbox here has no sidebands around its mesh
+  harmonics except those of the noise, so healthy and faulty separate trivially, by almost any indicator. Do not read a
+  detection score on this set as one for real gearboxes, where pitch errors and run-out raise the same sidebands.
+  What the set can teach: the shape, order and growth of fault signatures, effects of speed, load, noise and position,
+  and whether a processing chain finds a signature that is known to be there.
+"""
+
+
+def card(config: Config, sidecars: Sequence[Sidecar]) -> str:
+    """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
+    splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
+    rows = sum(sidecar.data.rows for sidecar in sidecars)
+    sections = (
+        _front_matter(config, splits, rows),
+        _summary(config, rows),
+        _contents(config, sidecars, splits),
+        _making(config),
+        _limits(config),
+        _failures(sidecars),
+        _columns("Columns of `data/`", record_schema(config)),
+        _columns("Columns of `damage/`", damage_schema(config)),
+        _loading(config, splits),
+        _identity(config, sidecars),
+    )
+    return "\n".join(section for section in sections if section)
+
+
+def _front_matter(config: Config, splits: Sequence[str], rows: int) -> str:
+    facts = {
+        "pretty_name": f"{config.name}: synthetic gearbox vibration with tooth pitting",
+        "license": LICENSE,
+        "tags": list(TAGS),
+        "size_categories": [next((size for limit, size in SIZE_LIMITS if rows < limit), LARGEST_SIZE)],
+        "configs": [
+            _view("signals", {split: f"data/{split}-*.parquet" for split in splits}, default=True),
+            _view("labels", {split: f"metadata/{split}.parquet" for split in splits}),
+            _view("damage", {split: f"damage/{split}.parquet" for split in splits}),
+        ],
+    }
+    return f"---\n{yaml.safe_dump(facts, sort_keys=False, allow_unicode=True)}---\n"
+
+
+def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[str, object]:
+    files = [{"split": split, "path": path} for split, path in paths.items()]
+    return {"config_name": name, **({"default": True} if default else {}), "data_files": files}
+
+
+def _summary(config: Config, rows: int) -> str:
+    sensors = ", ".join(f"`{channel.name}` ({channel.place}, {channel.axis})" for channel in channels(config))
+    return f"""# {config.name}
+
+{rows} labelled acceleration records of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
+Channels: {sensors}, in m/s^2. Every record is simulated from its own gearbox, state, speed, load and noise;
+none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
+"""
+
+
+def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
+    names = [state.name for state in config.states]
+    lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
+    lines.append("|---" * (len(names) + 4) + "|")
+    for split in splits:
+        own = [sidecar for sidecar in sidecars if sidecar.split == split]
+        specimens = sum(last - first + 1 for sidecar in own for first, last in sidecar.specimens)
+        states = [str(sum(sidecar.rows_per_state[name] for sidecar in own)) for name in names]
+        rows = sum(sidecar.data.rows for sidecar in own)
+        size_mb = sum(sidecar.data.bytes for sidecar in own) / 1e6
+        lines.append(f"| {split} | {specimens} | {rows} | {' | '.join(states)} | {size_mb:.1f} |")
+    return "\n".join(
+        [
+            *lines,
+            "",
+            "A *specimen* is one gearbox with its own geometry, supports, sensors and damage; its records share them.",
+            "Splits never share a specimen, so a score on `test` is a score on gearboxes that were not seen.",
+            "",
+        ]
+    )
+
+
+def _making(config: Config) -> str:
+    states = "\n".join(f"* `{state.name}`: fault {state.fault}, severity {state.severity}" for state in config.states)
+    pinion, gear = config.gears.pinion.teeth, config.gears.gear.teeth
+    return f"""## How it was made
+
+1. **Gears.** A spur pair with {pinion} and {gear} teeth. Mesh stiffness by the potential energy method (bending, shear,
+   axial compression, Hertz contact, tooth foundation: `{config.stiffness.beam}`, `{config.stiffness.foundation}`),
+   along the true involute and double-tooth contact.
+2. **Damage.** Pits with outline, depth and place on the flank remove material from the tooth's sections and shorten
+   the contact line; the union of overlapping pits counts once. States of a specimen may grow from each other: a later
+   state then keeps the pits of the earlier one (`grows_from` in `config.yaml`). Outlines are in `damage/`.
+3. **Dynamics.** A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and a mesh with backlash,
+   time-varying stiffness and damping. Bearing accelerations are low-pass filtered before they are sampled.
+4. **Sensing.** Gain, noise, clipping at the sensor's range, and rounding to the converter's step, which is a power of
+   two and therefore exact in float32 (each sensor's noise and bits are in `config.yaml`).
+
+States:
+
+{states}
+"""
+
+
+def _limits(config: Config) -> str:
+    """Say what follows from the gears being perfect, as long as the configuration has no manufacturing errors."""
+    perfect_gears = "" if hasattr(config, "manufacturing") else PERFECT_GEARS
+    return f"""## What it can teach, and what it cannot
+
+{perfect_gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.
+* A model that is trained here has to be tested on measurements before it is trusted on them.
+"""
+
+
+def _failures(sidecars: Sequence[Sidecar]) -> str:
+    failures = [failure for sidecar in sidecars for failure in sidecar.failures]
+    if not failures:
+        return ""
+    listed = [f"| {failure.record_id} | {failure.status} | {failure.reason} |" for failure in failures[:50]]
+    more = [f"\nThe remaining {len(failures) - 50} are in `manifest.json`."] if len(failures) > 50 else []
+    head = f"## Failed records\n\n{len(failures)} planned records could not be simulated and are not among the rows.\n"
+    return "\n".join([head, "| record | status | reason |", "|---|---|---|", *listed, *more, ""])
+
+
+def _columns(title: str, schema: pa.Schema) -> str:
+    lines = [f"## {title}", "", "| column | type | unit | meaning |", "|---|---|---|---|"]
+    for field in schema:
+        facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
+        meaning = facts.get("meaning") or f"acceleration at {facts['place']}, {facts['axis']}, {facts['fs_hz']} Hz"
+        lines.append(f"| `{field.name}` | {_type_name(field.type)} | {facts.get('unit', '')} | {meaning} |")
+    return "\n".join([*lines, ""])
+
+
+def _type_name(kind: pa.DataType) -> str:
+    if isinstance(kind, pa.FixedSizeListType):
+        return f"{kind.value_type}[{kind.list_size}]"
+    return f"list of {kind.value_type}" if isinstance(kind, pa.ListType) else str(kind)
+
+
+def _loading(config: Config, splits: Sequence[str]) -> str:
+    split, column = splits[0], channels(config)[0].column
+    return f"""## Loading
+
+```python
+from datasets import load_dataset                       # labels alone: load_dataset(".", "labels")
+records = load_dataset(".", split="{split}").with_format("numpy")
+
+import numpy as np, pandas as pd
+frame = pd.read_parquet("data/{split}-00000.parquet", columns=["record_id", "state", "{column}"])
+signals = np.stack(frame["{column}"])                   # (rows, samples)
+
+import polars as pl
+labels = pl.read_parquet("metadata/{split}.parquet")
+frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.states[-1].name}").collect()
+
+import pyarrow.dataset as ds
+for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):
+    signals = batch["{column}"].flatten().to_numpy().reshape(len(batch), -1)
+
+import siggen
+dataset = siggen.open(".")
+record = dataset.record(0)                              # labels and signals of one record
+```
+
+Signals are `FixedSizeList<float32>`: every reader above keeps or restores their length. Rows of `data/` and
+`metadata/` are in the same order and share `record_id`.
+"""
+
+
+def _identity(config: Config, sidecars: Sequence[Sidecar]) -> str:
+    made_with = sorted({f"siggen {s.environment['siggen']}, numpy {s.environment['numpy']}" for s in sidecars})
+    return f"""## Identity
+
+* Configuration: `config.yaml`; identity (SHA-256 of the configuration without the number of specimens):
+  `{config.identity}`
+* Seed {config.seed}, {config.specimens} specimens, schema version {SCHEMA_VERSION}; made with {"; ".join(made_with)}.
+* Every random number follows from seed, stage and owner, so `siggen generate config.yaml --out NEW` makes the same set
+  again: bit for bit on the same CPU family and versions (`manifest.json`), elsewhere within a step of the converter.
+* `siggen verify .` checks every file against `manifest.json` and simulates a sample of records again.
+"""

@@ -1,0 +1,106 @@
+"""The engine's unit of work: records of one specimen, simulated into Arrow bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from siggen.dataset.record import Record, RecordFailure, non_finite, record_batch
+from siggen.errors import EngineError
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+Simulate = Callable[["Config", Sequence[int]], Sequence[Record | RecordFailure]]
+"""(config, ids of one specimen's records) -> results in the same order, as `siggen.simulation.simulate_specimen`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """Records of one specimen to simulate in one go."""
+
+    shard: str
+    records: range
+
+    def __str__(self) -> str:
+        return f"records {self.records[0]} to {self.records[-1]} of shard {self.shard}"
+
+
+@dataclass(frozen=True, slots=True)
+class ChunkResult:
+    """Rows as an Arrow IPC stream, and the records that failed."""
+
+    rows: bytes
+    failures: tuple[RecordFailure, ...]
+
+    def batch(self) -> pa.RecordBatch:
+        """Return the rows without copying them; there may be none."""
+        with pa.ipc.open_stream(pa.py_buffer(self.rows)) as stream:
+            return stream.read_next_batch()
+
+
+def chunks(shard: str, specimens: Sequence[range], group_rows: int) -> Iterator[Chunk]:
+    """Cut a shard, given as the record ids of each specimen, into chunks.
+
+    Specimens stay whole, since stiffness tables are built once per specimen and state, unless they fill more than two
+    row groups: a chunk must fit into memory several times over.
+    """
+    for ids in specimens:
+        size = len(ids) if len(ids) <= 2 * group_rows else group_rows
+        yield from (Chunk(shard, ids[start : start + size]) for start in range(0, len(ids), size))
+
+
+@dataclass(frozen=True, slots=True)
+class ChunkSimulation:
+    """The function that an engine maps over chunks; carries the configuration to the workers once."""
+
+    config: Config
+    simulate: Simulate
+
+    def __call__(self, chunk: Chunk) -> ChunkResult:
+        """Simulate a chunk.
+
+        Raises
+        ------
+        EngineError
+            If the simulation raises anything (a failure of the solver is a result, not an exception); names the record.
+        """
+        records: list[Record] = []
+        failures: list[RecordFailure] = []
+        for result in self._simulated(chunk.records):
+            if isinstance(result, RecordFailure):
+                failures.append(result)
+            elif reason := non_finite(result):
+                failures.append(RecordFailure(result.planned.record_id, "not_finite", reason))
+            else:
+                records.append(result)
+        return ChunkResult(_stream(record_batch(self.config, records)), tuple(failures))
+
+    def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
+        try:
+            results = self.simulate(self.config, ids)
+        except Exception as error:
+            raise EngineError(f"{self._culprit(ids)} raised {error!r}, which is a fault of the program") from error
+        received = [r.record_id if isinstance(r, RecordFailure) else r.planned.record_id for r in results]
+        if received != list(ids):
+            raise EngineError(f"the simulation of records {list(ids)} returned records {received}")
+        return results
+
+    def _culprit(self, ids: range) -> str:
+        """Return the first record that raises when simulated alone."""
+        for record_id in ids:
+            try:
+                self.simulate(self.config, [record_id])
+            except Exception:
+                return f"record {record_id}"
+        return f"one of the records {ids[0]} to {ids[-1]} (none of them alone)"
+
+
+def _stream(batch: pa.RecordBatch) -> bytes:
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, batch.schema) as writer:
+        writer.write_batch(batch)
+    return sink.getvalue().to_pybytes()

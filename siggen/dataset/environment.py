@@ -1,0 +1,62 @@
+"""The machine and the versions that decide whether a record can be made again bit for bit."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
+VECTOR_EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "asimd", "sve")
+"""Extensions for which compilers and numpy choose other instructions, hence another rounding."""
+
+
+def environment() -> dict[str, str]:
+    """Return versions, operating system, C library and CPU family; equal environments give equal bits."""
+    return {
+        **{package: _version(package) for package in PACKAGES},
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "libc": " ".join(platform.libc_ver()).strip() or "unknown",
+        "cpu": _cpu(),
+    }
+
+
+def host_facts() -> dict[str, object]:
+    """Return what the run's speed depends on; never part of the files that must be identical."""
+    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 0
+    return {"cpu": _cpu(), "cpu_count": os.cpu_count() or 0, "memory_bytes": pages, "platform": platform.platform()}
+
+
+def peak_memory_bytes() -> dict[str, int]:
+    """Return the largest resident size of this process, and of its largest finished worker; empty where unknown."""
+    try:
+        import resource
+    except ImportError:  # not a POSIX system
+        return {}
+    unit = 1 if sys.platform == "darwin" else 1024
+    owners = {"parent": resource.RUSAGE_SELF, "largest_worker": resource.RUSAGE_CHILDREN}
+    return {name: resource.getrusage(owner).ru_maxrss * unit for name, owner in owners.items()}
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _cpu() -> str:
+    """Return vendor, family, model and vector extensions; not the frequency nor the number of cores."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().split("\n\n", 1)[0].splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    facts = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
+    flags = set((facts.get("flags") or facts.get("Features") or "").split())
+    vendor = facts.get("vendor_id") or facts.get("CPU implementer") or platform.machine()
+    family = facts.get("cpu family") or facts.get("CPU architecture") or "?"
+    model = facts.get("model") or facts.get("CPU part") or "?"
+    return " ".join([vendor, "family", family, "model", model, *(f for f in VECTOR_EXTENSIONS if f in flags)])

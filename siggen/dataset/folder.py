@@ -1,0 +1,93 @@
+"""What a folder already holds: nothing, part of this very set, the finished set, or something to stay away from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from siggen.config import yaml_text
+from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
+from siggen.dataset.storage import Storage
+from siggen.errors import DatasetError
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+NAMED_DIFFERENCES = 5
+
+
+def config_bytes(config: Config) -> bytes:
+    """Return config.yaml: the configuration with all its defaults, in the order in which they are declared."""
+    return yaml_text(config.canonical()).encode()
+
+
+def is_finished(storage: Storage, config: Config) -> bool:
+    """Tell whether a folder holds the whole set already; False if it is empty or holds a part of this set.
+
+    Only sizes are compared: `siggen verify` reads every byte.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds another set, or files that are not a set. Nothing is ever deleted to make room.
+    """
+    if not storage.exists(CONFIG):
+        _refuse_strangers(storage)
+        return False
+    _refuse_other_set(storage, config)
+    return storage.exists(MANIFEST) and _has_every_file(storage)
+
+
+def _has_every_file(storage: Storage) -> bool:
+    try:
+        files = read_manifest(storage)["files"]
+    except DatasetError:
+        return False
+    return all(storage.exists(name) and storage.size(name) == facts["bytes"] for name, facts in files.items())
+
+
+def _refuse_strangers(storage: Storage) -> None:
+    strangers = storage.names()
+    if strangers:
+        some = ", ".join(strangers[:3])
+        raise DatasetError(
+            f"{storage.location} is not empty ({some}{', ...' if len(strangers) > 3 else ''}) "
+            "and not a siggen data set; name a new or empty folder (nothing is deleted)"
+        )
+
+
+def _refuse_other_set(storage: Storage, config: Config) -> None:
+    stored = storage.get(CONFIG)
+    if stored == config_bytes(config):
+        return
+    try:
+        found = yaml.safe_load(stored)
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise DatasetError(f"{storage.location}/{CONFIG} cannot be read ({error}); name a new folder") from error
+    differences = list(_differences("", found, config.canonical()))
+    if [path for path, _, _ in differences] == ["specimens"]:
+        before, now = differences[0][1:]
+        raise DatasetError(
+            f"{storage.location} holds this set with {before} specimens, asked for are {now}; "
+            f"a set cannot be changed in place: generate the {now} into a new folder "
+            f"(its first {min(before, now)} specimens will be the same)"
+        )
+    listed = [f"  {path}: {before} there, {now} asked for" for path, before, now in differences[:NAMED_DIFFERENCES]]
+    more = len(differences) - NAMED_DIFFERENCES
+    listed += [f"  and {more} more"] if more > 0 else []
+    listed = listed or ["  written in another form; was it edited?"]
+    raise DatasetError("\n".join([f"{storage.location} holds another data set; name a new folder", *listed]))
+
+
+def _differences(path: str, before: Any, now: Any) -> list[tuple[str, Any, Any]]:
+    if isinstance(before, Mapping) and isinstance(now, Mapping):
+        keys = [*before, *(key for key in now if key not in before)]
+        pairs = [(key, before.get(key, "nothing"), now.get(key, "nothing")) for key in keys]
+    elif isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        pairs = [(index, a, b) for index, (a, b) in enumerate(zip(before, now, strict=True))]
+    else:
+        return [] if before == now else [(path, before, now)]
+    found = [_differences(f"{path}.{key}" if path else str(key), a, b) for key, a, b in pairs]
+    return [difference for differences in found for difference in differences]

@@ -1,0 +1,149 @@
+"""manifest.json, written last: what every other file of a finished set must be."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from siggen.dataset.record import SCHEMA_VERSION
+from siggen.dataset.sidecar import Sidecar, json_bytes
+from siggen.dataset.storage import Storage, sha256
+from siggen.errors import DatasetError, VerificationError
+
+MANIFEST = "manifest.json"
+CONFIG = "config.yaml"
+CARD = "README.md"
+RUN = "run.json"
+METADATA_FOLDER = "metadata"
+DAMAGE_FOLDER = "damage"
+SPLITS = ("train", "validation", "test")
+
+DIGEST = "digest"
+
+
+def sealed(content: Mapping[str, Any]) -> bytes:
+    """Return JSON that carries the SHA-256 of itself, so that any changed byte shows."""
+    return json_bytes({**content, DIGEST: hashlib.sha256(json_bytes(content)).hexdigest()})
+
+
+def unsealed(name: str, content: bytes) -> dict[str, Any]:
+    """Return the content of sealed JSON.
+
+    Raises
+    ------
+    VerificationError
+        If it is not JSON, carries another digest than its own, or is written otherwise than `sealed` writes it.
+    """
+    try:
+        found = dict(json.loads(content))
+    except (ValueError, TypeError) as error:
+        raise VerificationError(f"{name} is not readable as JSON ({error})") from error
+    digest = found.pop(DIGEST, None)
+    if sealed(found) != content:
+        raise VerificationError(f"{name} was changed: its content does not match its own digest {digest}")
+    return found
+
+
+def build_manifest(
+    storage: Storage,
+    facts: Mapping[str, Any],
+    sidecars: Sequence[Sidecar],
+    written: Sequence[str],
+) -> dict[str, Any]:
+    """Return the manifest of a set whose other files are all stored.
+
+    Parameters
+    ----------
+    storage : Storage
+    facts : mapping
+        What the configuration says about the set: name, identity, channels, ...
+    sidecars : sequence of Sidecar
+        All shards, by split and number; their data files were hashed when they were committed or taken over.
+    written : sequence of str
+        Names of the files that are neither rows nor sidecars; hashed here.
+    """
+    environments = sorted({json.dumps(dict(sidecar.environment), sort_keys=True) for sidecar in sidecars})
+    files = {sidecar.data.name: {"bytes": sidecar.data.bytes, "sha256": sidecar.data.sha256} for sidecar in sidecars}
+    for name in (*written, *(sidecar.name for sidecar in sidecars)):
+        files[name] = {"bytes": storage.size(name), "sha256": sha256(storage, name)}
+    return {
+        "format": "siggen data set",
+        "schema_version": SCHEMA_VERSION,
+        **facts,
+        "splits": _splits(sidecars),
+        "rows": sum(sidecar.data.rows for sidecar in sidecars),
+        "failures": [asdict(failure) for sidecar in sidecars for failure in sidecar.failures],
+        "shards": [_shard(sidecar, environments) for sidecar in sidecars],
+        "environments": [json.loads(text) for text in environments],
+        "files": files,
+    }
+
+
+def _shard(sidecar: Sidecar, environments: Sequence[str]) -> dict[str, Any]:
+    return {
+        "shard": sidecar.shard,
+        "split": sidecar.split,
+        "file": sidecar.data.name,
+        "rows": sidecar.data.rows,
+        "specimens": sidecar.specimens,
+        "records": sidecar.records,
+        "environment": environments.index(json.dumps(dict(sidecar.environment), sort_keys=True)),
+    }
+
+
+def _splits(sidecars: Sequence[Sidecar]) -> dict[str, dict[str, Any]]:
+    return {
+        split: _split([sidecar for sidecar in sidecars if sidecar.split == split])
+        for split in SPLITS
+        if any(sidecar.split == split for sidecar in sidecars)
+    }
+
+
+def _split(sidecars: Sequence[Sidecar]) -> dict[str, Any]:
+    states: dict[str, int] = {}
+    for sidecar in sidecars:
+        for state, rows in sidecar.rows_per_state.items():
+            states[state] = states.get(state, 0) + rows
+    return {
+        "specimens": sum(last - first + 1 for sidecar in sidecars for first, last in sidecar.specimens),
+        "rows": sum(sidecar.data.rows for sidecar in sidecars),
+        "failed": sum(len(sidecar.failures) for sidecar in sidecars),
+        "states": states,
+        "shards": len(sidecars),
+        "bytes": sum(sidecar.data.bytes for sidecar in sidecars),
+    }
+
+
+def read_manifest(storage: Storage) -> dict[str, Any]:
+    """Return the manifest of a finished set.
+
+    Raises
+    ------
+    DatasetError
+        If there is no set, only part of one, a damaged manifest, or one of another schema version.
+    """
+    if not storage.exists(MANIFEST):
+        raise DatasetError(_why_no_manifest(storage))
+    try:
+        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+    except VerificationError as error:
+        raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
+    if manifest.get("schema_version") != SCHEMA_VERSION:
+        found = manifest.get("schema_version")
+        raise DatasetError(f"{storage.location}: schema version {found}; this siggen reads version {SCHEMA_VERSION}")
+    return manifest
+
+
+def _why_no_manifest(storage: Storage) -> str:
+    where = storage.location
+    if not storage.names():
+        return f"{where}: there is no data set here (no such folder, or an empty one)"
+    if not storage.exists(CONFIG):
+        return f"{where}: not a siggen data set (it has neither {MANIFEST} nor {CONFIG})"
+    return (
+        f"{where}: the data set is not finished (no {MANIFEST}). The same command that began it completes it: "
+        f"siggen generate {where}/{CONFIG} --out {where}"
+    )

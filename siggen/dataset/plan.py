@@ -1,0 +1,215 @@
+"""The whole set as indices: which record belongs to which specimen, state, operating point, repeat and split.
+
+Nothing here is drawn except the order of splits within a few specimens, so a set of any size is listed in no time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import overload
+
+from siggen.config import BLOCK, Config, Splits
+from siggen.seeding import Stage, generator
+
+SPLITS = ("train", "validation", "test")
+
+SUB_BLOCK = 5
+"""Specimens among which splits are shuffled; small, so that a set cut off anywhere is still nearly balanced."""
+
+SHARD_BYTES = 64_000_000
+"""Aimed size of a full shard on disk."""
+
+DISK_SHARE_PERCENT = 45
+"""Assumed size on disk over raw size: 16-bit readings as float32, byte-split and compressed (measured 0.43 to 0.47)."""
+
+UNQUANTISED_SHARE_PERCENT = 81
+"""The same for readings that are not quantised, or finer than 16 bits (measured 0.76 to 0.81)."""
+
+GROUP_CHANNEL_BYTES = 8_000_000
+"""Most raw bytes of one channel in a row group of several rows."""
+
+GROUP_BYTES = 64_000_000
+"""Most raw bytes of all channels in a row group of several rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedRecord:
+    """Where one record stands in the set."""
+
+    record_id: int
+    specimen_id: int
+    state_id: int
+    operating_point_id: int
+    repeat: int
+    split: str
+
+
+@dataclass(frozen=True, slots=True)
+class ShardPlan:
+    """One file of the set: whole specimens of one split, in ascending order."""
+
+    split: str
+    number: int
+    specimens: tuple[int, ...]
+    record_ids: tuple[int, ...]
+
+    @property
+    def key(self) -> str:
+        """Name of the shard, such as `train-00000`."""
+        return f"{self.split}-{self.number:05d}"
+
+
+class Records(Sequence[PlannedRecord]):
+    """All planned records in ascending order, each worked out when it is asked for."""
+
+    def __init__(self, config: Config) -> None:
+        self._config = config
+        self._ids = range(config.specimens * config.records_per_specimen)
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    def __iter__(self) -> Iterator[PlannedRecord]:
+        return (planned_record(self._config, i) for i in self._ids)
+
+    @overload
+    def __getitem__(self, index: int) -> PlannedRecord: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[PlannedRecord, ...]: ...
+    def __getitem__(self, index: int | slice) -> PlannedRecord | tuple[PlannedRecord, ...]:
+        if isinstance(index, slice):
+            return tuple(planned_record(self._config, i) for i in self._ids[index])
+        return planned_record(self._config, self._ids[index])
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The set that a configuration describes."""
+
+    config: Config
+
+    @property
+    def records(self) -> Records:
+        """All records in ascending order, worked out one by one."""
+        return Records(self.config)
+
+    @property
+    def count(self) -> int:
+        """Number of records."""
+        return len(self.records)
+
+    def specimens_of(self, split: str) -> tuple[int, ...]:
+        """Return the specimens of a split in ascending order.
+
+        Raises
+        ------
+        ValueError
+            If there is no such split.
+        """
+        if split not in SPLITS:
+            raise ValueError(f"there is no split {split!r}; splits are {', '.join(SPLITS)}")
+        return tuple(i for i in range(self.config.specimens) if split_of(self.config, i) == split)
+
+
+def plan(config: Config) -> Plan:
+    """Return the plan of a configuration."""
+    return Plan(config)
+
+
+def planned_record(config: Config, record_id: int) -> PlannedRecord:
+    """Return where a record stands; depends on the configuration (without `specimens`) and the index alone.
+
+    Raises
+    ------
+    IndexError
+        If the index is negative.
+    """
+    if record_id < 0:
+        raise IndexError(f"record {record_id}: indices begin at 0")
+    rest, repeat = divmod(record_id, config.repeats)
+    rest, operating_point_id = divmod(rest, len(config.operating_points))
+    specimen_id, state_id = divmod(rest, len(config.states))
+    split = split_of(config, specimen_id)
+    return PlannedRecord(record_id, specimen_id, state_id, operating_point_id, repeat, split)
+
+
+def record_ids_of(config: Config, specimen_id: int) -> range:
+    """Return the indices of a specimen's records."""
+    per_specimen = config.records_per_specimen
+    return range(specimen_id * per_specimen, (specimen_id + 1) * per_specimen)
+
+
+def split_of(config: Config, specimen_id: int) -> str:
+    """Return the split of a specimen; depends on seed, `splits` and the specimen alone."""
+    block, place = divmod(specimen_id, BLOCK)
+    return _splits_of_block(config.seed, config.splits, block)[place]
+
+
+@lru_cache(maxsize=4096)
+def _splits_of_block(seed: int, splits: Splits, block: int) -> tuple[str, ...]:
+    rng = generator(seed, Stage.SPLIT, block)
+    labels = _even_sequence(splits)
+    shuffled: list[str] = []
+    for start in range(0, BLOCK, SUB_BLOCK):
+        shuffled += [labels[start + i] for i in rng.permutation(SUB_BLOCK)]
+    return tuple(shuffled)
+
+
+@cache
+def _even_sequence(splits: Splits) -> tuple[str, ...]:
+    """Spread the labels of a block evenly: each place goes to the split that lags most behind its share (derived).
+
+    The shares lag by 1 in total before each place, so the largest of three lags is at least 1/3 and no split is ever
+    more than 2/3 ahead: the counts come out exactly.
+    """
+    wanted = splits.model_dump()
+    given = dict.fromkeys(SPLITS, 0)
+    sequence = []
+    for place in range(1, BLOCK + 1):
+        # whole numbers, so that equal lags are equal; the smaller split goes first among them
+        label = max(SPLITS, key=lambda name: (wanted[name] * place - given[name] * BLOCK, -wanted[name]))
+        given[label] += 1
+        sequence.append(label)
+    return tuple(sequence)
+
+
+def shards(config: Config, split: str) -> tuple[ShardPlan, ...]:
+    """Return the shards of a split; all are full but the last, so a larger set has the same full shards."""
+    members, size = plan(config).specimens_of(split), specimens_per_shard(config)
+    groups = [members[start : start + size] for start in range(0, len(members), size)]
+    return tuple(
+        ShardPlan(split, number, group, tuple(i for specimen in group for i in record_ids_of(config, specimen)))
+        for number, group in enumerate(groups)
+    )
+
+
+def specimens_per_shard(config: Config) -> int:
+    """Return the number of specimens in a full shard, from the raw bytes of a specimen's signals."""
+    specimen_bytes = _row_bytes(config) * len(config.channels) * config.records_per_specimen
+    return max(1, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT))
+
+
+def estimated_bytes(config: Config) -> int:
+    """Return about how many bytes the signals of the set will take on disk."""
+    percents = [
+        DISK_SHARE_PERCENT if sensor.bits is not None and sensor.bits <= 16 else UNQUANTISED_SHARE_PERCENT
+        for sensor in config.sensors
+        for _ in sensor.axes
+    ]
+    return config.specimens * config.records_per_specimen * _row_bytes(config) * sum(percents) // 100
+
+
+def rows_per_group(config: Config) -> int:
+    """Return the number of records in a row group: a power of two that fills 4 to 8 MB per channel.
+
+    Fewer where all channels together would pass 64 MB, and never less than one.
+    """
+    row_bytes = _row_bytes(config)
+    rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * len(config.channels)))
+    return 1 << (max(1, rows).bit_length() - 1)
+
+
+def _row_bytes(config: Config) -> int:
+    return config.samples * 4

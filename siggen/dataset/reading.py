@@ -1,0 +1,184 @@
+"""Reading a finished set without physics: labels, damage, and signals group by group."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import yaml
+
+from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
+from siggen.dataset.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
+from siggen.dataset.sidecar import in_ranges
+from siggen.dataset.storage import LocalFolder, Storage
+from siggen.errors import DatasetError, UsageError
+
+
+class Dataset:
+    """A finished set.
+
+    Attributes
+    ----------
+    path : Path
+    manifest : dict
+        Content of manifest.json: identity, counts, failures, shards, environments, hashes.
+    config : dict
+        Content of config.yaml.
+    splits : tuple of str
+        Splits that have records, in the order train, validation, test.
+    channels : tuple of Channel
+    fs_hz, duration_s : float
+    """
+
+    def __init__(self, storage: Storage) -> None:
+        self._storage = storage
+        self.path = Path(storage.location)
+        self.manifest: dict[str, Any] = read_manifest(storage)
+        self.config: dict[str, Any] = self._read_config()
+        self.splits: tuple[str, ...] = tuple(s for s in ("train", "validation", "test") if s in self.manifest["splits"])
+        self.channels: tuple[Channel, ...] = tuple(Channel(**channel) for channel in self.manifest["channels"])
+        self.fs_hz: float = self.manifest["fs_hz"]
+        self.duration_s: float = self.manifest["duration_s"]
+
+    def __repr__(self) -> str:
+        rows = ", ".join(f"{split}: {self.manifest['splits'][split]['rows']}" for split in self.splits)
+        return f"Dataset({str(self.path)!r}, {rows} records, {len(self.channels)} channels at {self.fs_hz:g} Hz)"
+
+    def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.
+
+        Raises
+        ------
+        UsageError
+            If the split or a column does not exist.
+        """
+        return self._table(METADATA_FOLDER, split, columns)
+
+    def damage(self, split: str | None = None) -> pa.Table:
+        """Return one row per pit or spall of every record of a split, or of all splits."""
+        return self._table(DAMAGE_FOLDER, split, None)
+
+    def records(
+        self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
+    ) -> Iterator[pa.RecordBatch]:
+        """Yield rows with signals, in the order of the labels, holding one row group at a time.
+
+        Parameters
+        ----------
+        split : str, optional
+            All splits in order when omitted.
+        columns : sequence of str, optional
+            All columns when omitted. `signal_matrix` turns a signal column into (rows, samples).
+        batch_rows : int, optional
+            Largest number of rows of a batch; a whole row group when omitted.
+
+        Raises
+        ------
+        UsageError
+            If the split or a column does not exist.
+        """
+        for shard in self._shards(split):
+            with self._storage.open(shard["file"]) as source, pq.ParquetFile(source) as file:
+                self._check_columns(file.schema_arrow, columns)
+                for group in range(file.num_row_groups):
+                    table = file.read_row_group(group, columns=_as_list(columns), use_threads=False).combine_chunks()
+                    yield from table.to_batches(max_chunksize=batch_rows)
+
+    def record(self, record_id: int) -> dict[str, Any]:
+        """Return one record: labels as Python values, channels as float32 (n,), `tacho_s` as float64 (k,).
+
+        The signal of channel `c` is found under the channel's column, e.g. `accel_bearing_vertical_m_s2`.
+
+        Raises
+        ------
+        UsageError
+            If no row has this id; the message says whether the record failed or was never planned.
+        """
+        for shard in self._shards(None):
+            if in_ranges(record_id, shard["records"]) and (row := self._row(shard["file"], record_id)) is not None:
+                return as_record(row)
+        raise UsageError(self._why_no_record(record_id))
+
+    def _row(self, name: str, record_id: int) -> pa.Table | None:
+        with self._storage.open(name) as source, pq.ParquetFile(source) as file:
+            for group in range(file.num_row_groups):
+                # column 0 is record_id, for which every row group has statistics
+                statistics = file.metadata.row_group(group).column(0).statistics
+                if statistics.min <= record_id <= statistics.max:
+                    table = file.read_row_group(group, use_threads=False)
+                    row = table.filter(pc.equal(table["record_id"], record_id))
+                    return row if row.num_rows else None
+        return None
+
+    def _why_no_record(self, record_id: int) -> str:
+        for failure in self.manifest["failures"]:
+            if failure["record_id"] == record_id:
+                return f"record {record_id} could not be simulated: {failure['status']} ({failure['reason']})"
+        planned = [id_range for shard in self._shards(None) for id_range in shard["records"]]
+        last = max((last for _, last in planned), default=-1)
+        return f"{self.path} has no record {record_id}; it has records 0 to {last}"
+
+    def _table(self, folder: str, split: str | None, columns: Sequence[str] | None) -> pa.Table:
+        tables = []
+        for name in self._splits(split):
+            with self._storage.open(f"{folder}/{name}.parquet") as source, pq.ParquetFile(source) as file:
+                self._check_columns(file.schema_arrow, columns)
+                tables.append(file.read(columns=_as_list(columns), use_threads=False))
+        return pa.concat_tables(tables)
+
+    def _splits(self, split: str | None) -> tuple[str, ...]:
+        if split is None:
+            return self.splits
+        if split not in self.splits:
+            raise UsageError(f"{self.path} has no split {split!r}; it has {', '.join(self.splits)}")
+        return (split,)
+
+    def _shards(self, split: str | None) -> Iterator[dict[str, Any]]:
+        for name in self._splits(split):
+            yield from (shard for shard in self.manifest["shards"] if shard["split"] == name)
+
+    def _check_columns(self, schema: pa.Schema, columns: Sequence[str] | None) -> None:
+        unknown = [column for column in columns or () if column not in schema.names]
+        if unknown:
+            raise UsageError(f"{self.path} has no columns {unknown}; it has {', '.join(schema.names)}")
+
+    def _read_config(self) -> dict[str, Any]:
+        try:
+            return dict(yaml.safe_load(self._storage.get(CONFIG)))
+        except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
+            raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
+
+
+def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
+    """Return the first row: labels as Python values, signals and pulse times as arrays."""
+    signals = {channel.column for channel in signal_channels(row.schema)}
+    record: dict[str, Any] = {}
+    for name in row.schema.names:
+        column = row.column(name)
+        if name in signals:
+            record[name] = signal_matrix(column)[0]
+        elif name == TACHO_COLUMN.name:
+            record[name] = np.asarray(column[0].as_py(), dtype=np.float64)
+        else:
+            record[name] = column[0].as_py()
+    return record
+
+
+def _as_list(columns: Sequence[str] | None) -> list[str] | None:
+    return None if columns is None else list(columns)
+
+
+def open(path: Path | str) -> Dataset:
+    """Open a finished set for reading.
+
+    Raises
+    ------
+    DatasetError
+        If the folder is not a finished set; for an interrupted one the message says how to finish it.
+    """
+    return Dataset(LocalFolder(path))

@@ -1,0 +1,127 @@
+"""Parquet files of a set: written row group by row group, with encodings that are checked in the footer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from siggen.dataset.storage import Storage, file_sha256
+from siggen.errors import DatasetError
+
+LIST_LEAF = ".list.element"
+"""What Parquet appends to a list column; an encoding asked for without it is accepted and ignored."""
+
+ZSTD_LEVEL = 1
+SPLIT_BYTES = "BYTE_STREAM_SPLIT"
+
+
+@dataclass(frozen=True, slots=True)
+class FileFacts:
+    """What a committed file promises."""
+
+    name: str
+    bytes: int
+    sha256: str
+    rows: int
+
+
+def write_table(
+    storage: Storage, name: str, schema: pa.Schema, batches: Iterable[pa.RecordBatch], group_rows: int
+) -> FileFacts:
+    """Write batches as one Parquet object with `group_rows` rows per row group.
+
+    At most one row group and one batch are in memory. The bytes depend on the rows alone, not on how the batches
+    cut them. Nothing is committed if the batches raise, or if the footer shows other encodings than asked for.
+
+    Raises
+    ------
+    DatasetError
+        If the footer is not what was asked for.
+    """
+    with storage.draft(name) as path:
+        rows = 0
+        with pq.ParquetWriter(path, schema, **_options(schema)) as writer:
+            for group in _groups(schema, batches, group_rows):
+                writer.write_table(group, row_group_size=group_rows)
+                rows += group.num_rows
+        check_footer(path, schema, rows)
+        with path.open("rb") as file:
+            facts = FileFacts(name, path.stat().st_size, file_sha256(file), rows)
+    return facts
+
+
+def _groups(schema: pa.Schema, batches: Iterable[pa.RecordBatch], group_rows: int) -> Iterator[pa.Table]:
+    pending = schema.empty_table()
+    for batch in batches:
+        pending = pa.concat_tables([pending, pa.Table.from_batches([batch], schema)])
+        while pending.num_rows >= group_rows:
+            # one contiguous piece: page borders would otherwise follow the borders of the batches
+            yield pending.slice(0, group_rows).combine_chunks()
+            pending = pending.slice(group_rows)
+    if pending.num_rows:
+        yield pending.combine_chunks()
+
+
+def _options(schema: pa.Schema) -> dict[str, object]:
+    leaves = {field.name: leaf(field) for field in schema}
+    numeric_lists = [leaves[field.name] for field in schema if _is_series(field)]
+    return {
+        "compression": "zstd",
+        "compression_level": ZSTD_LEVEL,
+        "use_dictionary": [leaves[field.name] for field in schema if pa.types.is_string(field.type)],
+        "column_encoding": dict.fromkeys(numeric_lists, SPLIT_BYTES),
+        "write_statistics": [leaves[field.name] for field in schema if not _is_series(field)],
+        "write_page_index": True,
+    }
+
+
+def leaf(field: pa.Field) -> str:
+    """Return the path of the values of a column in Parquet."""
+    return field.name + LIST_LEAF if isinstance(field.type, pa.ListType | pa.FixedSizeListType) else field.name
+
+
+def _is_series(field: pa.Field) -> bool:
+    """Tell whether a column holds series of floating-point numbers: signals, pulse times, outlines."""
+    is_list = isinstance(field.type, pa.ListType | pa.FixedSizeListType)
+    return is_list and pa.types.is_floating(field.type.value_type)
+
+
+def check_footer(path: Path, schema: pa.Schema, rows: int) -> None:
+    """Read a file's footer back and compare rows, encodings, compression and statistics with what was asked for.
+
+    Raises
+    ------
+    DatasetError
+        If the writer ignored an option, as it silently does for paths it does not know.
+    """
+    footer = pq.read_metadata(path)
+    problems = [] if footer.num_rows == rows else [f"{footer.num_rows} rows instead of {rows}"]
+    series = {leaf(field) for field in schema if _is_series(field)}
+    for group in range(footer.num_row_groups):
+        for index in range(footer.num_columns):
+            column = footer.row_group(group).column(index)
+            problems += [f"row group {group}, {column.path_in_schema}: {p}" for p in _column_problems(column, series)]
+    if problems:
+        raise DatasetError(
+            f"{path}: the Parquet writer did not do as asked ({'; '.join(problems[:3])}); another pyarrow?"
+        )
+
+
+def _column_problems(column: pq.ColumnChunkMetaData, series: set[str]) -> list[str]:
+    is_series = column.path_in_schema in series
+    problems = []
+    if is_series and column.num_values and (SPLIT_BYTES not in column.encodings or "PLAIN" in column.encodings):
+        problems.append(f"encodings {column.encodings}")
+    if is_series and column.has_dictionary_page:
+        problems.append("has a dictionary")
+    if column.compression != "ZSTD":
+        problems.append(f"compression {column.compression}")
+    if is_series == column.is_stats_set:
+        problems.append("statistics" if is_series else "no statistics")
+    if not column.has_offset_index:
+        problems.append("no page index")
+    return problems

@@ -1,0 +1,132 @@
+"""The small file beside each shard that commits it: what it holds, what failed, where it was made."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from siggen.dataset.record import SCHEMA_VERSION, RecordFailure
+from siggen.dataset.shard import FileFacts
+from siggen.dataset.storage import Storage, sha256
+from siggen.errors import DatasetError
+
+FOLDER = "shards"
+DATA_FOLDER = "data"
+
+Ranges = tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sidecar:
+    """A committed shard.
+
+    Attributes
+    ----------
+    shard
+        Name without folder and ending, `<split>-<number>`.
+    specimens, records
+        Inclusive ranges of ids that the plan gives to the shard, failed records included.
+    rows_per_state
+        Rows by the state's name.
+    environment
+        Versions and CPU family that made the rows.
+    """
+
+    shard: str
+    split: str
+    identity: str
+    data: FileFacts
+    specimens: Ranges
+    records: Ranges
+    rows_per_state: Mapping[str, int]
+    failures: tuple[RecordFailure, ...]
+    environment: Mapping[str, str]
+
+    @property
+    def name(self) -> str:
+        """The sidecar's own object name."""
+        return sidecar_name(self.shard)
+
+
+def data_name(shard: str) -> str:
+    """Return the object name of a shard's rows."""
+    return f"{DATA_FOLDER}/{shard}.parquet"
+
+
+def sidecar_name(shard: str) -> str:
+    """Return the object name of a shard's sidecar."""
+    return f"{FOLDER}/{shard}.json"
+
+
+def id_ranges(ids: Iterable[int]) -> Ranges:
+    """Return ascending ids as inclusive ranges."""
+    ranges: list[tuple[int, int]] = []
+    for i in ids:
+        if ranges and ranges[-1][1] == i - 1:
+            ranges[-1] = (ranges[-1][0], i)
+        else:
+            ranges.append((i, i))
+    return tuple(ranges)
+
+
+def in_ranges(i: int, ranges: Sequence[Sequence[int]]) -> bool:
+    """Tell whether an id lies in inclusive ranges."""
+    return any(first <= i <= last for first, last in ranges)
+
+
+def json_bytes(content: Mapping[str, object]) -> bytes:
+    """Return the one way in which a set's JSON files are written."""
+    return (json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
+
+
+def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
+    """Commit a shard whose rows are already stored."""
+    storage.put(sidecar.name, json_bytes({"schema_version": SCHEMA_VERSION, **asdict(sidecar)}))
+
+
+def read_sidecar(storage: Storage, shard: str) -> Sidecar:
+    """Return a shard's sidecar.
+
+    Raises
+    ------
+    DatasetError
+        If the file is not a sidecar of this schema version.
+    """
+    name = sidecar_name(shard)
+    try:
+        content = json.loads(storage.get(name))
+        if content["schema_version"] != SCHEMA_VERSION:
+            raise DatasetError(
+                f"{name}: schema version {content['schema_version']}; this siggen writes {SCHEMA_VERSION}"
+            )
+        return Sidecar(
+            shard=content["shard"],
+            split=content["split"],
+            identity=content["identity"],
+            data=FileFacts(**content["data"]),
+            specimens=tuple((first, last) for first, last in content["specimens"]),
+            records=tuple((first, last) for first, last in content["records"]),
+            rows_per_state=content["rows_per_state"],
+            failures=tuple(RecordFailure(**failure) for failure in content["failures"]),
+            environment=content["environment"],
+        )
+    except (ValueError, KeyError, TypeError) as error:
+        raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error!r})") from error
+
+
+def committed(storage: Storage, shard: str, identity: str, specimens: Ranges) -> Sidecar | None:
+    """Return the sidecar of a shard that an earlier run finished, or None if the shard has to be made.
+
+    The rows are read once and hashed, so that a file damaged between two runs is made again instead of being taken
+    over; a set is hashed nowhere else before its manifest promises the hashes.
+    """
+    if not (storage.exists(sidecar_name(shard)) and storage.exists(data_name(shard))):
+        return None
+    try:
+        sidecar = read_sidecar(storage, shard)
+    except DatasetError:
+        return None
+    is_planned = (sidecar.shard, sidecar.identity, sidecar.specimens) == (shard, identity, specimens)
+    is_whole = is_planned and storage.size(sidecar.data.name) == sidecar.data.bytes
+    return sidecar if is_whole and sha256(storage, sidecar.data.name) == sidecar.data.sha256 else None

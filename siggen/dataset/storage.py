@@ -1,0 +1,186 @@
+"""Where a set's files live: the one place that touches files."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import BinaryIO, Protocol
+
+from siggen.errors import DatasetError
+
+LEFTOVER_SUFFIX = ".siggen-part"
+"""Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
+
+READ_BYTES = 1 << 20
+
+
+class Storage(Protocol):
+    """Objects by name ('data/train-00000.parquet'); an object is there as a whole or not at all."""
+
+    @property
+    def location(self) -> str:
+        """Where the objects are, as a user writes it."""
+
+    def put(self, name: str, content: bytes) -> None:
+        """Store an object, replacing an older one in a single step."""
+
+    def draft(self, name: str) -> AbstractContextManager[Path]:
+        """Give a local path to fill; the file becomes the object when the block ends without an error."""
+
+    def get(self, name: str) -> bytes:
+        """Return the whole object."""
+
+    def open(self, name: str) -> BinaryIO:
+        """Open an object for reading with seek (what a Parquet reader needs)."""
+
+    def size(self, name: str) -> int:
+        """Return the object's size in bytes."""
+
+    def exists(self, name: str) -> bool:
+        """Tell whether the object is there."""
+
+    def names(self, folder: str = "") -> list[str]:
+        """Return the sorted names of all objects below a folder, without leftovers."""
+
+    def delete_leftovers(self) -> list[str]:
+        """Delete files that a killed process left half written, and return their names."""
+
+    def writing(self) -> AbstractContextManager[None]:
+        """Return a guard that keeps a second writer out."""
+
+
+def sha256(storage: Storage, name: str) -> str:
+    """Return the SHA-256 of an object, read in pieces."""
+    with storage.open(name) as file:
+        return file_sha256(file)
+
+
+def file_sha256(file: BinaryIO) -> str:
+    """Return the SHA-256 of an open file, read in pieces."""
+    digest = hashlib.sha256()
+    while piece := file.read(READ_BYTES):
+        digest.update(piece)
+    return digest.hexdigest()
+
+
+class LocalFolder:
+    """A folder on a local file system."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+
+    @property
+    def location(self) -> str:
+        """The folder as the user wrote it."""
+        return str(self.path)
+
+    def put(self, name: str, content: bytes) -> None:
+        """Write the content to a hidden file, then rename it: a reader never sees half of it."""
+        with self.draft(name) as path:
+            path.write_bytes(content)
+
+    @contextmanager
+    def draft(self, name: str) -> Iterator[Path]:
+        """Yield a hidden path in the target's folder; flushed to disk and renamed when the block ends."""
+        target = self._file(name)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        part = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
+        try:
+            yield part
+            _flush(part)
+            part.replace(target)
+            _flush(target.parent)
+        finally:
+            part.unlink(missing_ok=True)
+
+    def get(self, name: str) -> bytes:
+        """Return the file's content."""
+        with self.open(name) as file:
+            return file.read()
+
+    def open(self, name: str) -> BinaryIO:
+        """Open the file for reading.
+
+        Raises
+        ------
+        DatasetError
+            If there is no such file.
+        """
+        try:
+            return self._file(name).open("rb")
+        except FileNotFoundError as error:
+            raise DatasetError(f"{self._file(name)} is missing; generating the same set again restores it") from error
+
+    def size(self, name: str) -> int:
+        """Return the file's size in bytes."""
+        return self._file(name).stat().st_size
+
+    def exists(self, name: str) -> bool:
+        """Tell whether the name is a file."""
+        return self._file(name).is_file()
+
+    def names(self, folder: str = "") -> list[str]:
+        """Return the sorted POSIX names of all files below a folder, without leftovers."""
+        files = (path for path in self._file(folder).rglob("*") if not path.is_dir())
+        return sorted(path.relative_to(self.path).as_posix() for path in files if path.suffix != LEFTOVER_SUFFIX)
+
+    def delete_leftovers(self) -> list[str]:
+        """Delete half-written files; call it only while holding `writing()`."""
+        parts = sorted(self.path.rglob(f".*{LEFTOVER_SUFFIX}"))
+        for part in parts:
+            part.unlink(missing_ok=True)
+        return [part.relative_to(self.path).as_posix() for part in parts]
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Hold the folder for one writer; the lock dies with the process, so nothing has to be cleaned up.
+
+        Raises
+        ------
+        DatasetError
+            If another process is writing the folder, or the path is a file.
+        """
+        if self.path.exists() and not self.path.is_dir():
+            raise DatasetError(f"{self.path} is a file; a data set is a folder: name another path")
+        self.path.mkdir(parents=True, exist_ok=True)
+        lock = _lock(self.path)
+        try:
+            yield
+        finally:
+            if lock is not None:
+                os.close(lock)
+
+    def _file(self, name: str) -> Path:
+        return self.path / name
+
+
+def _flush(path: Path) -> None:
+    """Wait until a file's content, or a folder's entries, are on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _lock(folder: Path) -> int | None:
+    """Lock a folder (not a file in it, which a crash would leave behind); None where folders cannot be locked."""
+    try:
+        import fcntl
+    except ImportError:  # not a POSIX system
+        return None
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise DatasetError(
+            f"{folder} is being written by another siggen process; wait for it or name another"
+        ) from None
+    except OSError:  # file systems without locks: go on without one
+        pass
+    return descriptor

@@ -1,0 +1,1 @@
+"""Structure, mesh force and integrators."""

@@ -1,0 +1,142 @@
+"""Equations of motion about the static equilibrium at the mean mesh stiffness, in the form the integrators take.
+
+With q = q_s + w and K_0 q_s + p F_s = f (derived):  M ẅ + C_0 ẇ + K_0 w = -p (F - F_s),  F = mesh force at δ_s + pᵀw.
+The state is z = [w, ẇ]. Small deviations instead of the static twist of the shafts keep double precision over long
+records.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.dynamics.mesh_force import MeshLaw, mesh_force, mesh_stiffness
+from siggen.dynamics.structure import Structure
+
+FloatArray = NDArray[np.float64]
+
+RIGID_SHARE = 1e-9
+"""Eigenvalues of M⁻¹K below this share of the largest one are rigid-body modes (rounding leaves about 1e-16)."""
+
+
+class Equations(NamedTuple):
+    """Constant numbers of the equations of motion (a named tuple, since compiled code takes no dataclass).
+
+    `stiffness_by_mass`, `damping_by_mass` (n, n): M⁻¹K_0, M⁻¹C_0; `mesh_input` (n,): M⁻¹p; `mesh_vector` (n,): p;
+    `static_deflection` (n,): q_s; `reference_stiffness`: mean mesh stiffness that q_s belongs to;
+    `static_force`: F_s; `static_approach`: δ_s; `side`: +1 if the mean torque loads the drive flank, else -1.
+    """
+
+    stiffness_by_mass: FloatArray
+    damping_by_mass: FloatArray
+    mesh_input: FloatArray
+    mesh_vector: FloatArray
+    static_deflection: FloatArray
+    reference_stiffness: float
+    static_force: float
+    static_approach: float
+    side: float
+
+
+def equations_of_motion(structure: Structure, law: MeshLaw, torque_nm: float, reference_stiffness: float) -> Equations:
+    """Return the equations for a constant motor torque [N m], about the static state at `reference_stiffness` [N/m].
+
+    Raises
+    ------
+    ValueError
+        If the torque is not finite, or torque and load do not balance on the rigid-body mode of the structure.
+    """
+    if not np.isfinite(torque_nm):
+        raise ValueError(f"torque_nm: received {torque_nm}; allowed are finite torques")
+    p = structure.mesh_vector
+    loaded = structure.stiffness + reference_stiffness * p[:, None] * p[None, :]
+    elastic = static_solution(structure.mass, loaded, structure.torque_vector * torque_nm)
+    force = float(reference_stiffness * (p * elastic).sum())
+    side = 1.0 if force >= 0.0 else -1.0
+    gap = static_solution(structure.mass, loaded, p * (reference_stiffness * side * law.half_backlash_m))
+    return Equations(
+        stiffness_by_mass=_solved(structure.mass, structure.stiffness),
+        damping_by_mass=_solved(structure.mass, structure.damping),
+        mesh_input=_solved(structure.mass, p),
+        mesh_vector=np.array(p),
+        static_deflection=elastic + gap,
+        reference_stiffness=reference_stiffness,
+        static_force=force,
+        static_approach=force / reference_stiffness + side * law.half_backlash_m,
+        side=side,
+    )
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Return matrix⁻¹ · right in row order: one memory layout, hence one compilation of the kernels."""
+    return np.ascontiguousarray(np.linalg.solve(matrix, right), dtype=np.float64)
+
+
+def static_solution(mass: FloatArray, stiffness: FloatArray, force: FloatArray) -> FloatArray:
+    """Return the displacement (n,) under a balanced force (n,) without any rigid-body part (orthogonal in M).
+
+    Raises
+    ------
+    ValueError
+        If the force does work on a rigid-body mode: then no equilibrium exists.
+    """
+    root = np.linalg.cholesky(mass)
+    scaled = np.linalg.solve(root, np.linalg.solve(root, stiffness).T)
+    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    modal = vectors.T @ np.linalg.solve(root, force)
+    rigid = values < RIGID_SHARE * values[-1]
+    if np.abs(modal[rigid]).sum() > 1e-9 * np.abs(modal).sum():
+        raise ValueError(
+            f"static load: received an unbalanced force {force}; allowed are torques that balance the load"
+        )
+    modal = np.where(rigid, 0.0, modal / np.where(rigid, 1.0, values))
+    return np.linalg.solve(root.T, vectors @ modal)
+
+
+def start_state(structure: Structure, law: MeshLaw, equations: Equations, pitches: float) -> FloatArray:
+    """Return z (2n,) at rest in the static equilibrium at the actual mesh stiffness, rigid rotation zero."""
+    p = equations.mesh_vector
+    actual = mesh_stiffness(law, pitches)
+    loaded = structure.stiffness + actual * p[:, None] * p[None, :]
+    penetration = equations.static_force / equations.reference_stiffness
+    deviation = static_solution(structure.mass, loaded, -p * ((actual - equations.reference_stiffness) * penetration))
+    return np.concatenate([deviation, np.zeros_like(deviation)])
+
+
+def state_matrix(equations: Equations, stiffness: float, damping: float) -> FloatArray:
+    """Return A (2n, 2n) of ż = A z with a constant mesh stiffness [N/m] and mesh damping [N s/m]."""
+    n = equations.mesh_vector.size
+    dyad = equations.mesh_input[:, None] * equations.mesh_vector[None, :]
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    matrix[n:, :n] = -(equations.stiffness_by_mass + stiffness * dyad)
+    matrix[n:, n:] = -(equations.damping_by_mass + damping * dyad)
+    return matrix
+
+
+@njit(cache=True)
+def approach_of(equations: Equations, state: FloatArray) -> tuple[float, float]:
+    """Return the approach δ [m] and its rate [m/s] of a state (2n,)."""
+    n = equations.mesh_vector.size
+    approach, rate = equations.static_approach, 0.0
+    for i in range(n):
+        approach += equations.mesh_vector[i] * state[i]
+        rate += equations.mesh_vector[i] * state[n + i]
+    return approach, rate
+
+
+@njit(cache=True)
+def state_rate(equations: Equations, law: MeshLaw, state: FloatArray, pitches: float, rate: FloatArray) -> None:
+    """Write ż (2n,) of the state z (2n,) at the pinion angle `pitches` into `rate`."""
+    n = equations.mesh_vector.size
+    approach, approach_rate = approach_of(equations, state)
+    excess = mesh_force(law, approach, approach_rate, pitches) - equations.static_force
+    for i in range(n):
+        rate[i] = state[n + i]
+        total = -equations.mesh_input[i] * excess
+        for j in range(n):
+            total -= equations.stiffness_by_mass[i, j] * state[j] + equations.damping_by_mass[i, j] * state[n + j]
+        rate[n + i] = total

@@ -1,0 +1,42 @@
+"""Ctrl-C and SIGTERM as one exception that reaches the main thread once."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from types import FrameType, TracebackType
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Interruption:
+    """Inside the block, the first SIGINT or SIGTERM raises KeyboardInterrupt; later ones are ignored.
+
+    Cleaning up is thereby never interrupted itself. Outside of the main thread signals cannot be caught, and are left
+    to whoever catches them.
+    """
+
+    def __init__(self) -> None:
+        self.requested = False
+        self._before: dict[signal.Signals, object] = {}
+
+    def __enter__(self) -> Interruption:
+        if threading.current_thread() is threading.main_thread():
+            self._before = {number: signal.signal(number, self._stop) for number in SIGNALS}
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler if handler is not None else signal.SIG_DFL)  # type: ignore[arg-type]
+
+    def check(self) -> None:
+        """Raise again if a signal came: an exception that met a destructor or a callback of C code is lost."""
+        if self.requested:
+            raise KeyboardInterrupt
+
+    def _stop(self, _number: int, _frame: FrameType | None) -> None:
+        if not self.requested:
+            self.requested = True
+            raise KeyboardInterrupt

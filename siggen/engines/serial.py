@@ -1,0 +1,29 @@
+"""The engine without processes: one task after the other, where it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from siggen.engines.protocol import Result, Results, Task
+from siggen.engines.task_failure import failure_text, task_error
+
+
+class SerialEngine:
+    """Runs every task in this process; for small sets, debuggers, and as the reference of the other engines."""
+
+    workers = 1
+
+    def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
+        """Yield (position, result) in the order of the tasks.
+
+        Raises
+        ------
+        EngineError
+            If a task raised.
+        """
+        for index, task in enumerate(tasks):
+            try:
+                result = function(task)
+            except Exception as error:
+                raise task_error(task, failure_text(error)) from error
+            yield index, result

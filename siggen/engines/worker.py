@@ -1,0 +1,131 @@
+"""One worker process: started with one numeric thread, deaf to Ctrl-C, fed through a pipe."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any
+
+READY, DONE, RAISED = "ready", "done", "raised"
+
+ONE_THREAD = dict.fromkeys(
+    (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+        "NUMBA_NUM_THREADS",
+        "ARROW_NUM_THREADS",
+        "ARROW_IO_THREADS",
+    ),
+    "1",
+)
+"""Numeric libraries read these when they are loaded: as many workers as cores, each with one thread."""
+
+PARENTS_SIGNALS = {signal.SIGINT, signal.SIGTERM}
+"""A terminal sends Ctrl-C to the whole process group; only the parent decides what it means."""
+
+GOODBYE_S = 5.0
+
+
+class Worker:
+    """The parent's side of a worker process.
+
+    Attributes
+    ----------
+    connection
+        Pipe to the process; reading from it ends with EOFError when the process dies.
+    task
+        Position of the task the worker is busy with, or None.
+    ready
+        Whether the process has started: unpickling its function has imported, once, what the tasks need.
+    """
+
+    def __init__(self, function: Callable[[Any], Any]) -> None:
+        context = get_context("spawn")
+        self.connection, theirs = context.Pipe()
+        self.task: int | None = None
+        self.ready = False
+        self._process = context.Process(target=_work, args=(theirs, function), daemon=True)
+        with _environment(ONE_THREAD), _blocked(PARENTS_SIGNALS):
+            self._process.start()
+        # the process must hold the only other end, or its death would not close the pipe
+        theirs.close()
+
+    @property
+    def pid(self) -> int | None:
+        """Process id."""
+        return self._process.pid
+
+    def stop(self) -> None:
+        """Let an idle process end by itself."""
+        self.connection.close()
+        self._process.join(GOODBYE_S)
+        self.kill()
+
+    def kill(self) -> int | None:
+        """End the process at once and return its exit code; negative codes are signals."""
+        self.connection.close()
+        self._process.kill()
+        self._process.join()
+        return self._process.exitcode
+
+
+def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
+    """Run tasks until the parent closes the pipe or dies."""
+    _settle_down()
+    with contextlib.suppress(EOFError, OSError):
+        connection.send((READY, None))
+        while True:
+            connection.send(_answer(function, connection.recv()))
+
+
+def _answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+    from siggen.engines.task_failure import failure_text
+
+    try:
+        return DONE, function(task)
+    except Exception as error:
+        return RAISED, failure_text(error)
+
+
+def _settle_down() -> None:
+    for number in PARENTS_SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    import pyarrow as pa
+
+    pa.set_cpu_count(1)
+    pa.set_io_thread_count(1)
+
+
+@contextlib.contextmanager
+def _environment(variables: Mapping[str, str]) -> Iterator[None]:
+    """Set environment variables for processes that start inside the block."""
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _blocked(numbers: set[signal.Signals]) -> Iterator[None]:
+    """Block signals inside the block: a process started there inherits it, and cannot be hit before it ignores them."""
+    if not hasattr(signal, "pthread_sigmask"):  # not a POSIX system
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, numbers)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,76 @@
+"""Errors a user may meet, and the exit codes that the commands return for them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+EXIT_OK = 0
+EXIT_UNEXPECTED = 1
+EXIT_USAGE = 2
+EXIT_RECORDS_FAILED = 3
+EXIT_MISMATCH = 4
+EXIT_INTERRUPTED = 130
+
+
+class SiggenError(Exception):
+    """Base of every error with a message meant for the user; `exit_code` is what a command returns."""
+
+    exit_code = EXIT_UNEXPECTED
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong in a configuration: where, what came, what is allowed."""
+
+    path: str
+    received: str
+    allowed: str
+
+    def __str__(self) -> str:
+        """One line: path, what was received, what is allowed."""
+        return f"{self.path}: received {self.received}; {self.allowed}"
+
+
+class ConfigError(SiggenError):
+    """A configuration that cannot be used; carries all problems at once, sorted by path."""
+
+    exit_code = EXIT_USAGE
+
+    def __init__(self, problems: Sequence[Problem], source: str = "configuration") -> None:
+        self.problems = tuple(sorted(problems, key=lambda p: p.path))
+        self.source = source
+        count = len(self.problems)
+        head = f"{source}: {count} problem{'s' if count != 1 else ''}"
+        super().__init__("\n".join([head, *(f"  {p}" for p in self.problems)]))
+
+
+class UsageError(SiggenError):
+    """A command or call that cannot be carried out as given (wrong folder, unknown record, bad option)."""
+
+    exit_code = EXIT_USAGE
+
+
+class DatasetError(SiggenError):
+    """A folder that is not the set it should be (missing, incomplete, of another identity)."""
+
+    exit_code = EXIT_USAGE
+
+
+class VerificationError(SiggenError):
+    """Files or re-simulated records that differ from what the manifest promises."""
+
+    exit_code = EXIT_MISMATCH
+
+
+class EngineError(SiggenError):
+    """Workers that died more often than the engine restarts them."""
+
+
+class SolverFailure(SiggenError):  # noqa: N818 - a status of a record, not a fault of the program
+    """A record that could not be simulated; becomes the record's status and reason, never a NaN."""
+
+    def __init__(self, status: str, reason: str) -> None:
+        self.status = status
+        self.reason = reason
+        super().__init__(f"{status}: {reason}")

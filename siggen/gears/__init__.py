@@ -1,0 +1,42 @@
+"""Tooth geometry, damage and mesh stiffness."""
+
+from __future__ import annotations
+
+from siggen.gears.compliance import StiffnessOptions, ToothCompliance, tooth_compliance
+from siggen.gears.damage import Damage, DamageProblem, Pit, axial_height, damage_problems
+from siggen.gears.foundation import outside_foundation_fit
+from siggen.gears.geometry import GearPair, GeometryProblem, SpurGear, geometry_problems
+from siggen.gears.layouts import clustered_centres, layered_centres
+from siggen.gears.sections import contact_length_loss, section_loss, union_area_m2
+from siggen.gears.stiffness import mesh_stiffness, pair_stiffness
+from siggen.gears.summary import DamageSummary, damage_summary
+from siggen.gears.tables import MeshTables, largest_stiffness_loss, mesh_tables, table_error
+
+__all__ = [
+    "Damage",
+    "DamageProblem",
+    "DamageSummary",
+    "GearPair",
+    "GeometryProblem",
+    "MeshTables",
+    "Pit",
+    "SpurGear",
+    "StiffnessOptions",
+    "ToothCompliance",
+    "axial_height",
+    "clustered_centres",
+    "contact_length_loss",
+    "damage_problems",
+    "damage_summary",
+    "geometry_problems",
+    "largest_stiffness_loss",
+    "layered_centres",
+    "mesh_stiffness",
+    "mesh_tables",
+    "outside_foundation_fit",
+    "pair_stiffness",
+    "section_loss",
+    "table_error",
+    "tooth_compliance",
+    "union_area_m2",
+]

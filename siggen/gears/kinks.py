@@ -1,0 +1,179 @@
+"""Heights at which the section of a pitted tooth changes its form: where its integrals must be split.
+
+Derived. Section quantities are smooth in x between: the lowest and highest point of each ellipse, crossings of two
+ellipses, crossings of an ellipse with the ends of the face, and, where a dish meets a pit of another depth, the same
+points of the curve of equal depth. Two ellipses with semi-axes along w of P_i = a_i^2 (1 - u_i^2) cross where (P_1 -
+P_2 + D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@njit(cache=True)
+def _value(poly: FloatArray, degree: int, t: float) -> float:
+    total = poly[degree]
+    for power in range(degree - 1, -1, -1):
+        total = total * t + poly[power]
+    return total
+
+
+@njit(cache=True)
+def _bisect(poly: FloatArray, degree: int, low: float, high: float) -> float:
+    rising = _value(poly, degree, high) > 0.0
+    for _ in range(70):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        if (_value(poly, degree, middle) > 0.0) == rising:
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
+
+
+@njit(cache=True)
+def roots_between(poly: FloatArray, low: float, high: float, touching: float) -> FloatArray:
+    """Return the real roots of a polynomial (coefficients from power 0, degree <= 8) within [low, high], ascending.
+
+    Between two neighbouring roots of the derivative a polynomial is monotone, so the roots of all derivatives,
+    highest first, bracket every root: no complex arithmetic and no lost root. A turning point with abs(value) <=
+    `touching` counts as a root.
+    """
+    degree = poly.size - 1
+    derivative = poly.copy()
+    ladder = np.zeros((degree + 1, degree + 1))
+    ladder[degree, : degree + 1] = derivative
+    for level in range(degree - 1, 0, -1):
+        for power in range(level + 1):
+            ladder[level, power] = ladder[level + 1, power + 1] * (power + 1)
+    turns = np.empty(degree + 2)
+    found = np.empty(2 * degree + 2)
+    count = 0
+    for level in range(1, degree + 1):
+        marks = count
+        for k in range(count):
+            turns[k + 1] = found[k]
+        turns[0], turns[marks + 1] = low, high
+        count = 0
+        for k in range(marks + 1):
+            start, stop = turns[k], turns[k + 1]
+            at_start = _value(ladder[level], level, start)
+            at_stop = _value(ladder[level], level, stop)
+            if (at_start > 0.0) != (at_stop > 0.0):
+                found[count] = _bisect(ladder[level], level, start, stop)
+                count += 1
+            elif level == degree and k > 0 and abs(at_start) <= touching:
+                found[count] = start
+                count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True)
+def _crossing_heights(
+    mu: float, w: float, a: float, b: float, mu2: float, w2: float, a2: float, b2: float, out: list[float]
+) -> None:
+    """Append the heights where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
+    low, high = max(mu - b, mu2 - b2), min(mu + b, mu2 + b2)
+    gap = abs(w2 - w)
+    if high <= low or gap >= a + a2:
+        return
+    shift, stretch = (mu - mu2) / b2, b / b2
+    ratio = (a2 / a) ** 2
+    distance = (w2 - w) / a
+    # N(t) = (P1 - P2 + D^2)/a^2 with P1/a^2 = 1 - t^2 and P2/a^2 = ratio (1 - (shift + stretch t)^2)
+    n0 = 1.0 - ratio * (1.0 - shift * shift) + distance * distance
+    n1 = 2.0 * ratio * shift * stretch
+    n2 = ratio * stretch * stretch - 1.0
+    four = 4.0 * distance * distance
+    quartic = np.array([n0 * n0 - four, 2.0 * n0 * n1, n1 * n1 + 2.0 * n0 * n2 + four, 2.0 * n1 * n2, n2 * n2])
+    first, last = (low - mu) / b, (high - mu) / b
+    size = abs(n0) + abs(n1) + abs(n2)
+    for t in roots_between(quartic, first, last, 1e-12 * (size * size + four)):
+        out.append(mu + b * t)
+    # Columns one above the other: the quartic is (nearly) a square, whose roots rounding can hide. Extra kinks do no
+    # harm.
+    if abs(distance) < 1e-5:
+        for t in roots_between(np.array([n0, n1, n2]), first, last, 1e-12 * size):
+            out.append(mu + b * t)
+
+
+@njit(cache=True)
+def _face_heights(mu: float, w: float, a: float, b: float, face_width: float, out: list[float]) -> None:
+    """Append the heights where an ellipse outline leaves the face."""
+    for end in (0.0, face_width):
+        v = (end - w) / a
+        if abs(v) < 1.0:
+            u = sqrt((1.0 - v) * (1.0 + v))
+            out.append(mu - b * u)
+            out.append(mu + b * u)
+
+
+@njit(cache=True)
+def _equal_depth_heights(one: FloatArray, two: FloatArray, face_width: float, out: list[float]) -> None:
+    """Append lowest, highest and edge points of the curve on which two pits, at least one a dish, are equally deep."""
+    if one[5] == 0.0 or two[5] == 0.0:
+        dish, flat = (two, one) if one[5] == 0.0 else (one, two)
+        if flat[4] >= dish[4]:
+            return
+        scale = sqrt(1.0 - (flat[4] / dish[4]) ** 2)
+        mu, w, a, b = dish[0], dish[1], scale * dish[2], scale * dish[3]
+        bottom, top = max(mu - dish[3], flat[0] - flat[3]), min(mu + dish[3], flat[0] + flat[3])
+        level = [mu - b, mu + b]
+        _face_heights(mu, w, a, b, face_width, level)
+        _crossing_heights(mu, w, a, b, flat[0], flat[1], flat[2], flat[3], level)
+        for x in level:
+            # A kink outside the shared heights would split sections that the upper pit must not touch.
+            if bottom < x < top:
+                out.append(x)
+        return
+    # c2 w^2 + c1 w + c0(x) = 0, c0 = k0 + k1 x + k2 x^2 about the first centre: vertical tangents and the ends of the
+    # face
+    c2 = c1 = k0 = k1 = k2 = 0.0
+    for sign, pit in ((1.0, one), (-1.0, two)):
+        square = sign * pit[4] * pit[4]
+        shift_w, shift_x = pit[1] - one[1], pit[0] - one[0]
+        curve_w, curve_x = square / pit[2] ** 2, square / pit[3] ** 2
+        c2 -= curve_w
+        c1 += 2.0 * curve_w * shift_w
+        k2 -= curve_x
+        k1 += 2.0 * curve_x * shift_x
+        k0 += square - curve_w * shift_w**2 - curve_x * shift_x**2
+    low = max(one[0] - one[3], two[0] - two[3]) - one[0]
+    high = min(one[0] + one[3], two[0] + two[3]) - one[0]
+    if c2 != 0.0:
+        turning = np.array([c1 * c1 - 4.0 * c2 * k0, -4.0 * c2 * k1, -4.0 * c2 * k2])
+        for x in roots_between(turning, low, high, 0.0):
+            out.append(one[0] + x)
+    for end in (0.0, face_width):
+        v = end - one[1]
+        for x in roots_between(np.array([c2 * v * v + c1 * v + k0, k1, k2]), low, high, 0.0):
+            out.append(one[0] + x)
+
+
+@njit(cache=True)
+def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
+    """Return all heights where the section of a flank with `pits` (n, 6) changes its form, ascending (k,) [m]."""
+    out = [0.0]
+    out.pop()
+    for i in range(pits.shape[0]):
+        one = pits[i]
+        out.append(one[0] - one[3])
+        out.append(one[0] + one[3])
+        _face_heights(one[0], one[1], one[2], one[3], face_width, out)
+        for j in range(i):
+            two = pits[j]
+            apart = abs(one[0] - two[0]) >= one[3] + two[3] or abs(one[1] - two[1]) >= one[2] + two[2]
+            if apart:
+                continue
+            _crossing_heights(one[0], one[1], one[2], one[3], two[0], two[1], two[2], two[3], out)
+            if one[5] != 0.0 or two[5] != 0.0:
+                _equal_depth_heights(one, two, face_width, out)
+    return np.unique(np.array(out))

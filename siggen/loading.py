@@ -1,0 +1,31 @@
+"""A usable configuration from a file or mapping: its form, its consistency and its physics, all problems at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from siggen.config import Config, apply_overrides, parse, read_yaml
+from siggen.errors import ConfigError
+
+
+def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
+    """Return the configuration in a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
+
+    Raises
+    ------
+    UsageError
+        If the file cannot be read.
+    ConfigError
+        If anything is wrong with the configuration; names every problem of form and physics at once.
+    """
+    from siggen.physical_problems import physical_problems  # compiles nothing, but loads the gear physics
+
+    is_file = isinstance(source, (str, Path))
+    raw = read_yaml(source) if isinstance(source, (str, Path)) else source
+    parsed = parse(apply_overrides(raw, overrides))
+    problems = [*parsed.problems, *physical_problems(parsed)]
+    if parsed.config is None or problems:
+        raise ConfigError(problems, str(source) if is_file else "configuration")
+    return parsed.config

@@ -1,0 +1,1 @@
+"""From acceleration to what a data logger stores."""

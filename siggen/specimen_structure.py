@@ -1,0 +1,65 @@
+"""The gearbox of a drawn specimen as the dynamics sees it: inertias, bearings and couplings in SI."""
+
+from __future__ import annotations
+
+from math import pi
+
+from siggen.config import Coupling as CouplingSection
+from siggen.config import Dynamics, Rotor, constant
+from siggen.dynamics.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
+from siggen.dynamics.structure import Rotor as RotorNumbers
+from siggen.gears.geometry import GearPair
+from siggen.gears.spur_gear import SpurGear
+
+STEEL_DENSITY_KG_M3 = 7850.0
+
+ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof}
+
+
+def structure(dynamics: Dynamics, pair: GearPair) -> Structure:
+    """Return the structure of a drawn `dynamics` section; a gear without given mass is a steel disc with its bore.
+
+    Parameters
+    ----------
+    dynamics : Dynamics, without distributions
+    pair : GearPair
+    """
+    stage = SpurStage(
+        working_pressure_angle_rad=pair.working_pressure_angle_rad,
+        pinion=_rotor(dynamics.pinion, pair.pinion, pair.face_width_m),
+        gear=_rotor(dynamics.gear, pair.gear, pair.face_width_m),
+        motor_inertia_kg_m2=constant(dynamics.motor_inertia_kg_m2),
+        load_inertia_kg_m2=constant(dynamics.load_inertia_kg_m2),
+        input_coupling=_coupling(dynamics.input_coupling),
+        output_coupling=_coupling(dynamics.output_coupling),
+    )
+    return ASSEMBLIES[dynamics.model](stage)
+
+
+def disc_mass_kg(gear: SpurGear, face_width_m: float) -> float:
+    """Return the mass [kg] of a steel disc of the gear's pitch circle with its bore."""
+    return STEEL_DENSITY_KG_M3 * pi * (gear.pitch_radius_m**2 - gear.bore_radius_m**2) * face_width_m
+
+
+def disc_inertia_kg_m2(gear: SpurGear, face_width_m: float) -> float:
+    """Return the moment of inertia [kg m^2] of the same disc about its axis."""
+    return 0.5 * disc_mass_kg(gear, face_width_m) * (gear.pitch_radius_m**2 + gear.bore_radius_m**2)
+
+
+def _rotor(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
+    mass, inertia = section.mass_kg, section.inertia_kg_m2
+    return RotorNumbers(
+        base_radius_m=gear.base_radius_m,
+        mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
+        inertia_kg_m2=disc_inertia_kg_m2(gear, face_width_m) if inertia is None else constant(inertia),
+        bearing=Bearing(
+            stiffness_x_n_per_m=constant(section.bearing_stiffness_x_n_per_m),
+            stiffness_y_n_per_m=constant(section.bearing_stiffness_y_n_per_m),
+            damping_x_n_s_per_m=constant(section.bearing_damping_x_n_s_per_m),
+            damping_y_n_s_per_m=constant(section.bearing_damping_y_n_s_per_m),
+        ),
+    )
+
+
+def _coupling(section: CouplingSection) -> Coupling:
+    return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))

@@ -1,0 +1,76 @@
+"""`siggen plan`: counts that add up, and messages instead of tracebacks."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from siggen.cli.plan import plan_summary
+from siggen.config import yaml_text
+from tests.config.minimal import config, minimal
+
+
+@pytest.fixture
+def path(tmp_path):
+    found = tmp_path / "set.yaml"
+    found.write_text(yaml_text(minimal(specimens=100)), encoding="utf-8")
+    return found
+
+
+def run(*arguments) -> str:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments], env={"COLUMNS": "160"})
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_json_holds_what_the_configuration_describes(path):
+    summary = json.loads(run("plan", path, "--json"))
+    assert summary["identity"] == config().identity
+    assert summary["records"] == 200
+    assert summary["specimens_of_split"] == {"train": 60, "validation": 20, "test": 20}
+    assert summary["signal_hours"] == 200 / 3600
+    assert summary["mesh_hz"] == [540, 540]
+    assert summary["severity_share"] == {"healthy": 0.5, "slight": 0.5}
+    assert summary["raw_bytes"] == 200 * 51_200 * 4
+    assert summary["shards_of_split"] == {"train": 1, "validation": 1, "test": 1}
+
+
+def test_records_of_states_and_splits_add_up_to_all():
+    summary = plan_summary(
+        config(
+            specimens=47,
+            repeats=3,
+            operating_points={
+                "count": 2,
+                "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
+                "torque_nm": 60,
+            },
+        )
+    )
+    counts = [count for state in summary["states"] for count in state["records_of_split"].values()]
+    assert sum(counts) == summary["records"] == 47 * 2 * 2 * 3
+    assert summary["mesh_hz"] == [360, 630]
+
+
+def test_overrides_change_the_plan(path):
+    summary = json.loads(
+        run("plan", path, "--set", "specimens=10", "--set", "operating_points.0.speed_hz=20", "--json")
+    )
+    assert summary["records"] == 20
+    assert summary["mesh_hz"] == [360, 360]
+
+
+def test_the_table_shows_identity_splits_and_size(path):
+    text = run("plan", path)
+    for part in (config().identity, "train 60, validation 20, test 20", "540 Hz", "healthy 50%", "18.4 MB", "slight"):
+        assert part in text
+
+
+def test_a_large_set_is_planned_quickly(path):
+    # a million records; listing must stay far from the minutes that simulating one shard takes
+    summary = json.loads(run("plan", path, "--set", "specimens=500000", "--json"))
+    assert summary["records"] == 1_000_000
+    assert summary["shards_of_split"]["train"] == -(-300_000 // summary["specimens_per_full_shard"])

@@ -1,0 +1,64 @@
+"""`siggen schema`: an editor that follows it accepts what the package accepts, and shows what keys mean."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from siggen.config import Config
+
+
+@pytest.fixture(scope="module")
+def schema():
+    result = CliRunner().invoke(app, ["schema"])
+    assert result.exit_code == 0
+    return json.loads(result.stdout)
+
+
+def resolved(schema, node):
+    return schema["$defs"][node["$ref"].rsplit("/", 1)[1]] if "$ref" in node else node
+
+
+def test_the_schema_names_every_key_and_what_is_needed(schema):
+    assert list(schema["properties"]) == list(Config.model_fields)
+    assert set(schema["required"]) == {"name", "seed", "specimens", "gears", "operating_points", "states", "sensors"}
+    assert schema["additionalProperties"] is False
+
+
+def test_every_key_of_every_section_is_described(schema):
+    for name, section in {"Config": schema, **schema["$defs"]}.items():
+        for key, field in section["properties"].items():
+            is_distribution = name in {"Uniform", "LogUniform", "Normal", "Choice"}
+            assert is_distribution or key == "kind" or "description" in resolved(schema, field) | field, f"{name}.{key}"
+
+
+def test_a_number_may_be_a_constant_in_range_or_a_distribution(schema):
+    width = schema["$defs"]["Gears"]["properties"]["face_width_mm"]
+    number, distribution = width["anyOf"]
+    assert number == {"exclusiveMinimum": 0, "type": "number"}
+    assert {resolved(schema, choice)["title"] for choice in distribution["oneOf"]} == {
+        "Uniform",
+        "LogUniform",
+        "Normal",
+        "Choice",
+    }
+
+
+def test_words_beside_numbers_are_shown(schema):
+    assert {"type": "null"} in schema["$defs"]["Gears"]["properties"]["centre_distance_mm"]["anyOf"]
+    height = schema["$defs"]["LayeredPits"]["properties"]["first_height_mm"]
+    assert any(choice.get("const") == "pitch" for choice in height["anyOf"])
+
+
+def test_operating_points_may_be_a_list_or_a_mapping(schema):
+    kinds = schema["properties"]["operating_points"]["anyOf"]
+    assert kinds[0]["type"] == "array"
+    assert "count" in resolved(schema, kinds[1])["properties"]
+
+
+def test_damage_is_chosen_by_its_kind(schema):
+    (kinds,) = [c for c in schema["$defs"]["State"]["properties"]["damage"]["anyOf"] if "discriminator" in c]
+    assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "list"}

@@ -1,0 +1,103 @@
+"""Distributions: inverse cumulative functions within their bounds, rising with the uniform they are fed."""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from siggen.config import Choice, LogUniform, Normal, Uniform, at, bounds, constant
+
+SHARES = st.floats(0.0, 1.0, exclude_max=True)
+SMALL = st.floats(-1e6, 1e6)
+SPAN = st.floats(1e-3, 1e6)
+
+
+@st.composite
+def distributions(draw):
+    low, span = draw(SMALL), draw(SPAN)
+    kind = draw(st.sampled_from(["uniform", "loguniform", "normal"]))
+    if kind == "uniform":
+        return Uniform(low=low, high=low + span)
+    if kind == "loguniform":
+        return LogUniform(low=abs(low) + 1e-3, high=abs(low) + 1e-3 + span)
+    # the mean up to half a span outside and a standard deviation of a span leave well over 1 % between the bounds
+    mean = low + draw(st.floats(-0.5, 1.5)) * span
+    return Normal(mean=mean, std=span * draw(st.floats(0.5, 5.0)), low=low, high=low + span)
+
+
+@given(distributions(), SHARES)
+def test_values_stay_within_bounds(distribution, u):
+    low, high = distribution.bounds()
+    assert low <= distribution.at(u) <= high
+
+
+@given(distributions(), SHARES, SHARES)
+def test_values_rise_with_the_uniform(distribution, u, v):
+    # shares nearer than 1e-6 may differ by less than the rounding of exp and of the normal's inverse
+    if u + 1e-6 < v:
+        assert distribution.at(u) <= distribution.at(v)
+
+
+@given(distributions())
+def test_ends_of_the_uniform_reach_the_bounds(distribution):
+    low, high = distribution.bounds()
+    # the cut normal's inverse is good to about 1e-9 of the span at its ends
+    tolerance = 1e-6 * (high - low) + 1e-9 * abs(high)
+    assert distribution.at(0.0) == pytest.approx(low, abs=tolerance)
+    assert distribution.at(1.0 - 2**-53) == pytest.approx(high, abs=tolerance)
+
+
+def test_uniform_has_its_middle_at_half():
+    assert Uniform(low=20, high=35).at(0.5) == 27.5
+
+
+def test_loguniform_has_the_geometric_mean_at_half():
+    # logarithm and exponential each round by 1e-16
+    assert LogUniform(low=0.02, high=0.5).at(0.5) == pytest.approx(math.sqrt(0.02 * 0.5), rel=1e-14)
+
+
+def test_normal_cut_far_out_is_the_normal():
+    normal = Normal(mean=1.0, std=0.02, low=0.0, high=2.0)  # cut 50 standard deviations out
+    for u in (0.001, 0.1, 0.5, 0.9, 0.999):
+        # the cumulative function rounds by 1e-16, which the slope at 3 standard deviations makes 1e-13 of one
+        assert normal.at(u) == pytest.approx(NormalDist(1.0, 0.02).inv_cdf(u), abs=1e-12)
+
+
+def test_cut_normal_has_the_density_of_the_normal_between_its_bounds():
+    normal = Normal(mean=0.4, std=0.1, low=0.2, high=0.5)
+    values = np.array([normal.at(u) for u in (np.arange(20_000) + 0.5) / 20_000])
+    full = NormalDist(0.4, 0.1)
+    share = (full.cdf(0.4) - full.cdf(0.2)) / (full.cdf(0.5) - full.cdf(0.2))
+    # evenly spread shares are at most one in 20 000 off
+    assert np.mean(values < 0.4) == pytest.approx(share, abs=1e-4)
+
+
+def test_normal_at_zero_is_finite_where_the_lower_bound_is_far_out():
+    assert Normal(mean=0.0, std=1.0, low=-50.0, high=50.0).at(0.0) >= -50.0
+
+
+@given(st.lists(SMALL, min_size=1, max_size=8), SHARES)
+def test_choice_takes_one_of_its_values(values, u):
+    choice = Choice(values=tuple(values))
+    assert choice.at(u) in values
+    assert bounds(choice) == (min(values), max(values))
+
+
+def test_choice_gives_each_entry_its_share():
+    choice = Choice(values=(2.0, 3.0, 3.0, 4.0))
+    assert [choice.at((i + 0.5) / 8) for i in range(8)] == [2.0, 2.0, 3.0, 3.0, 3.0, 3.0, 4.0, 4.0]
+
+
+def test_a_constant_is_the_same_at_every_share():
+    assert at(3.5, 0.1) == at(3.5, 0.9) == constant(3.5) == 3.5
+    assert bounds(3.5) == (3.5, 3.5)
+
+
+def test_a_distribution_is_no_constant():
+    with pytest.raises(TypeError, match="uniform from 1"):
+        constant(Uniform(low=1, high=2))

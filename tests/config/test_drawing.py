@@ -1,0 +1,88 @@
+"""Drawing a section: one uniform per number, in declared order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.config import Dynamics, Gears, Sensor, bounds, corners, draw
+from tests.config.minimal import config
+
+SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}
+
+
+def numbers(section) -> dict[str, float]:
+    """Return all numbers of a section by their path."""
+    found = {}
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if isinstance(value, float):
+            found[name] = value
+        elif hasattr(type(value), "model_fields"):
+            found |= {f"{name}.{key}": item for key, item in numbers(value).items()}
+    return found
+
+
+def drawn(section):
+    return draw(section, np.random.default_rng(11))
+
+
+def test_constants_are_left_as_they_are():
+    gears = config().gears
+    assert drawn(gears) == gears
+
+
+def test_a_number_that_becomes_a_distribution_does_not_shift_its_neighbours():
+    many = {f"dynamics__{key}": SPREAD for key in ("mesh_damping_ratio", "motor_inertia_kg_m2", "load_inertia_kg_m2")}
+    before = numbers(drawn(config(**many).dynamics))
+    after = numbers(drawn(config(**many, dynamics__backlash_um={"kind": "uniform", "low": 60, "high": 120}).dynamics))
+    assert {key for key in before if before[key] != after[key]} == {"backlash_um"}
+
+
+def test_a_null_that_becomes_a_distribution_does_not_shift_its_neighbours():
+    stiff = {"kind": "loguniform", "low": 1e7, "high": 1e9}
+    keys = {
+        "dynamics__pinion__bearing_stiffness_x_n_per_m": stiff,
+        "dynamics__gear__bearing_stiffness_y_n_per_m": stiff,
+    }
+    before = numbers(drawn(config(**keys).dynamics))
+    after = numbers(drawn(config(**keys, dynamics__pinion__mass_kg=SPREAD).dynamics))
+    assert "pinion.mass_kg" not in before
+    assert before == {key: value for key, value in after.items() if key != "pinion.mass_kg"}
+
+
+@pytest.mark.parametrize(("section", "count"), [("gears", 12), ("dynamics", 20), ("stiffness", 0)])
+def test_every_number_takes_exactly_one_uniform(section, count):
+    # 8 numbers of the pair and 2 per wheel; 4 of the gearbox, 6 per rotor and 2 per coupling
+    rng, expected = np.random.default_rng(3), np.random.default_rng(3)
+    draw(getattr(config(), section), rng)
+    expected.random(count)
+    assert rng.random() == expected.random()
+
+
+def test_equal_distributions_of_different_numbers_are_drawn_independently():
+    dynamics = drawn(Dynamics.model_validate({"mesh_damping_ratio": SPREAD, "motor_inertia_kg_m2": SPREAD}))
+    assert dynamics.mesh_damping_ratio != dynamics.motor_inertia_kg_m2
+
+
+def test_gain_is_drawn_per_axis_and_noise_is_left_to_the_record():
+    sensor = Sensor.model_validate(
+        {"name": "a", "axes": ["vertical", "horizontal"], "gain": SPREAD, "noise": {"floor_m_s2": SPREAD}}
+    )
+    gains = sensor.drawn(np.random.default_rng(1)).gain
+    assert isinstance(gains, tuple)
+    assert len(set(gains)) == 2
+    assert sensor.drawn(np.random.default_rng(1)).noise == sensor.noise
+
+
+def test_corners_are_all_combinations_of_the_bounds():
+    gears = config(gears__module_mm=SPREAD, gears__gear__bore_radius_mm={"kind": "choice", "values": [9, 4, 6]}).gears
+    found = {(corner.module_mm, corner.gear.bore_radius_mm) for corner in corners(gears)}
+    assert found == {(0.05, 4.0), (0.05, 9.0), (0.10, 4.0), (0.10, 9.0)}
+
+
+def test_a_section_without_distributions_is_its_only_corner():
+    gears = config().gears
+    assert list(corners(gears)) == [gears]
+    assert isinstance(gears, Gears)
+    assert bounds(gears.module_mm) == (3.0, 3.0)

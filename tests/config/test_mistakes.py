@@ -1,0 +1,173 @@
+"""Mistakes in a configuration: each is named by its key, by what was received and by what is allowed."""
+
+from __future__ import annotations
+
+import pytest
+
+from siggen.config import parse
+from siggen.config.config import Config
+from siggen.config.problems import BRANCHES
+from siggen.config.wording import models_in
+from tests.config.minimal import MINIMAL, minimal
+
+UNIFORM = {"kind": "uniform", "low": 3, "high": 4}
+CLUSTER = {
+    "kind": "clustered",
+    "count": 9,
+    "spread_profile_mm": 0.3,
+    "semi_axis_face_mm": 0.3,
+    "semi_axis_profile_mm": 0.2,
+    "depth_mm": 0.2,
+}
+
+# what is written, where: path of the problem, part of what was received, part of what is allowed
+MISTAKES = [
+    # keys
+    ({"gears__modul_mm": 3}, "gears.modul_mm", "3", "did you mean 'module_mm'?"),
+    ({"sensor": []}, "sensor", "a list of 0", "did you mean 'sensors'?"),
+    ({"dynamics__pinion__mass": 1}, "dynamics.pinion.mass", "1", "did you mean 'mass_kg'?"),
+    ({"states__1__damage__count": 3}, "states.1.damage.count", "3", "known keys: "),
+    ({"gears__pinion": {"teeth": 18}}, "gears.pinion.bore_radius_mm", "nothing", "a number above 0"),
+    ({"operating_points": [{"speed_hz": 30}]}, "operating_points.0.torque_nm", "nothing", "a number above 0"),
+    # types
+    ({"seed": "x"}, "seed", "the text 'x'", "a whole number of at least 0"),
+    ({"gears__pinion__teeth": 18.0}, "gears.pinion.teeth", "18.0", "a whole number from 5 to 1000"),
+    ({"gears__module_mm": "3"}, "gears.module_mm", "the text '3'", "a number above 0, or a distribution"),
+    ({"gears__module_mm": True}, "gears.module_mm", "true", "a number above 0"),
+    ({"gears__module_mm": None}, "gears.module_mm", "null", "a number above 0"),
+    ({"gears__module_mm": float("nan")}, "gears.module_mm", "nan", "a number above 0"),
+    ({"gears__module_mm": 10**400}, "gears.module_mm", "1000", "a number above 0"),
+    ({"gears": 3}, "gears", "3", "a mapping with the keys module_mm, "),
+    ({"specimens": True}, "specimens", "true", "a whole number of at least 1"),
+    ({"states": {}}, "states", "an empty mapping", "a list of at least 1, each entry a mapping"),
+    ({"states__1": None}, "states.1", "null", "a mapping with the keys name, "),
+    ({"operating_points": 5}, "operating_points", "5", "mapping with speed_hz and torque_nm"),
+    ({"sensors__0__axes": "vertical"}, "sensors.0.axes", "the text 'vertical'", "a list of at least 1"),
+    # ranges and words
+    ({"gears__module_mm": -3}, "gears.module_mm", "-3.0", "a number above 0"),
+    ({"dynamics__mesh_damping_ratio": 1.5}, "dynamics.mesh_damping_ratio", "1.5", "of at least 0 and below 1"),
+    ({"gears__gear__profile_shift": 3}, "gears.gear.profile_shift", "3.0", "a number from -1 to 1.5"),
+    ({"dynamics__model": "12dof"}, "dynamics.model", "the text '12dof'", "one of 8dof, 6dof"),
+    ({"sensors__0__axes": ["up"]}, "sensors.0.axes.0", "the text 'up'", "one of vertical, horizontal"),
+    ({"sensors__0__bits": 64}, "sensors.0.bits", "64", "from 4 to 24, or null"),
+    ({"name": "Bad Name"}, "name", "the text 'Bad Name'", "lower-case letters"),
+    ({"specimens": 0}, "specimens", "0", "of at least 1"),
+    ({"splits": {"train": 12, "test": 5}}, "splits", "12 + 4 + 5 = 21", "add up to 20"),
+    # distributions
+    ({"gears__module_mm": {**UNIFORM, "high": 2}}, "gears.module_mm.high", "2.0", "above low (3.0)"),
+    ({"gears__module_mm": {**UNIFORM, "kind": "unifrom"}}, "gears.module_mm.kind", "'unifrom'", "mean 'uniform'?"),
+    ({"gears__module_mm": {"low": 3, "high": 4}}, "gears.module_mm.kind", "nothing", "one of uniform, loguniform"),
+    ({"gears__module_mm": {**UNIFORM, "low": -1}}, "gears.module_mm", "uniform from -1.0 to 4.0", "above 0"),
+    (
+        {"gears__module_mm": {"kind": "normal", "mean": 3, "std": 0.1, "low": 4, "high": 5}},
+        "gears.module_mm.low",
+        "4.0 to 5.0 with mean 3.0",
+        "at least 1%",
+    ),
+    ({"gears__module_mm": {"kind": "choice", "values": [1, "a"]}}, "gears.module_mm.values.1", "'a'", "a number"),
+    ({"gears__module_mm": {"kind": "choice", "values": []}}, "gears.module_mm.values", "a list of 0", "at least 1"),
+    ({"gears__module_mm": {"kind": "loguniform", "low": 0, "high": 1}}, "gears.module_mm.low", "0", "above 0"),
+    ({"sensors__0__gain": [1, -1]}, "sensors.0.gain.1", "-1.0", "above 0"),
+    ({"sensors__0__gain": [1, 1]}, "sensors.0.gain", "a list of 2", "a list of 1 (one per axis)"),
+    # damage
+    ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, list"),
+    ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, list"),
+    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered or list"),
+    ({"states__1__damage__teeth": [0, 0]}, "states.1.damage.teeth", "[0, 0]", "different tooth indices"),
+    ({"states__1__damage__teeth": 0}, "states.1.damage.teeth", "0", "a whole number from 1"),
+    ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),
+    ({"states__1__damage__teeth": [3, 18]}, "states.1.damage.teeth", "tooth 18", "from 0 to 17"),
+    ({"states__1__damage__first_height_mm": "top"}, "states.1.damage.first_height_mm", "'top'", "or pitch"),
+    # contradictions
+    ({"states__1__fault": "healthy"}, "states.1.fault", "healthy, with damage", "pitting or spalling"),
+    ({"states__1__severity": "healthy"}, "states.1.severity", "healthy, with damage", "slight, moderate or severe"),
+    ({"states__0__fault": "pitting"}, "states.0.damage", "nothing, with fault pitting", "fault and severity both"),
+    ({"states__1__name": "worn"}, "states.1.severity", "nothing", "one of healthy, slight, moderate, severe"),
+    ({"states__1__name": "none", "states__1__severity": "slight"}, "states.1.name", "'none'", "other than previous"),
+    ({"states__0__name": "slight"}, "states.1.name", "'slight'", "a name that states.0 does not have"),
+    ({"states__1__grows_from": "nobody"}, "states.1.grows_from", "'nobody'", "an earlier state with damage"),
+    ({"states__1__grows_from": "slight"}, "states.1.grows_from", "'slight'", "an earlier state with damage"),
+    ({"states__1__grows_from": "healthy"}, "states.1.grows_from", "'healthy'", "an earlier state with damage"),
+    ({"states__0__grows_from": "slight"}, "states.0.grows_from", "'slight', without damage", "only a state with"),
+    ({"sensors__0__axes": ["vertical", "vertical"]}, "sensors.0.axes", "vertical, vertical", "each axis once"),
+    ({"sensors": [{"name": "a"}, {"name": "a"}]}, "sensors.1.name", "'a'", "a name that sensors.0 does not have"),
+    ({"sensors__0__noise": {"snr_db": 3, "floor_m_s2": 1}}, "sensors.0.noise.floor_m_s2", "1", "known keys: snr_db"),
+    ({"sensors__0__noise": 0.1}, "sensors.0.noise", "0.1", "a mapping with floor_m_s2 or with snr_db"),
+    ({"fs_hz": 2000}, "fs_hz", "2000.0", "mesh harmonic 5 (mesh_harmonics)"),
+    ({"duration_s": 0.00001}, "duration_s", "0.512 samples", "a whole number of at least 2 samples"),
+]
+
+
+@pytest.mark.parametrize(("changes", "path", "received", "allowed"), MISTAKES, ids=lambda value: str(value)[:50])
+def test_a_mistake_is_the_only_problem_and_is_named(changes, path, received, allowed):
+    problems = parse(minimal(**changes)).problems
+    (problem,) = [found for found in problems if found.path == path]
+    assert received in problem.received
+    assert allowed in problem.allowed
+    assert len(problems) == 1, [str(found) for found in problems]
+
+
+@pytest.mark.parametrize(("changes", "path", "received", "allowed"), MISTAKES, ids=lambda value: str(value)[:50])
+def test_messages_speak_of_gears_and_not_of_programs(changes, path, received, allowed):
+    for problem in parse(minimal(**changes)).problems:
+        for jargon in ("Input should", "pydantic", "validator", "dict", "tuple", "None", "str ", "int ", "literal"):
+            assert jargon not in f"{problem.received} {problem.allowed}"
+
+
+def test_all_mistakes_are_reported_at_once():
+    changes = {"seed": "x", "gears__modul_mm": 3, "states__0__name": "X", "sensors__0__bits": 99, "fs_hz": -1, "foo": 1}
+    paths = [problem.path for problem in parse(minimal(**changes)).problems]
+    assert sorted(paths) == ["foo", "fs_hz", "gears.modul_mm", "seed", "sensors.0.bits", "states.0.name"]
+
+
+def test_a_mistake_in_one_state_hides_neither_the_others_nor_what_follows_from_them():
+    raw = minimal(states__0__name="X Y", states__1__damage__teeth=40)
+    assert [problem.path for problem in parse(raw).problems] == ["states.0.name", "states.1.damage.teeth"]
+
+
+def test_a_state_that_is_wrong_does_not_make_its_name_unknown():
+    raw = minimal(states__1__damage__depth_mm=-1)
+    raw["states"].append({"name": "severe", "grows_from": "slight", "damage": CLUSTER})
+    assert [problem.path for problem in parse(raw).problems] == ["states.1.damage.depth_mm"]
+
+
+@pytest.mark.parametrize("key", list(MINIMAL))
+def test_every_key_that_is_needed_is_missed(key):
+    raw = minimal()
+    del raw[key]
+    (problem,) = parse(raw).problems
+    assert problem.path == key
+    assert problem.received == "nothing"
+    assert "needed" in problem.allowed
+
+
+def test_valid_sections_are_handed_on_when_others_fail():
+    parsed = parse(minimal(seed="x", states__0__name="X Y"))
+    assert parsed.config is None
+    assert parsed.sections["gears"].pinion.teeth == 18
+    assert list(parsed.sections["states"]) == [1]
+    assert parsed.sections["dynamics"].model == "8dof"  # left out: its default
+    assert "seed" not in parsed.sections
+
+
+def test_several_wrong_keys_of_one_distribution_are_all_named():
+    parsed = parse(minimal(gears__module_mm={"kind": "normal", "mean": "a", "std": 0, "low": 1, "hihg": 2}))
+    paths = {problem.path for problem in parsed.problems}
+    assert paths == {f"gears.module_mm.{key}" for key in ("mean", "std", "high", "hihg")}
+
+
+@pytest.mark.parametrize("value", [3, "x", None, [], [1], {}, {"a": 1}, True, {"kind": []}, {"kind": None}])
+@pytest.mark.parametrize("key", list(Config.model_fields))
+def test_nothing_that_a_file_may_hold_makes_parsing_fail(key, value):
+    assert isinstance(parse(minimal(**{key: value})).problems, tuple)
+
+
+def test_tags_of_unions_are_never_keys():
+    # the path of a problem is what pydantic says without these tags
+    keys: set[str] = set()
+    waiting: list[type] = [Config]
+    while waiting:
+        fields = waiting.pop().model_fields
+        keys |= set(fields)
+        waiting += [model for field in fields.values() for model in models_in(field.annotation)]
+    assert not keys & BRANCHES

@@ -1,0 +1,208 @@
+"""A small configuration and a stand-in for the physics: fast, pure, and fit for workers."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+from siggen.config import Config, parse
+from siggen.dataset import plan
+from siggen.dataset.plan import PlannedRecord, planned_record
+from siggen.dataset.record import Record, RecordFailure
+from siggen.generation import Generation, generate
+
+STEP_M_S2 = 2.0**-6
+"""Least power of two that covers 2 * 500 m/s^2 in 16 bits, as the converter of the configuration has it."""
+
+
+def fake_config(**changes: Any) -> Config:
+    """Two channels of 512 samples, three states, two operating points; 6 records per specimen."""
+    pit = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.4}
+    mapping = {
+        "name": "fake",
+        "seed": 7,
+        "specimens": 5,
+        "fs_hz": 5120.0,
+        "duration_s": 0.1,
+        "mesh_harmonics": 1,
+        "splits": {"train": 12, "validation": 4, "test": 4},
+        "gears": {
+            "module_mm": 3.0,
+            "face_width_mm": 20.0,
+            "pinion": {"teeth": 18, "bore_radius_mm": 10.0},
+            "gear": {"teeth": 47, "bore_radius_mm": 15.0},
+        },
+        "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}, {"speed_hz": 20.0, "torque_nm": 40.0}],
+        "states": [
+            {"name": "healthy"},
+            {"name": "slight", "damage": {"kind": "clustered", "count": 2, "spread_profile_mm": 0.1, **pit}},
+            {"name": "moderate", "damage": {"kind": "clustered", "count": 6, "spread_profile_mm": 0.2, **pit}},
+        ],
+        "sensors": [{"name": "bearing", "axes": ["vertical", "horizontal"]}],
+        **changes,
+    }
+    parsed = parse(mapping)
+    assert not parsed.problems, parsed.problems
+    return parsed.config
+
+
+def fake_record(config: Config, planned: PlannedRecord) -> Record:
+    """Noise on the converter's grid, and labels that follow from the state."""
+    rng = np.random.default_rng([config.seed, planned.record_id])
+    state = config.states[planned.state_id]
+    pits = 0 if state.damage is None else state.damage.count
+    labels: dict[str, object] = {
+        "state": state.name,
+        "fault": state.fault,
+        "severity": state.severity,
+        "faulty_gear": "pinion" if pits else "none",
+        "faulty_teeth_pinion": [planned.specimen_id % 18] if pits else [],
+        "faulty_teeth_gear": [],
+        "damage_count": pits,
+        "damaged_area_mm2": 0.19 * pits,
+        "damaged_area_share": 0.001 * pits,
+        "damage_face_length_mm": 0.6 if pits else 0.0,
+        "damage_profile_length_mm": 0.4 if pits else 0.0,
+        "contact_length_loss_mm": 0.6 * pits,
+        "mesh_stiffness_loss": 0.01 * pits,
+        "contact_loss_share": 0.0,
+        "status": "ok",
+        "teeth_pinion": 18,
+        "teeth_gear": 47,
+        "speed_hz": 30.0,
+        "torque_nm": 60.0,
+        "pinion_shaft_hz": 30.0,
+        "gear_shaft_hz": 30.0 * 18 / 47,
+        "mesh_hz": 540.0,
+        "start_angle_rad": float(rng.random()),
+    }
+    signals = {}
+    for name in config.channels:
+        t_s = np.arange(config.samples) / config.fs_hz
+        accel = 20.0 * np.sin(2 * np.pi * 540.0 * t_s) + rng.normal(scale=0.5, size=config.samples)
+        signals[name] = (np.round(accel / STEP_M_S2) * STEP_M_S2).astype(np.float32)
+        labels |= {f"noise_floor_{name}_m_s2": 0.5, f"snr_{name}_db": 29.0, f"clipped_share_{name}": 0.0}
+    return Record(planned, labels, signals, np.arange(3) / 30.0)
+
+
+def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Stand in for `siggen.simulation.simulate_specimen`."""
+    return [fake_record(config, planned_record(config, i)) for i in record_ids]
+
+
+def simulate_slowly(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Give a test the time to kill something."""
+    time.sleep(0.05 * len(record_ids))
+    return simulate(config, record_ids)
+
+
+def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Fail at records 3 and 8, and give one signal a NaN (record 10)."""
+    results: list[Record | RecordFailure] = []
+    for result in simulate(config, record_ids):
+        assert isinstance(result, Record)
+        record_id = result.planned.record_id
+        if record_id == 10:
+            result.channels["bearing_vertical"][5] = np.nan
+        is_failure = record_id in (3, 8)
+        results.append(RecordFailure(record_id, "diverged", "motion left the backlash") if is_failure else result)
+    return results
+
+
+def simulate_none(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Fail at every record."""
+    return [RecordFailure(i, "diverged", "always") for i in record_ids]
+
+
+def simulate_with_a_bug(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Raise at record 8, as only a fault of the program does."""
+    if 8 in record_ids:
+        raise ZeroDivisionError("a bug")
+    return simulate(config, record_ids)
+
+
+def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Kill the worker at record 8, the first time only."""
+    marker = Path(os.environ["SIGGEN_TEST_MARKER"])
+    if 8 in record_ids and not marker.exists():
+        marker.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return simulate(config, record_ids)
+
+
+def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Kill the worker at record 8, every time."""
+    if 8 in record_ids:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return simulate(config, record_ids)
+
+
+def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
+    """Stand in for `siggen.simulation.damage_rows`: one ellipse per pit."""
+    planned = planned_record(config, record_id)
+    damage = config.states[planned.state_id].damage
+    ellipse = {
+        "gear": "pinion",
+        "tooth": planned.specimen_id % 18,
+        "kind": "pit",
+        "shape": "ellipse",
+        "height_mm": 1.9,
+        "semi_axis_face_mm": 0.3,
+        "semi_axis_profile_mm": 0.2,
+        "depth_mm": 0.4,
+        "depth_law": "flat",
+        "polygon_face_mm": [],
+        "polygon_height_mm": [],
+    }
+    count = 0 if damage is None else damage.count
+    return [{**ellipse, "record_id": record_id, "face_mm": 8.0 + pit} for pit in range(count)]
+
+
+def write_fake_set(
+    path: Path, config: Config | None = None, *, workers: int = 0, simulation: Any = simulate
+) -> Generation:
+    """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
+    with patch.multiple(
+        plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096
+    ):  # row groups of 2: several chunks per shard
+        return generate(config or fake_config(), path, workers, simulate=simulation, damage_rows=damage_rows)
+
+
+FAKE_FILES = sorted(
+    ["README.md", "config.yaml", "manifest.json", "run.json"]
+    + [f"{folder}/{split}.parquet" for folder in ("metadata", "damage") for split in ("train", "validation", "test")]
+    + [
+        f"data/{shard}.parquet"
+        for shard in ("train-00000", "train-00001", "train-00002", "validation-00000", "test-00000")
+    ]
+    + [
+        f"shards/{shard}.json"
+        for shard in ("train-00000", "train-00001", "train-00002", "validation-00000", "test-00000")
+    ]
+)
+"""All files of the set of `fake_config()`."""
+
+
+def file_bytes(path: Path) -> dict[str, bytes]:
+    """Return every file of a set that must not depend on how it was made."""
+    files = sorted(p for p in path.rglob("*") if p.is_file() and p.name != "run.json")
+    return {p.relative_to(path).as_posix(): p.read_bytes() for p in files}
+
+
+if __name__ == "__main__":
+    # python -m tests.dataset.fake_set FOLDER WORKERS: a process of its own that a test can kill
+    from siggen.errors import SiggenError
+
+    try:
+        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly)
+    except SiggenError as error:
+        sys.stderr.write(f"{error}\n")
+        sys.exit(error.exit_code)

@@ -1,0 +1,72 @@
+"""The card: front matter that Hugging Face reads, and no claim that the set does not keep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sets") / "fake"
+    write_fake_set(path)
+    return path
+
+
+def front_matter(folder: Path) -> dict:
+    return yaml.safe_load((folder / "README.md").read_text().split("---\n")[1])
+
+
+def test_the_front_matter_names_every_parquet_file_exactly_once(folder: Path) -> None:
+    facts = front_matter(folder)
+    views = {view["config_name"]: view["data_files"] for view in facts["configs"]}
+    assert list(views) == ["signals", "labels", "damage"]
+    assert [view["config_name"] for view in facts["configs"] if view.get("default")] == ["signals"]
+    matched = [path for files in views.values() for file in files for path in folder.glob(file["path"])]
+    assert sorted(matched) == sorted(folder.rglob("*.parquet"))
+    for files in views.values():
+        assert [file["split"] for file in files] == ["train", "validation", "test"]
+        assert all(path.name.startswith(file["split"]) for file in files for path in folder.glob(file["path"]))
+    assert facts["size_categories"] == ["n<1K"]
+    assert facts["license"]
+    assert facts["pretty_name"]
+
+
+def test_splits_without_gearboxes_are_not_promised(tmp_path: Path) -> None:
+    write_fake_set(tmp_path, fake_config(specimens=1, splits={"train": 20, "validation": 0, "test": 0}))
+    files = [file["split"] for view in front_matter(tmp_path)["configs"] for file in view["data_files"]]
+    assert files == ["train"] * 3
+
+
+def test_every_column_is_explained_with_its_unit(folder: Path) -> None:
+    text = (folder / "README.md").read_text()
+    assert "| `accel_bearing_vertical_m_s2` | float[512] | m/s^2 | acceleration at pinion_bearing, vertical" in text
+    assert "| `torque_nm` | double | N m |" in text
+    assert "| `depth_mm` | double | mm |" in text
+
+
+def test_the_card_says_that_error_free_gears_separate_trivially(folder: Path) -> None:
+    text = (folder / "README.md").read_text()
+    assert "no manufacturing errors" in text
+    assert "separate trivially" in text
+
+
+def test_failed_records_are_on_the_card(tmp_path: Path) -> None:
+    write_fake_set(tmp_path, simulation=simulate_with_failures)
+    text = (tmp_path / "README.md").read_text()
+    assert "3 planned records could not be simulated" in text
+    assert "| 8 | diverged | motion left the backlash |" in text
+
+
+def test_the_loading_example_of_the_card_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """pyarrow and siggen are here; the other readers are tested where they are installed."""
+    text = (folder / "README.md").read_text().split("```python\n")[1].split("```")[0]
+    monkeypatch.chdir(folder)
+    scope: dict = {}
+    exec("import numpy as np\n" + text[text.index("import pyarrow") :], scope)
+    assert scope["signals"].shape[1] == 512
+    assert scope["record"]["record_id"] == 0

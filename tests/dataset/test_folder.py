@@ -1,0 +1,70 @@
+"""What generation finds in a folder, and what it refuses to touch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from siggen.config import parse, parse_yaml
+from siggen.dataset.folder import config_bytes, is_finished
+from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
+from siggen.errors import DatasetError
+from tests.dataset.fake_set import fake_config, file_bytes, write_fake_set
+
+CONFIG = fake_config()
+
+
+def test_config_yaml_is_the_same_configuration_again() -> None:
+    parsed = parse(parse_yaml(config_bytes(CONFIG).decode()))
+    assert parsed.config == CONFIG
+    assert parsed.config.identity == CONFIG.identity
+    assert config_bytes(parsed.config) == config_bytes(CONFIG)
+
+
+def test_new_empty_and_begun_folders_are_not_finished(tmp_path: Path) -> None:
+    assert not is_finished(LocalFolder(tmp_path / "new"), CONFIG)
+    assert not is_finished(LocalFolder(tmp_path), CONFIG)
+    (tmp_path / f".config.yaml.0123abcd{LEFTOVER_SUFFIX}").write_bytes(b"half")
+    assert not is_finished(LocalFolder(tmp_path), CONFIG)
+    (tmp_path / "config.yaml").write_bytes(config_bytes(CONFIG))
+    assert not is_finished(LocalFolder(tmp_path), CONFIG)
+
+
+def test_a_set_with_a_missing_or_truncated_file_is_not_finished(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    assert is_finished(LocalFolder(tmp_path), CONFIG)
+    card = tmp_path / "README.md"
+    card.write_bytes(card.read_bytes()[:-1])
+    assert not is_finished(LocalFolder(tmp_path), CONFIG)
+    card.unlink()
+    assert not is_finished(LocalFolder(tmp_path), CONFIG)
+
+
+def test_a_folder_with_other_things_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("x")
+    with pytest.raises(DatasetError, match=r"not empty \(thesis\.tex\)"):
+        write_fake_set(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    before = file_bytes(tmp_path)
+    with pytest.raises(
+        DatasetError, match=r"seed: 7 there, 8 asked for\n  gears\.module_mm: 3\.0 there, 2\.0 asked for"
+    ):
+        write_fake_set(tmp_path, fake_config(seed=8, gears={**CONFIG.canonical()["gears"], "module_mm": 2.0}))
+    assert file_bytes(tmp_path) == before
+
+
+def test_more_specimens_in_place_are_refused_with_the_way_out(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    with pytest.raises(DatasetError, match=r"with 5 specimens, asked for are 7.*into a new folder \(its first 5"):
+        write_fake_set(tmp_path, fake_config(specimens=7))
+
+
+def test_a_config_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "config.yaml").write_text("a: [")
+    with pytest.raises(DatasetError, match="cannot be read"):
+        write_fake_set(tmp_path)

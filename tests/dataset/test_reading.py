@@ -1,0 +1,133 @@
+"""Reading a set: the same rows by every door, clear refusals, and no physics."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+import yaml
+
+from siggen.dataset.plan import planned_record, split_of
+from siggen.dataset.reading import Dataset
+from siggen.dataset.reading import open as open_set
+from siggen.dataset.record import signal_matrix
+from siggen.errors import DatasetError, UsageError
+from tests.dataset.fake_set import fake_config, fake_record, simulate_with_failures, write_fake_set
+
+CONFIG = fake_config()
+SIGNAL = "accel_bearing_vertical_m_s2"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sets") / "fake"
+    write_fake_set(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def dataset(folder: Path) -> Dataset:
+    return open_set(folder)
+
+
+def test_a_set_tells_what_it_is(dataset: Dataset, folder: Path) -> None:
+    assert dataset.splits == ("train", "validation", "test")
+    assert [channel.name for channel in dataset.channels] == ["bearing_vertical", "bearing_horizontal"]
+    assert (dataset.fs_hz, dataset.duration_s) == (5120.0, 0.1)
+    assert dataset.config == yaml.safe_load((folder / "config.yaml").read_text())
+    assert dataset.manifest["identity"] == CONFIG.identity
+    assert "train: 18" in repr(dataset)
+
+
+def test_every_record_is_read_back_bit_for_bit(dataset: Dataset) -> None:
+    for record_id in range(30):
+        expected = fake_record(CONFIG, planned_record(CONFIG, record_id))
+        found = dataset.record(record_id)
+        for channel in dataset.channels:
+            assert found[channel.column].tobytes() == expected.channels[channel.name].tobytes()
+            assert found[channel.column].dtype == np.float32
+        assert {name: found[name] for name in expected.labels} == dict(expected.labels)
+        assert found["tacho_s"].tolist() == expected.tacho_s.tolist()
+        assert found["split"] == split_of(CONFIG, found["specimen_id"])
+
+
+def test_labels_and_records_come_in_the_same_order(dataset: Dataset) -> None:
+    for split in (None, *dataset.splits):
+        ids = dataset.labels(split, ["record_id"])["record_id"].to_pylist()
+        batches = list(dataset.records(split, ["record_id", SIGNAL]))
+        assert [i for batch in batches for i in batch["record_id"].to_pylist()] == ids
+    assert sorted(dataset.labels()["record_id"].to_pylist()) == list(range(30))
+    assert set(dataset.labels("test")["split"].to_pylist()) == {"test"}
+
+
+@pytest.mark.parametrize("batch_rows", [1, 2, 5, None])
+def test_batches_have_at_most_the_rows_asked_for_and_lose_none(dataset: Dataset, batch_rows: int | None) -> None:
+    batches = list(dataset.records("train", [SIGNAL], batch_rows))
+    assert max(batch.num_rows for batch in batches) <= (batch_rows or 2)
+    signals = np.concatenate([signal_matrix(batch[SIGNAL]) for batch in batches])
+    assert signals.shape == (18, 512)
+    first = dataset.labels("train")["record_id"][0].as_py()
+    assert np.array_equal(signals[0], dataset.record(first)[SIGNAL])
+
+
+def test_columns_are_those_asked_for(dataset: Dataset) -> None:
+    assert dataset.labels(columns=["state", "record_id"]).column_names == ["state", "record_id"]
+    assert SIGNAL not in dataset.labels().column_names
+    assert next(dataset.records(columns=["mesh_hz"])).schema.names == ["mesh_hz"]
+
+
+def test_damage_has_one_row_per_pit(dataset: Dataset) -> None:
+    damage = dataset.damage()
+    labels = dataset.labels()
+    assert isinstance(damage, pa.Table)
+    assert damage.num_rows == sum(labels["damage_count"].to_pylist()) == 10 * (0 + 2 + 6)
+    assert dataset.damage("test").num_rows == sum(dataset.labels("test")["damage_count"].to_pylist())
+
+
+def test_wrong_names_are_answered_with_the_right_ones(dataset: Dataset) -> None:
+    with pytest.raises(UsageError, match="no split 'training'; it has train, validation, test"):
+        dataset.labels("training")
+    with pytest.raises(UsageError, match="colour"):
+        dataset.labels(columns=["colour"])
+    with pytest.raises(UsageError, match="colour"):
+        next(dataset.records(columns=["colour"]))
+    with pytest.raises(UsageError, match="no record 30; it has records 0 to 29"):
+        dataset.record(30)
+
+
+def test_a_failed_record_is_answered_with_its_reason(tmp_path: Path) -> None:
+    write_fake_set(tmp_path, simulation=simulate_with_failures)
+    dataset = open_set(tmp_path)
+    with pytest.raises(UsageError, match=r"record 8 could not be simulated: diverged \(motion left the backlash\)"):
+        dataset.record(8)
+    assert 8 not in dataset.labels()["record_id"].to_pylist()
+
+
+def test_a_set_without_its_manifest_is_not_opened(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    (tmp_path / "manifest.json").unlink()
+    with pytest.raises(DatasetError, match="not finished"):
+        open_set(tmp_path)
+
+
+def test_a_missing_shard_is_named(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    (tmp_path / "data/test-00000.parquet").unlink()
+    with pytest.raises(DatasetError, match=r"test-00000\.parquet is missing"):
+        list(open_set(tmp_path).records("test"))
+
+
+def test_reading_loads_neither_physics_nor_the_configuration_model(folder: Path) -> None:
+    code = """
+import sys, siggen
+dataset = siggen.open(sys.argv[1])
+dataset.labels(), dataset.damage(), dataset.record(0), next(dataset.records())
+slow = {"numba", "scipy", "pydantic", "matplotlib", "pandas", "torch", "siggen.config", "siggen.dataset.plan"}
+print(sorted(slow & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

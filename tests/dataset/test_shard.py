@@ -1,0 +1,107 @@
+"""Parquet files: encodings read back from the footer, bytes that depend on the rows alone, nothing half written."""
+
+from __future__ import annotations
+
+import hashlib
+from itertools import pairwise
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.dataset import shard
+from siggen.dataset.record import record_batch, record_schema, signal_matrix
+from siggen.dataset.shard import write_table
+from siggen.dataset.storage import LocalFolder
+from siggen.errors import DatasetError
+from tests.dataset.fake_set import fake_config, simulate
+
+CONFIG = fake_config()
+SCHEMA = record_schema(CONFIG)
+ROWS = record_batch(CONFIG, simulate(CONFIG, range(11)))
+SERIES = {
+    "accel_bearing_vertical_m_s2.list.element", "accel_bearing_horizontal_m_s2.list.element", "tacho_s.list.element",
+}  # fmt: skip
+
+
+def written(folder: Path, batches: list[pa.RecordBatch], group_rows: int = 4) -> Path:
+    write_table(LocalFolder(folder), "data/a.parquet", SCHEMA, batches, group_rows)
+    return folder / "data/a.parquet"
+
+
+def test_signals_are_byte_split_and_compressed_and_only_labels_have_statistics(tmp_path: Path) -> None:
+    footer = pq.read_metadata(written(tmp_path, [ROWS]))
+    assert [footer.row_group(g).num_rows for g in range(footer.num_row_groups)] == [4, 4, 3]
+    for group in range(footer.num_row_groups):
+        columns = [footer.row_group(group).column(i) for i in range(footer.num_columns)]
+        for column in columns:
+            is_series = column.path_in_schema in SERIES
+            assert ("BYTE_STREAM_SPLIT" in column.encodings) == is_series
+            assert column.compression == "ZSTD"
+            assert column.is_stats_set == (not is_series)
+            assert column.has_offset_index
+            if is_series:
+                assert not {"PLAIN", "RLE_DICTIONARY", "PLAIN_DICTIONARY"} & set(column.encodings)
+        assert {column.path_in_schema for column in columns} >= SERIES
+
+
+def test_every_row_and_the_schema_come_back(tmp_path: Path) -> None:
+    table = pq.read_table(written(tmp_path, [ROWS]))
+    assert table.schema.equals(SCHEMA, check_metadata=True)
+    assert table.to_batches()[0].num_rows <= 11
+    assert table.equals(pa.Table.from_batches([ROWS]))
+    name = "accel_bearing_vertical_m_s2"
+    assert signal_matrix(table[name]).tobytes() == signal_matrix(ROWS[name]).tobytes()
+
+
+@settings(max_examples=25, deadline=None)
+@given(cuts=st.lists(st.integers(0, 11), max_size=6))
+def test_bytes_do_not_depend_on_how_rows_arrive(tmp_path_factory: pytest.TempPathFactory, cuts: list[int]) -> None:
+    borders = [0, *sorted(cuts), 11]
+    pieces = [ROWS.slice(a, b - a) for a, b in pairwise(borders)]
+    folder = tmp_path_factory.mktemp("cut")
+    assert written(folder, pieces).read_bytes() == written(folder / "whole", [ROWS]).read_bytes()
+
+
+def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
+    facts = write_table(LocalFolder(tmp_path), "data/a.parquet", SCHEMA, [ROWS], 4)
+    content = (tmp_path / "data/a.parquet").read_bytes()
+    assert (facts.rows, facts.bytes, facts.sha256) == (11, len(content), hashlib.sha256(content).hexdigest())
+
+
+def test_a_shard_of_which_every_record_failed_is_an_empty_file_with_the_schema(tmp_path: Path) -> None:
+    table = pq.read_table(written(tmp_path, []))
+    assert table.num_rows == 0
+    assert table.schema.equals(SCHEMA)
+
+
+@pytest.mark.parametrize("wrong", ["accel_bearing_vertical_m_s2", "accel_bearing_vertical_m_s2.element"])
+def test_an_encoding_that_the_writer_ignores_is_noticed_and_nothing_is_committed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: str
+) -> None:
+    options = shard._options(SCHEMA)
+    options["column_encoding"] = {wrong: "BYTE_STREAM_SPLIT"}
+    monkeypatch.setattr(shard, "_options", lambda schema: options)
+    with pytest.raises(DatasetError, match="encodings"):
+        written(tmp_path, [ROWS])
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+
+
+def test_a_dictionary_for_signals_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    options = {**shard._options(SCHEMA), "use_dictionary": True, "column_encoding": None, "use_byte_stream_split": True}
+    monkeypatch.setattr(shard, "_options", lambda schema: options)
+    with pytest.raises(DatasetError, match="did not do as asked"):
+        written(tmp_path, [ROWS])
+
+
+def test_rows_that_stop_coming_leave_nothing_behind(tmp_path: Path) -> None:
+    def broken():
+        yield ROWS
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_table(LocalFolder(tmp_path), "data/a.parquet", SCHEMA, broken(), 4)
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []

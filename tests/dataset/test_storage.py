@@ -1,0 +1,80 @@
+"""Objects in a folder: whole or absent, one writer at a time, leftovers of killed processes removed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder, sha256
+from siggen.errors import DatasetError
+
+
+def test_an_object_replaces_an_older_one_and_is_read_back(tmp_path: Path) -> None:
+    storage = LocalFolder(tmp_path)
+    storage.put("a/b.json", b"old")
+    storage.put("a/b.json", b"new one")
+    assert storage.get("a/b.json") == b"new one"
+    assert storage.size("a/b.json") == 7
+    assert storage.names() == ["a/b.json"]
+    # SHA-256 of b"new one", computed with sha256sum
+    assert sha256(storage, "a/b.json") == "20a96de1d7f9c25045cc7e54a249e23a8129c6ad5bb98888895e28be303334e6"
+
+
+def test_a_draft_that_fails_leaves_the_old_object_and_no_trace(tmp_path: Path) -> None:
+    storage = LocalFolder(tmp_path)
+    storage.put("a.json", b"old")
+
+    def fail() -> None:
+        with storage.draft("a.json") as path:
+            path.write_bytes(b"half")
+            assert storage.names() == ["a.json"]
+            raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        fail()
+    assert storage.get("a.json") == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_leftovers_are_no_objects_and_are_deleted_by_name_only(tmp_path: Path) -> None:
+    storage = LocalFolder(tmp_path)
+    storage.put("data/a.parquet", b"x")
+    (tmp_path / f"data/.b.parquet.0123abcd{LEFTOVER_SUFFIX}").write_bytes(b"half")
+    (tmp_path / "notes.txt").write_text("mine")
+    assert storage.names() == ["data/a.parquet", "notes.txt"]
+    assert storage.delete_leftovers() == [f"data/.b.parquet.0123abcd{LEFTOVER_SUFFIX}"]
+    assert sorted(p.name for p in tmp_path.rglob("*") if p.is_file()) == ["a.parquet", "notes.txt"]
+
+
+def test_names_below_a_folder_that_does_not_exist_are_none(tmp_path: Path) -> None:
+    assert LocalFolder(tmp_path / "nothing").names("data") == []
+
+
+def test_a_missing_object_says_how_to_restore_it(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match=r"a\.parquet is missing; generating the same set again restores it"):
+        LocalFolder(tmp_path).open("a.parquet")
+
+
+def test_a_second_writer_is_refused_while_the_first_one_lives(tmp_path: Path) -> None:
+    code = "import sys, time; from siggen.dataset.storage import LocalFolder\n"
+    code += "with LocalFolder(sys.argv[1]).writing(): print('in', flush=True); time.sleep(60)"
+    first = subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE)
+    try:
+        assert first.stdout is not None
+        assert first.stdout.readline() == b"in\n"
+        with pytest.raises(DatasetError, match="another siggen process"), LocalFolder(tmp_path).writing():
+            pass
+    finally:
+        first.kill()
+        first.communicate()
+    with LocalFolder(tmp_path).writing():
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_is_not_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "set").write_text("x")
+    with pytest.raises(DatasetError, match="is a file"), LocalFolder(tmp_path / "set").writing():
+        pass

@@ -1,0 +1,37 @@
+"""Line amplitudes, and which sidebands a record resolves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from diagnostics.signal.spectrum import line_amplitudes, resolved_lines, revolutions_needed
+
+
+@given(order=st.integers(1, 30), amplitude=st.floats(1e-3, 1e3), phase=st.floats(0, 6.28))
+def test_a_sine_gives_its_amplitude_at_its_order(order: int, amplitude: float, phase: float) -> None:
+    lines = line_amplitudes(amplitude * np.cos(2 * np.pi * order * np.arange(64) / 64 + phase))
+    assert lines[order] == pytest.approx(amplitude, rel=1e-9)
+    assert np.delete(lines, order).max() < 1e-9 * amplitude
+
+
+def test_mean_and_highest_order_are_not_doubled() -> None:
+    np.testing.assert_allclose(line_amplitudes(np.array([3.0, 1.0, 3.0, 1.0])), [2.0, 0.0, 1.0])
+
+
+def test_gear_sidebands_of_18_to_47_need_the_revolutions_that_separate_them_from_the_pinions() -> None:
+    # pinion sidebands lie at multiples of 47/18 = 2.6111 gear orders; Hann needs two bins: 2 / distance
+    assert revolutions_needed(1, 47, 18) == pytest.approx(2.0)  # nearest is the mesh line itself, one order away
+    assert revolutions_needed(3, 47, 18) == pytest.approx(2 / (3 - 47 / 18))
+    assert revolutions_needed(5, 47, 18) == pytest.approx(2 / (2 * 47 / 18 - 5))
+
+
+def test_shafts_with_common_orders_are_never_told_apart() -> None:
+    assert revolutions_needed(2, 40, 20) == np.inf
+
+
+def test_unresolved_sidebands_are_marked_around_every_mesh_line() -> None:
+    marked = resolved_lines(np.ones(100), np.array([True, False, True]), teeth=47)
+    assert set(np.flatnonzero(np.isnan(marked))) == {2, 45, 49, 92, 96}

@@ -1,0 +1,58 @@
+"""Averages over whole revolutions of either shaft."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
+
+STEPS = 16
+PINION, GEAR = 18, 47
+
+
+def test_one_grid_serves_both_shafts() -> None:
+    # 47 pinion revolutions are 18 gear revolutions: what is locked to one shaft cancels exactly in the other's average
+    phase = np.arange(47 * PINION * STEPS) / STEPS
+    pinion_locked, gear_locked = np.cos(2 * np.pi * 5 * phase / PINION), np.cos(2 * np.pi * 7 * phase / GEAR)
+    pinion = synchronous_average(pinion_locked + gear_locked, PINION, STEPS)
+    gear = synchronous_average(pinion_locked + gear_locked, GEAR, STEPS)
+    assert (pinion.revolutions, gear.revolutions) == (47, 18)
+    np.testing.assert_allclose(pinion.signal, pinion_locked[: PINION * STEPS], atol=1e-12)
+    np.testing.assert_allclose(gear.signal, gear_locked[: GEAR * STEPS], atol=1e-12)
+
+
+def test_noise_falls_with_the_root_of_the_revolutions() -> None:
+    noise = np.random.default_rng(3).standard_normal(100 * PINION * STEPS)
+    # 288 samples of the average: their spread is known to 1/sqrt(2 * 288) = 4 %, three of which are allowed
+    assert synchronous_average(noise, PINION, STEPS).signal.std() == pytest.approx(0.1, rel=0.13)
+
+
+def test_droop_of_speed_destroys_an_average_by_nominal_speed_but_not_by_pulses() -> None:
+    fs_hz, droop = 12_800.0, 0.0023
+    time_s = np.arange(round(fs_hz * 47 / 30.0)) / fs_hz
+    turns = 30.0 * (1.0 - droop) * time_s
+    signal = np.cos(2 * np.pi * PINION * turns)
+    measured = np.arange(0, 47) / (30.0 * (1.0 - droop))
+    by_pulses, by_nominal = (
+        synchronous_average(
+            resample_to_angle(signal, fs_hz, angle_grid(pulses, PINION * 128)), PINION, 128
+        ).signal.std()
+        for pulses in (measured, np.arange(0, 47) / 30.0)
+    )
+    assert by_pulses == pytest.approx(np.sqrt(0.5), rel=1e-3)
+    # 0.23 % of 46 revolutions of order 18 are 1.9 periods of slip: sinc(1.9) leaves less than a tenth
+    assert by_nominal < 0.1
+
+
+def test_hann_weights_keep_the_lines_of_the_shaft() -> None:
+    phase = np.arange(11 * GEAR * STEPS) / STEPS
+    weighted = synchronous_average(np.cos(2 * np.pi * 48 * phase / GEAR), GEAR, STEPS, hann_weights(phase.size))
+    np.testing.assert_allclose(weighted.signal, np.cos(2 * np.pi * 48 * phase[: GEAR * STEPS] / GEAR), atol=1e-12)
+
+
+def test_less_than_a_revolution_is_refused() -> None:
+    assert whole_revolutions(np.zeros(GEAR * STEPS - 1), GEAR, STEPS) == 0
+    with pytest.raises(ValueError, match="one revolution needs 752"):
+        synchronous_average(np.zeros(GEAR * STEPS - 1), GEAR, STEPS)

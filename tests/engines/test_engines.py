@@ -1,0 +1,61 @@
+"""Every engine: all results, whatever the order; a raising task is named; no run-away ahead of a slow task."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+
+import pytest
+
+from siggen.engines.processes import WINDOW_PER_WORKER, ProcessEngine
+from siggen.engines.protocol import Engine
+from siggen.engines.serial import SerialEngine
+from siggen.errors import EngineError
+from tests.engines.tasks import fail_at_three, slow_at_first, square
+
+ENGINES = [SerialEngine(), ProcessEngine(1), ProcessEngine(2)]
+NAMES = ["serial", "one process", "two processes"]
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=NAMES)
+def test_every_task_gives_one_result_at_its_position(engine: Engine) -> None:
+    assert dict(engine.map(square, range(20))) == {i: i * i for i in range(20)}
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=NAMES)
+def test_no_tasks_give_no_results(engine: Engine) -> None:
+    assert list(engine.map(square, [])) == []
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=NAMES)
+def test_a_raising_task_is_named_with_its_traceback(engine: Engine) -> None:
+    with pytest.raises(EngineError, match=r"(?s)^3 raised ValueError: three is not allowed.*in fail_at_three"):
+        dict(engine.map(fail_at_three, range(6)))
+
+
+@pytest.mark.parametrize("engine", ENGINES, ids=NAMES)
+def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task(engine: Engine) -> None:
+    """Task 0 takes 0.5 s and the others none: without the window all 59 of them would wait for it in memory."""
+    taken: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for task in range(60):
+            taken.append(task)
+            yield task
+
+    waiting: set[int] = set()
+    with closing(engine.map(slow_at_first, tasks())) as results:
+        for index, _ in results:
+            if 0 not in waiting and index != 0:
+                assert index < WINDOW_PER_WORKER * engine.workers
+            waiting.add(index)
+            # the rest of what the engine may have taken since the oldest task was finished: one more window
+            assert len(taken) <= len(waiting) + 2 * WINDOW_PER_WORKER * engine.workers
+    assert waiting == set(range(60))
+
+
+def test_closing_the_results_stops_the_work() -> None:
+    results = ProcessEngine(2).map(slow_at_first, range(10_000))
+    next(results)
+    results.close()
+    assert list(results) == []
