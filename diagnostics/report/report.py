@@ -62,7 +62,7 @@ def write_report(dataset: Any, folder: Path, seed: int, *, cnn: bool = True, sta
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, states(matrix), training, found)
         advance()
-    drawing.notes += [*notes, *undefined_notes(table)]
+    drawing.notes += [*notes, *clipping_notes(dataset), *undefined_notes(table)]
     _write_tables(table, found, folder)
     sentences = summary(dataset.config, training, found)
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
@@ -98,6 +98,20 @@ def undefined_notes(table: pa.Table) -> list[str]:
     """Return how often each reason for undefined indicators occurs."""
     reasons, counts = np.unique([note for note in table.column("notes").to_pylist() if note], return_counts=True)
     return [f"{count} of {table.num_rows} records: {reason}." for reason, count in zip(reasons, counts, strict=True)]
+
+
+def clipping_notes(dataset: Any) -> list[str]:
+    """Return how many records each channel clips: their spectra carry lines that no gear made."""
+    notes = []
+    for channel in dataset.channels:
+        name = f"clipped_share_{channel.name}"
+        share = np.array(dataset.labels(columns=[name]).column(name).to_pylist(), dtype=np.float64)
+        if (share > 0).any():
+            notes.append(
+                f"Channel {channel.name} clips in {int((share > 0).sum())} of {share.size} records, up to "
+                f"{share.max():.1%} of the samples: clipping adds lines to the spectra that no gear made."
+            )
+    return notes
 
 
 def _write_tables(table: pa.Table, found: list[Separability], folder: Path) -> None:

@@ -24,14 +24,14 @@ def stiffness_figure(curves: Sequence[StiffnessCurve]) -> Figure:
     figure = Figure(figsize=(8.0, 6.0), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     reference = curves[0]
-    for curve in curves:
+    for depth, curve in enumerate(curves):  # milder states lie on top: where curves agree, the mildest is seen
         degrees = np.degrees(curve.angle_rad)
-        above.plot(degrees, curve.mesh_stiffness_n_per_m / 1e8, label=curve.state, lw=1.2)
+        above.plot(degrees, curve.mesh_stiffness_n_per_m / 1e8, label=curve.state, lw=1.2, zorder=9 - depth)
         if curve is not reference:
             loss = 1.0 - curve.mesh_stiffness_n_per_m / reference.mesh_stiffness_n_per_m
-            below.plot(degrees, 100.0 * loss, label=curve.state, lw=1.2, color=above.lines[-1].get_color())
+            below.plot(degrees, 100.0 * loss, lw=1.2, zorder=9 - depth, color=above.lines[-1].get_color())
     above.set_ylabel("mesh stiffness [10⁸ N/m]")
-    above.legend(frameon=False, ncols=len(curves))
+    figure.legend(loc="outside upper center", frameon=False, ncols=len(curves))
     below.set_ylabel(f"loss against {reference.state} [%]")
     below.set_xlabel("pinion angle since the first damaged tooth entered contact [°]")
     below.margins(x=0)

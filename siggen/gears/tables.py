@@ -143,7 +143,8 @@ def largest_stiffness_loss(pair: GearPair, damage: Damage, options: StiffnessOpt
     """Return max (K_healthy - K_damaged)/K_healthy of the mesh over the angle of a whole hunting period.
 
     Derived: the newest pair's position covers one base pitch while older pairs follow one pitch ahead each; every
-    sequence of kinds of pairs that occurs is searched on a grid that holds all kinks, and the best place is refined.
+    sequence of kinds of pairs that occurs is searched on a grid with pit centres, pits' ends and zone edges, and the
+    highest peaks are refined.
 
     Raises
     ------

@@ -116,6 +116,7 @@ def _row(
         "fault": "healthy" if state == "healthy" else "pitting", "severity": state,
         "damaged_area_mm2": AREA_MM2[state], "damaged_area_share": AREA_MM2[state] / 100.0,
         "mesh_stiffness_loss": AREA_MM2[state] / 40.0,
+        **{f"clipped_share_{name}": 0.0 for name in CHANNELS},
         "teeth_pinion": TEETH[0], "teeth_gear": TEETH[1], "speed_hz": 30.0, "torque_nm": 60.0,
         "mesh_hz": 540.0, "pinion_shaft_hz": 30.0,
         **{f"accel_{name}_m_s2": signal for name, signal in zip(CHANNELS, signals, strict=True)},

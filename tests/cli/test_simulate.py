@@ -1,0 +1,45 @@
+"""`siggen simulate` as a user calls it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from siggen.errors import UsageError
+from siggen.loading import load_config
+from siggen.simulation import simulate_specimen
+
+SET = ["--set", "duration_s=0.05", "--set", "specimens=1"]
+runner = CliRunner()
+
+
+def run(*arguments: object) -> None:
+    result = runner.invoke(app, ["simulate", *map(str, arguments), *SET])
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == 0, result.output
+
+
+def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Path) -> None:
+    run("configs/quickstart.yaml", "--record", 6, "--out", tmp_path / "record.parquet")
+    table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
+    config = load_config("configs/quickstart.yaml", SET[1::2])
+    record = simulate_specimen(config, [6])[0]
+    for channel, signal in record.channels.items():
+        assert np.array_equal(table[f"accel_{channel}_m_s2"].to_numpy(), signal)
+    assert table.num_rows == config.samples
+    assert table["mesh_force_n"].to_numpy().min() > 0.0
+    # The mean mesh force carries the torque: F = T/R_b1; 0.05 s is no whole number of periods, hence 5 %.
+    torque = float(table.schema.metadata[b"torque_nm"])
+    base_radius_m = 0.5 * 3e-3 * 18 * np.cos(np.radians(20))
+    assert table["mesh_force_n"].to_numpy().mean() == pytest.approx(torque / base_radius_m, rel=0.05)
+
+
+def test_a_record_that_the_set_does_not_have_is_refused_with_the_range(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="has 8 records, 0 to 7"):
+        run("configs/quickstart.yaml", "--record", 8, "--out", tmp_path / "record.parquet")
