@@ -12,6 +12,8 @@ from diagnostics.features import FeatureSettings
 from siggen.errors import UsageError
 
 NAMES_FILE = "feature_names.json"
+TRUSTED_TYPES = ("numpy.dtype",)
+"""Types besides those that skops trusts by itself: the imputer remembers the type of its input."""
 
 
 def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identity: str, folder: Path) -> Path:
@@ -33,10 +35,10 @@ def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identit
 
 
 def untrusted_types(path: Path) -> tuple[str, ...]:
-    """Return the types in a skops file that skops does not trust by itself."""
+    """Return the types in a skops file that neither skops nor `TRUSTED_TYPES` names; nothing is executed."""
     import skops.io
 
-    return tuple(skops.io.get_untrusted_types(file=path))
+    return tuple(name for name in skops.io.get_untrusted_types(file=path) if name not in TRUSTED_TYPES)
 
 
 def load_classifier(folder: Path) -> FeatureClassifier:
@@ -45,7 +47,7 @@ def load_classifier(folder: Path) -> FeatureClassifier:
     Raises
     ------
     UsageError
-        If the file is missing, damaged, or holds types from outside scikit-learn and numpy; it is then not loaded.
+        If the file is missing, damaged, or holds types that are not trusted, which are listed; it is then not loaded.
     """
     import skops.io
 
@@ -57,7 +59,7 @@ def load_classifier(folder: Path) -> FeatureClassifier:
         raise UsageError(f"{folder}: no readable classifier.skops with {NAMES_FILE} ({error})") from error
     if found:
         raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
-    pipeline = skops.io.load(path, trusted=[])
+    pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
     return FeatureClassifier(
         pipeline, tuple(facts["features"]), tuple(facts["classes"]), float(facts["strength"]), str(facts["note"])
     )

@@ -10,4 +10,4 @@ def rms(signal: np.ndarray) -> float:
 
     Gaussian: sigma; sine: amplitude / sqrt(2). Source: standard literature.
     """
-    return float(np.sqrt(np.dot(signal, signal) / signal.size))
+    return float(np.sqrt(np.mean(np.square(signal))))

@@ -1,0 +1,94 @@
+"""The command: help, version, errors without a traceback."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+
+from diagnostics.cli.app import main
+from diagnostics.recording import LABEL_NAMES, TACHO_NAME
+from siggen.dataset import reading
+from siggen.dataset.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return int(stop.value.code or 0)
+
+
+@pytest.mark.parametrize("command", [[], ["features"], ["train"], ["report"]])
+def test_every_command_explains_itself_with_an_example(
+    command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, *command, "-h") == 0
+    assert "Example: siggen-diagnostics" in capsys.readouterr().out
+
+
+def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(monkeypatch, "--version") == 0
+    assert capsys.readouterr().out.startswith("siggen-diagnostics ")
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = "import sys, diagnostics.cli.app; print([m for m in ('numpy','scipy','torch','sklearn','pyarrow','matplotlib') if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("command", ["features", "train", "report"])
+def test_a_folder_without_a_set_is_a_usage_error(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = {"features": ["--out", "x.csv"], "train": ["--out", "y"], "report": []}[command]
+    assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert "nothing" in error
+    assert "Traceback" not in error
+
+
+def test_unknown_suffix_is_refused_before_any_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, "features", str(tmp_path), "--out", "x.xlsx") == 2
+    assert "allowed are .parquet, .csv" in capsys.readouterr().err
+
+
+def test_missing_extra_names_the_line_that_installs_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("diagnostics.extras.missing_packages", lambda *names: ("torch",) if "torch" in names else ())
+    assert run(monkeypatch, "train", str(tmp_path), "--out", str(tmp_path / "m")) == 2
+    assert "pip install 'siggen[cnn]'" in capsys.readouterr().err
+
+
+def test_interruption_has_its_exit_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(path: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(reading, "open", interrupted)
+    assert run(monkeypatch, "report", str(tmp_path)) == 130
+
+
+def test_features_are_written_where_asked(
+    dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(reading, "open", lambda path: dataset)
+    out = tmp_path / "sub" / "features.parquet"
+    assert run(monkeypatch, "features", "anything", "--out", str(out)) == 0
+    assert capsys.readouterr().out.strip() == str(out)
+    table = pq.read_table(out)
+    assert table.num_rows == 72
+    assert set(table.column("revolutions_pinion").to_pylist()) <= {28, 29, 30}
+
+
+def test_columns_that_are_read_exist_in_every_set() -> None:
+    columns = {column.name for column in (*ID_COLUMNS, *LABEL_COLUMNS, *OPERATING_COLUMNS, TACHO_COLUMN)}
+    assert {*LABEL_NAMES, TACHO_NAME} <= columns

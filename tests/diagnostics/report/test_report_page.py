@@ -1,0 +1,68 @@
+"""The report of a small set: one self-contained page that says first what its scores mean."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pytest
+
+from diagnostics.realism import meaning_of_scores
+from diagnostics.report.report import write_report
+
+
+@pytest.fixture(scope="module")
+def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report")
+    write_report(dataset, out, seed=0, cnn=False)
+    return out
+
+
+def test_first_sentence_says_that_error_free_gears_separate_trivially(folder: Path) -> None:
+    text = (folder / "report.html").read_text()
+    first = re.search(r"<p[^>]*>(.*?)</p>", text)
+    assert first is not None
+    assert "they do not show that such damage could be found on a real machine" in first.group(1)
+    assert "no manufacturing errors" in first.group(1)
+
+
+def test_meaning_changes_once_gears_have_errors() -> None:
+    assert "no manufacturing errors" in meaning_of_scores({})
+    assert "no manufacturing errors" not in meaning_of_scores({"manufacturing": {"quality": 6}})
+
+
+def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
+    text = (folder / "report.html").read_text()
+    assert set(re.findall(r'(?:src|href)=(".{5}|[^"])', text)) == {'"data:'}
+    assert "http" not in re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)
+    assert 'name="viewport"' in text
+
+
+def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
+    written = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    figures = ("waveforms", "spectrum_h1", "scores", "permuted", "confusion_indicators", "confusion_rms", "stiffness_loss")
+    assert {f"figures/{name}.png" for name in figures} <= written
+    assert {"features.parquet", "separability.csv", "separability.parquet", "models/model_card.md"} <= written
+    metrics = json.loads((folder / "metrics.json").read_text())
+    assert metrics["training"]["specimens"] == {"train": 12, "validation": 4, "test": 8}
+    assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
+    assert len(metrics["separability"]["features"]) == 312
+
+
+def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
+    notes = json.loads((folder / "metrics.json").read_text())["notes"]
+    assert any(note.startswith("No stiffness curves") for note in notes)
+
+
+def test_a_set_without_test_specimens_still_gets_its_report(dataset: Any, tmp_path: Path) -> None:
+    only_training = dataset.table.filter(pc.equal(dataset.table.column("split"), "train"))
+    small = type(dataset)(pa.table(only_training).slice(0, 9))
+    write_report(small, tmp_path, seed=0)
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    assert metrics["training"] is None
+    assert any("No classifier: split 'test' has no specimens" in note for note in metrics["notes"])
+    assert "No classifier was trained" in (tmp_path / "report.html").read_text()

@@ -1,0 +1,50 @@
+"""Leakage between specimens is refused, and unusable splits are named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnostics.splits import specimen_split
+from siggen.errors import DatasetError
+
+
+def labels(splits: list[str], states: tuple[str, ...] = ("healthy", "worn")) -> dict[str, np.ndarray]:
+    """Return two records per specimen, one per state."""
+    count = len(splits)
+    return {
+        "specimen_id": np.repeat(np.arange(count), len(states)),
+        "split": np.repeat(splits, len(states)),
+        "state": np.tile(states, count),
+        "state_id": np.tile(np.arange(len(states)), count),
+    }
+
+
+def test_splits_are_those_of_the_set() -> None:
+    split = specimen_split(labels(["train", "test", "train", "validation"]))
+    assert split.train.tolist() == [True, True, False, False, True, True, False, False]
+    assert split.test.sum() == 2
+    assert split.classes == ("healthy", "worn")
+
+
+def test_a_specimen_in_two_splits_is_refused() -> None:
+    found = labels(["train", "test", "train"])
+    found["split"][1] = "test"
+    with pytest.raises(DatasetError, match="specimen 0 in test and train"):
+        specimen_split(found)
+
+
+@pytest.mark.parametrize(("splits", "missing"), [(["train", "train"], "test"), (["test"], "train")])
+def test_a_split_without_specimens_is_named(splits: list[str], missing: str) -> None:
+    with pytest.raises(DatasetError, match=f"split '{missing}' has no specimens"):
+        specimen_split(labels(splits))
+
+
+def test_a_single_state_is_refused() -> None:
+    with pytest.raises(DatasetError, match=r"single state \['healthy'\]"):
+        specimen_split(labels(["train", "test"], states=("healthy",)))
+
+
+def test_states_keep_the_order_of_the_configuration() -> None:
+    found = labels(["train", "test"], states=("z_first", "a_second"))
+    assert specimen_split(found).classes == ("z_first", "a_second")
