@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.shipped import PAPER_A, shipped
-from benchmarks.solve_ivp import RELATIVE_TOLERANCE, solve_ivp_integrators
+from benchmarks.solve_ivp import RELATIVE_TOLERANCE, Method, solve_ivp_integrators
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config, constant
 from siggen.dataset.plan import PlannedRecord, planned_record
@@ -27,6 +27,7 @@ CHECKED_S = 0.2
 """Length of the signal whose error is computed."""
 SHORT_S = 0.05
 """Length of the signal of the slow alternative; the transient before it is integrated too."""
+METHODS: tuple[Method, ...] = ("DOP853", "LSODA")
 CHANNEL = "pinion_bearing/vertical"
 
 
@@ -72,21 +73,36 @@ def rows(*, quick: bool) -> Iterator[Row]:
     """Yield the cost of product integration beside Runge-Kutta and scipy, with the errors of all."""
     case = _paper_case()
     duration_s, rounds = (1.0, 3) if quick else (case.config.duration_s, 5)
-    errors = _errors(case)
-    candidates = {
-        name: Candidate(lambda _, name=name, steps=steps: case.acceleration_m_s2(name, steps, duration_s))
-        for name, steps in (("product", STEPS), ("runge_kutta", STEPS))
-    }
-    cost = {name: value / duration_s for name, value in medians(candidates, rounds).items()}
-    what = f"product, {STEPS} steps, {duration_s:g} s of signal + {case.transient_s():.2f} s transient, per s of signal"
-    yield _row(
-        what, cost["product"], errors["product"], "Runge-Kutta, 4 steps", cost["runge_kutta"], errors["runge_kutta"]
-    )
-    scale = (duration_s + case.transient_s()) / duration_s
-    for method in ("DOP853",) if quick else ("DOP853", "LSODA"):
-        cost_s, error = _by_scipy(case, method)
-        name = f"solve_ivp {method}, rtol {RELATIVE_TOLERANCE:g}, {SHORT_S:g} s + transient, scaled"
-        yield _row(what, cost["product"], errors["product"], name, cost_s * scale, error)
+    cost = _costs(case, duration_s, rounds)
+    error = {name: _error(case, name, STEPS, CHECKED_S) for name in cost}
+    transient = case.transient_s()
+    signal = f"{duration_s:g} s of signal + {transient:.2f} s transient"
+    what = f"product integration, {STEPS} steps per sample, per s of signal ({signal})"
+    fixed = f"Runge-Kutta, {STEPS} steps per sample"
+    yield _row(what, cost["product"], error["product"], fixed, cost["runge_kutta"], error["runge_kutta"])
+    short = f"{SHORT_S:g} s of signal, scaled"
+    others = [("runge_kutta", REFERENCE_STEPS, f"Runge-Kutta, {REFERENCE_STEPS} steps per sample, {short}")]
+    others += [(name, STEPS, f"solve_ivp {name}, rtol {RELATIVE_TOLERANCE:g}, {short}") for name in METHODS]
+    for integrator, steps, name in others:
+        with patch.dict(INTEGRATORS, solve_ivp_integrators(*METHODS)):
+            start = time.process_time()
+            case.acceleration_m_s2(integrator, steps, SHORT_S)
+            per_second = (time.process_time() - start) / (SHORT_S + transient)
+            other_error = _error(case, integrator, steps, SHORT_S)
+        scaled = per_second * (duration_s + transient) / duration_s
+        yield _row(what, cost["product"], error["product"], name, scaled, other_error)
+
+
+def _costs(case: _Case, duration_s: float, rounds: int) -> dict[str, float]:
+    """Return the CPU time per second of signal of siggen's integrators."""
+
+    def integrated(integrator: str) -> Candidate:
+        return Candidate(lambda _: case.acceleration_m_s2(integrator, STEPS, duration_s))
+
+    for integrator in INTEGRATORS:
+        case.acceleration_m_s2(integrator, STEPS, SHORT_S)  # compiles
+    costs = medians({integrator: integrated(integrator) for integrator in INTEGRATORS}, rounds)
+    return {integrator: cost_s / duration_s for integrator, cost_s in costs.items()}
 
 
 def _paper_case() -> _Case:
@@ -98,23 +114,11 @@ def _paper_case() -> _Case:
     )
 
 
-def _errors(case: _Case) -> dict[str, float]:
-    reference = case.acceleration_m_s2("product", REFERENCE_STEPS, CHECKED_S)
-    return {name: _error(case.acceleration_m_s2(name, STEPS, CHECKED_S), reference) for name in INTEGRATORS}
-
-
-def _by_scipy(case: _Case, method: str) -> tuple[float, float]:
-    """Return CPU time per integrated second, and the error, of scipy's method."""
-    with patch.dict(INTEGRATORS, solve_ivp_integrators(method)):
-        start = time.process_time()
-        short = case.acceleration_m_s2(method, STEPS, SHORT_S)
-        cost_s = time.process_time() - start
-    reference = case.acceleration_m_s2("product", REFERENCE_STEPS, SHORT_S)
-    return cost_s / (SHORT_S + case.transient_s()), _error(short, reference)
-
-
-def _error(acceleration: np.ndarray, reference: np.ndarray) -> float:
-    return float(np.sqrt(np.mean((acceleration - reference) ** 2) / np.mean(reference**2)))
+def _error(case: _Case, integrator: str, steps: int, duration_s: float) -> float:
+    """Return the relative rms difference from product integration with many steps per sample."""
+    reference = case.acceleration_m_s2("product", REFERENCE_STEPS, duration_s)
+    difference = case.acceleration_m_s2(integrator, steps, duration_s) - reference
+    return float(np.sqrt(np.mean(difference**2) / np.mean(reference**2)))
 
 
 def _row(what: str, cost_s: float, error: float, name: str, other_s: float, other_error: float) -> Row:

@@ -29,6 +29,9 @@ from siggen.gears.union import active_pits, add_intervals, cut_room, depth_momen
 
 FloatArray = NDArray[np.float64]
 
+RELATIVE_TOLERANCE = 1e-8
+"""The only one: quad's own absolute tolerance, 1.5e-8, is larger than a compliance in m/N, and it would stop at once."""
+
 
 def mesh_stiffness_by_quad(pair: GearPair, angle_rad: float, damage: Damage = ()) -> float:
     """Return the mesh stiffness [N/m] at one pinion angle; as `siggen.gears.stiffness.mesh_stiffness`."""
@@ -119,8 +122,12 @@ def _along_tooth(
     with warnings.catch_warnings():
         # pits have kinks, which quad reports after having met its tolerance nearly everywhere
         warnings.simplefilter("ignore", IntegrationWarning)
-        root = quad(in_fillet, gear.involute_start_gamma_rad, 0.5 * pi)[0]
-        return float(root + quad(on_involute, gear.involute_start_roll_rad, roll, limit=200)[0])
+        root = _quad(in_fillet, gear.involute_start_gamma_rad, 0.5 * pi)
+        return root + _quad(on_involute, gear.involute_start_roll_rad, roll)
+
+
+def _quad(function: Callable[[float], float], low: float, high: float) -> float:
+    return float(quad(function, low, high, epsabs=0.0, epsrel=RELATIVE_TOLERANCE, limit=200)[0])
 
 
 @njit(cache=True)

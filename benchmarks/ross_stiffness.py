@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from ross.gear_element import GearElementTVMS, Mesh
-from ross.materials import Material
+from ross.gear_element import GearElementTVMS, Mesh  # type: ignore[import-not-found, unused-ignore]
+from ross.materials import Material  # type: ignore[import-not-found, unused-ignore]
 
 from siggen.gears.geometry import GearPair
 from siggen.gears.spur_gear import SpurGear

@@ -6,25 +6,28 @@ So transient, filter and decimation are the same, and an error is an error of th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
+from scipy import integrate
 
 from siggen.dynamics.equations import Equations, state_rate
 from siggen.dynamics.mesh_force import MeshLaw
 
 FloatArray = NDArray[np.float64]
 
-RELATIVE_TOLERANCE = 1e-8
-ABSOLUTE_TOLERANCE = 1e-14
-"""In m and m/s; displacements are around 1e-6 m, and samples come from their second differences."""
+Method = Literal["RK45", "DOP853", "LSODA"]
+
+RELATIVE_TOLERANCE = 1e-5
+ABSOLUTE_TOLERANCE = 1e-11
+"""In m and m/s. Looser tolerances cost accuracy; tighter ones only time, since the low-pass then sets the error."""
 
 
 class SolveIvp:
     """Advances the state with one call of `solve_ivp` per block; a method of scipy chooses its own steps."""
 
-    def __init__(self, method: str, equations: Equations, law: MeshLaw, step_s: float) -> None:
+    def __init__(self, method: Method, equations: Equations, law: MeshLaw, step_s: float) -> None:
         self._method, self._equations, self._law, self._step_s = method, equations, law, step_s
 
     def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
@@ -37,7 +40,7 @@ class SolveIvp:
             state_rate(self._equations, self._law, state, pitches[0] + speed * t, result)
             return result
 
-        solution = solve_ivp(
+        solution = integrate.solve_ivp(
             rate,
             (0.0, time_s[-1]),
             trajectory[0].copy(),
@@ -49,10 +52,10 @@ class SolveIvp:
         trajectory[1:] = solution.y.T[1:]
 
 
-def solve_ivp_integrators(*methods: str) -> Mapping[str, Callable[[Equations, MeshLaw, float], SolveIvp]]:
+def solve_ivp_integrators(*methods: Method) -> Mapping[str, Callable[[Equations, MeshLaw, float], SolveIvp]]:
     """Return integrators by the name of scipy's method, as in `siggen.dynamics.response.INTEGRATORS`."""
 
-    def maker(method: str) -> Callable[[Equations, MeshLaw, float], SolveIvp]:
+    def maker(method: Method) -> Callable[[Equations, MeshLaw, float], SolveIvp]:
         return lambda equations, law, step_s: SolveIvp(method, equations, law, step_s)
 
     return {method: maker(method) for method in methods}

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 from benchmarks.row import Row, cost_row
@@ -24,7 +25,7 @@ COMMANDS = {
 
 def rows(*, quick: bool) -> Iterator[Row]:
     """Yield wall times of whole processes."""
-    candidates = {name: Candidate(lambda _, command=command: _run(command)) for name, command in COMMANDS.items()}
+    candidates = {name: Candidate(partial(_run, command)) for name, command in COMMANDS.items()}
     _run(HELP)  # byte code and file cache
     cost = medians(candidates, 3 if quick else ROUNDS, time.perf_counter)
     own, *others = COMMANDS
@@ -32,5 +33,5 @@ def rows(*, quick: bool) -> Iterator[Row]:
         yield cost_row(f"{own}, wall", cost[own], name, cost[name], GOAL_S)
 
 
-def _run(command: list[str]) -> None:
+def _run(command: list[str], _number: int = 0) -> None:
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

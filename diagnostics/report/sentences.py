@@ -106,6 +106,8 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     """Say which state is hardest, which single indicator does best there, and what follows the damaged area."""
     sentences = []
     hardest = hardest_state(found)
+    if hardest and math.isnan(hardest[1].auc[hardest[0]].low):
+        return ["With a single specimen the indicators below describe that specimen; they say nothing about others."]
     if hardest:
         state, entry = hardest
         area = entry.auc[state]
