@@ -39,9 +39,7 @@ def test_the_stiffness_is_the_same_until_the_contact_reaches_the_pits(tmp_path: 
     run("configs/paper_a.yaml", "--out", tmp_path / "tvms.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "tvms.parquet")
     before = table["angle_deg"].to_numpy() < 16.1  # the pits begin at 16.110 degrees
-    assert np.array_equal(
-        table["healthy_n_per_m"].to_numpy()[before], table["severe_n_per_m"].to_numpy()[before]
-    )
+    assert np.array_equal(table["healthy_n_per_m"].to_numpy()[before], table["severe_n_per_m"].to_numpy()[before])
 
 
 @pytest.mark.parametrize("name", ["tvms.txt", "tvms"])
