@@ -140,8 +140,8 @@ class Dataset:
                 yield file
         except (OSError, pa.ArrowException) as error:
             raise DatasetError(
-                f"{self.path}/{name} cannot be read ({error}); `siggen verify {self.path}` finds all damaged files, and "
-                "after deleting them `siggen generate` with the set's config.yaml makes them again"
+                f"{self.path}/{name} cannot be read ({error}); `siggen verify {self.path}` finds all "
+                "damaged files; delete them, and `siggen generate` with the set's config.yaml makes them again"
             ) from error
 
     def _splits(self, split: str | None) -> tuple[str, ...]:
