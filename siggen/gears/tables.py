@@ -12,10 +12,11 @@ from math import lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.gears.compliance import StiffnessOptions, tooth_compliance
+from siggen.gears.compliance import tooth_compliance
 from siggen.gears.damage import Damage, damaged_teeth, flank_heights, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import contact_compliance, rolls_at
+from siggen.gears.stiffness_options import StiffnessOptions
 
 FloatArray = NDArray[np.float64]
 HEALTHY = -1
@@ -115,7 +116,7 @@ def kind_stiffness(
     out = np.empty((len(kinds), position_m.size))
     for row, (first, second) in enumerate(kinds):
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits)
+        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits, options)
         out[row] = 1.0 / (contact + tooth["pinion", first] + tooth["gear", second])
     return out
 
