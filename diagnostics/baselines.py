@@ -106,7 +106,7 @@ def train_classifier(
         area = float(np.nan_to_num(macro_auroc(judged, ones)[0], nan=0.5))
         if best is None or area > best[0] + 1e-12:
             best = (area, strength, pipeline)
-    assert best is not None  # noqa: S101
+    assert best is not None
     return FeatureClassifier(best[2], matrix.names, split.classes, best[1], "")
 
 

@@ -1,13 +1,15 @@
 """A small 1-D network with a wide first layer on windows of several revolutions, after WDCNN (Zhang et al. 2017).
 
-Differences from the source: order-resampled windows of whole revolutions instead of 2048 raw samples; mean and spread of the
-last layer over the window instead of a dense layer on positions, since a window may start at any angle and modulation shows
-as spread; every channel enters twice, as it is and without its mean over the mesh periods of the window, which would hide
-anything a hundred times smaller; the levels of both are divided out and handed to the last layer as numbers of their own.
+Differences from the source: order-resampled windows of whole revolutions instead of 2048 raw samples; mean and spread
+of the last layer over the window instead of a dense layer on positions, since a window may start at any angle and
+modulation shows as spread; every channel enters twice, as it is and without its mean over the mesh periods of the
+window, which would hide anything a hundred times smaller; the levels of both are divided out and handed to the last
+layer as numbers of their own.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -90,7 +92,7 @@ class WideKernelNetwork(nn.Module):
         self.register_buffer("scale", torch.ones(channels, 1))
         padding = (FIRST_KERNEL - FIRST_STRIDE) // 2
         layers: list[nn.Module] = _block(2 * channels, WIDTHS[0], FIRST_KERNEL, FIRST_STRIDE, padding)
-        for before, after in zip(WIDTHS[:-1], WIDTHS[1:], strict=True):
+        for before, after in itertools.pairwise(WIDTHS):
             layers += _block(before, after, kernel=3, stride=1, padding=1)
         self.body = nn.Sequential(*layers)
         self.dropout = nn.Dropout(0.2)

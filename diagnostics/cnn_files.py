@@ -86,7 +86,10 @@ def _facts(found: dict[str, object]) -> NetworkFile:
 
 
 def export_onnx(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:
-    """Write the network as ONNX: input `windows` (batch, channels, samples) in m/s^2, output `logits`; any batch size."""
+    """Write the network as ONNX, for any batch size.
+
+    Input `windows` (batch, channels, samples) in m/s^2, output `logits` (batch, classes).
+    """
     example = torch.zeros(2, len(facts.channels), facts.windows.samples)
     with warnings.catch_warnings():
         # the legacy exporter is the one that needs no further package; it announces its successor on every call

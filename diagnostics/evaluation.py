@@ -1,7 +1,8 @@
 """Scores of a classifier with intervals from a bootstrap over specimens, never over records or windows.
 
-Records of one specimen share its gears and its damage, so only specimens are independent. AUC: Mann-Whitney statistic with
-half credit for ties. Source: standard literature (Efron; Hand & Till 2001 for averages over classes); weighted ranks derived.
+Records of one specimen share its gears and its damage, so only specimens are independent. AUC: Mann-Whitney statistic
+with half credit for ties. Source: standard literature (Efron; Hand & Till 2001 for averages over classes); weighted
+ranks derived.
 """
 
 from __future__ import annotations

@@ -54,7 +54,8 @@ def _data(training: Training, dataset: Any) -> str:
 def _files(training: Training) -> str:
     lines = [
         "* `classifier.skops`: medians for undefined values, standardisation, logistic regression "
-        f"(C = {training.classifier.strength:g}, chosen on validation specimens) on {len(training.classifier.features)} "
+        f"(C = {training.classifier.strength:g}, chosen on validation specimens) on "
+        f"{len(training.classifier.features)} "
         "indicators; `feature_names.json` lists them in order, with the settings of their definitions",
     ]
     if training.network:
@@ -64,7 +65,8 @@ def _files(training: Training) -> str:
             f"* `cnn.safetensors`: 1-D network with a wide first layer, on windows of {windows.revolutions} pinion "
             f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles; input "
             f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2; normalisation is part of the network",
-            "* `cnn.onnx`: the same, input `windows`, output `logits`; average the class probabilities over the windows "
+            "* `cnn.onnx`: the same, input `windows`, output `logits`; average the class probabilities over "
+            "the windows "
             f"of a record, {windows.hop_revolutions} revolutions apart",
         ]
     return "\n".join(lines)
@@ -79,7 +81,8 @@ def _scores(training: Training) -> str:
 
 def _row(found: Judged) -> str:
     permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
-    return f"| {found.name} | {interval_text(found.scores.accuracy)} | {interval_text(found.scores.macro_auroc)} | {permuted} |"
+    cells = (found.name, interval_text(found.scores.accuracy), interval_text(found.scores.macro_auroc), permuted)
+    return f"| {' | '.join(cells)} |"
 
 
 def interval_text(found: Interval) -> str:

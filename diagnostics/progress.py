@@ -10,6 +10,6 @@ Stage = Callable[[str, int], AbstractContextManager[Advance]]
 
 
 @contextmanager
-def silent_stage(title: str, steps: int) -> Iterator[Advance]:  # noqa: ARG001
+def silent_stage(title: str, steps: int) -> Iterator[Advance]:  # noqa: ARG001 - the same call as a stage that speaks
     """Say nothing."""
     yield lambda: None

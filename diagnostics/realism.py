@@ -17,12 +17,16 @@ def meaning_of_scores(config: Mapping[str, Any]) -> str:
     """Return the sentence that has to stand before any score of the set."""
     if is_error_free(config):
         return (
-            "These scores show that the simulated damage reaches the signals and that the evaluation is sound; they do not "
-            "show that such damage could be found on a real machine, because the gears of this set have no manufacturing "
-            "errors: healthy records are free of sidebands, so that whatever damage rises above the noise separates trivially."
+            "These scores show that the simulated damage reaches the signals and that the evaluation is "
+            "sound; they do not "
+            "show that such damage could be found on a real machine, because the gears of this set have no "
+            "manufacturing "
+            "errors: healthy records are free of sidebands, so that whatever damage rises above the noise "
+            "separates trivially."
         )
     return (
-        "These scores show how well the damage of this set is told apart on simulated gearboxes that were not trained on, "
+        "These scores show how well the damage of this set is told apart on simulated gearboxes that were "
+        "not trained on, "
         "with manufacturing errors drawn anew for each; they do not show how well it would be found on a real machine, "
         "which differs from all of them."
     )

@@ -1,8 +1,8 @@
 """How well each single feature separates a state from healthy, and how it follows the damaged area.
 
 AUC of healthy against each state and Spearman's rank correlation with the damaged area, with intervals from resampled
-specimens. Features are not trained, so all specimens count; but reading off the best of hundreds of features is a choice
-made on the same specimens, and its value is optimistic.
+specimens. Features are not trained, so all specimens count; but reading off the best of hundreds of features is a
+choice made on the same specimens, and its value is optimistic.
 """
 
 from __future__ import annotations

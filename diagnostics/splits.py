@@ -61,7 +61,7 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
         if counts[name] == 0:
             raise DatasetError(
                 f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
-                "specimen each. Generate more specimens (`siggen generate --specimens`) or change `splits`."
+                "specimen each. Generate more specimens (`--set specimens=N`, new folder) or change `splits`."
             )
     order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
     classes = tuple(sorted(order, key=lambda state: order[state]))

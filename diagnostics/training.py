@@ -1,4 +1,4 @@
-"""All classifiers of one set, trained and judged the same way: indicators, RMS alone, network; each with its control."""
+"""All classifiers of one set, trained and judged the same way: indicators, RMS alone, network; each with a control."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 INDICATORS, RMS_ALONE, NETWORK = "indicators", "rms", "network"
 TITLES = {INDICATORS: "logistic regression on indicators", RMS_ALONE: "RMS alone", NETWORK: "1-D network"}
 PERMUTED_EPOCHS = 15
+MODEL_FILES = ("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md")
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +217,8 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
     from diagnostics.model_card import model_card
 
     folder.mkdir(parents=True, exist_ok=True)
+    for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
+        (folder / name).unlink(missing_ok=True)
     identity, notes = set_identity(dataset), []
     save_classifier(training.classifier, feature_settings(table), identity, folder)
     if training.network:

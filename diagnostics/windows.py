@@ -1,7 +1,7 @@
 """Order-resampled records for a network, cut into windows of whole pinion revolutions.
 
-A window must hold several revolutions: 2048 raw samples at 51.2 kHz are 1.2 revolutions at 30 Hz and can neither resolve
-sidebands nor show a once-per-revolution event twice. Source: derived.
+A window must hold several revolutions: 2048 raw samples at 51.2 kHz are 1.2 revolutions at 30 Hz and can neither
+resolve sidebands nor show a once-per-revolution event twice. Source: derived.
 """
 
 from __future__ import annotations
@@ -121,8 +121,10 @@ def _order_signal(record: Recording, settings: WindowSettings) -> np.ndarray:
     pulses = record.tacho_s[: settings.most_revolutions + 1]
     if pulses.size <= settings.revolutions:
         raise DatasetError(
-            f"record {record.labels['record_id']} holds {max(pulses.size - 1, 0)} whole pinion revolutions; a window of "
-            f"the network needs {settings.revolutions}. Use longer records (`duration_s`) or leave the network out (--no-cnn)."
+            f"record {record.labels['record_id']} holds {max(pulses.size - 1, 0)} whole pinion revolutions; a "
+            "window of "
+            f"the network needs {settings.revolutions}. Use longer records (`duration_s`) or leave the "
+            "network out (--no-cnn)."
         )
     grid = angle_grid(pulses, settings.samples_per_revolution)
     rows = [resample_to_angle(signal, record.fs_hz, grid) for signal in record.channels.values()]

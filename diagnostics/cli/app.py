@@ -14,7 +14,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenErro
 
 app = typer.Typer(
     name="siggen-diagnostics",
-    help="Indicators, classifiers and reports for vibration sets that siggen wrote.",
+    help="Take indicators, train classifiers and write reports for vibration sets that siggen wrote.",
     epilog="Example: siggen-diagnostics report data/quickstart",
     context_settings={"help_option_names": ["-h", "--help"]},
     no_args_is_help=True,
@@ -38,7 +38,7 @@ def _options(
         False, "--version", callback=_show_version, is_eager=True, help="Show the version and exit."
     ),
 ) -> None:
-    """Indicators, classifiers and reports for vibration sets that siggen wrote."""
+    """Take indicators, train classifiers and write reports for vibration sets that siggen wrote."""
 
 
 def main() -> None:
@@ -51,6 +51,6 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")
         sys.exit(EXIT_INTERRUPTED)
-    except Exception as error:  # noqa: BLE001 - the last stop before a traceback
+    except Exception as error:
         sys.stderr.write(f"unexpected error: {type(error).__name__}: {error}\n")
         sys.exit(EXIT_UNEXPECTED)

@@ -25,8 +25,9 @@ def sideband_amplitude(amplitude: np.ndarray, teeth: int, harmonic: int, offset:
 
     Notes
     -----
-    Amplitude modulation of index m by a sine gives m/2 on both sides. NaN where the sideband lies outside the band, nearer to
-    another mesh line, is unresolved, or the mesh line is below 1e-9 of the strongest line. Source: standard literature.
+    Amplitude modulation of index m by a sine gives m/2 on both sides. NaN where the sideband lies outside the band,
+    nearer to another mesh line, is unresolved, or the mesh line is below 1e-9 of the strongest line. Source: standard
+    literature.
     """
     line, order = harmonic * teeth, harmonic * teeth + offset
     if 2 * abs(offset) >= teeth or order >= amplitude.size or line >= amplitude.size:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.report import score_figures, stiffness_figures, vibration_figures
-from diagnostics.report.examples import HEALTHY, example_set
+from diagnostics.report.examples import HEALTHY, example_set, strongest_harmonic
 from diagnostics.report.style import state_colours
 from diagnostics.separability import Separability
 from diagnostics.training import TITLES, Training
@@ -15,7 +15,7 @@ from diagnostics.training import TITLES, Training
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HARMONICS = (1, 2, 3)
+FIRST_HARMONICS = (1, 2)
 INDICATORS_SHOWN = 4
 
 
@@ -79,9 +79,10 @@ def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> 
     if not spectra:
         drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
         return
-    for harmonic in HARMONICS:
+    for harmonic in sorted({*FIRST_HARMONICS, strongest_harmonic(spectra[0], examples.teeth[0])}):
         figure = vibration_figures.spectrum_figure(examples, colours, harmonic)
-        caption = f"Order spectrum (Hann, {spectra[0].revolutions} pinion revolutions) around mesh harmonic {harmonic}: {which}."
+        window = f"Hann, {spectra[0].revolutions} pinion revolutions"
+        caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
         drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
 
 
@@ -99,7 +100,7 @@ def _draw_damage(
         # provided lazily by the package, computed from the configuration; a set can be read without its physics
         curves = siggen.mesh_stiffness_curves(dataset.path / "config.yaml")
         figure = stiffness_figures.stiffness_figure(curves, colours)
-    except Exception as error:  # noqa: BLE001 - whatever the physics says, the report on the records stands
+    except Exception as error:
         drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {error}")
         return
     drawing.damage["stiffness"] = (figure, "Mesh stiffness of specimen 0 in every state while the damaged teeth mesh.")

@@ -97,3 +97,9 @@ def order_spectrum(signal: np.ndarray, tacho_s: np.ndarray, fs_hz: float, teeth_
     steps = resample_to_angle(signal, fs_hz, grid)
     amplitude = 4.0 * np.abs(fft.rfft(steps * hann_weights(steps.size))) / steps.size
     return OrderSpectrum(np.arange(amplitude.size) / grid.revolutions, amplitude, grid.revolutions)
+
+
+def strongest_harmonic(spectrum: OrderSpectrum, teeth_pinion: int) -> int:
+    """Return the mesh harmonic with the largest line among those whose sidebands lie inside the band."""
+    bins = np.arange(teeth_pinion, int(spectrum.order[-1]) - teeth_pinion, teeth_pinion) * spectrum.revolutions
+    return int(spectrum.amplitude_m_s2[bins].argmax()) + 1

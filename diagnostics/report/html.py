@@ -15,10 +15,12 @@ body{margin:0;font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,sans-seri
 main{max-width:1120px;margin:0 auto;padding:1.2rem 1rem 4rem}
 h1{font-size:1.55rem;line-height:1.25;margin:.4rem 0 1rem}
 h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid var(--line)}
-p,li{max-width:46rem}
-.first{font-size:1.06rem;padding:.8rem 1rem;background:#fff7e6;border-left:4px solid #e3a21a;border-radius:0 6px 6px 0;max-width:none}
-.note{padding:.6rem 1rem;background:var(--band);border-left:4px solid var(--soft);border-radius:0 6px 6px 0;max-width:none}
-.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:1.2rem;align-items:start}
+p,li{max-width:46rem;overflow-wrap:anywhere}
+.first{font-size:1.06rem;padding:.8rem 1rem;background:#fff7e6;border-left:4px solid #e3a21a;
+border-radius:0 6px 6px 0;max-width:none}
+.note{padding:.6rem 1rem;background:var(--band);border-left:4px solid var(--soft);
+border-radius:0 6px 6px 0;max-width:none}
+.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:1.2rem;align-items:start;margin-top:1.2rem}
 figure{margin:0;border:1px solid var(--line);border-radius:8px;padding:.6rem;background:#fff}
 figure img{display:block;width:100%;height:auto}
 figcaption{font-size:.9rem;color:var(--soft);margin-top:.4rem}
@@ -26,7 +28,7 @@ figcaption{font-size:.9rem;color:var(--soft);margin-top:.4rem}
 .tall{max-height:34rem;overflow-y:auto}
 table{border-collapse:collapse;font-size:.9rem;width:100%;font-variant-numeric:tabular-nums}
 th,td{padding:.35rem .6rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--line)}
-th:first-child,td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:9.5rem}
+th:first-child,td:first-child{text-align:left;white-space:normal;min-width:15rem}
 thead th{position:sticky;top:0;background:var(--band)}
 table.sortable thead th{cursor:pointer;user-select:none}
 table.sortable thead th::after{content:" \\2195";color:#a9b4be}
@@ -35,17 +37,20 @@ thead th[aria-sort=descending]::after{content:" \\2193"!important;color:var(--ac
 small{color:var(--soft)}
 code{overflow-wrap:anywhere;font-size:.88em}
 @media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
-th,td{padding:.3rem .4rem}}
+th,td{padding:.3rem .4rem}th:first-child,td:first-child{min-width:8.5rem}}
 """
 
 SCRIPT = """
 document.querySelectorAll("table.sortable th").forEach(function(head){head.addEventListener("click",function(){
-var table=head.closest("table"),body=table.tBodies[0],column=head.cellIndex,down=head.getAttribute("aria-sort")!=="descending";
+var table=head.closest("table"),body=table.tBodies[0],column=head.cellIndex;
+var down=head.getAttribute("aria-sort")!=="descending";
 table.querySelectorAll("th").forEach(function(other){other.removeAttribute("aria-sort")});
 head.setAttribute("aria-sort",down?"descending":"ascending");
-var key=function(row){var cell=row.cells[column],value=cell.dataset.value;return value===undefined?cell.textContent:value===""?null:+value};
+var key=function(row){var cell=row.cells[column],value=cell.dataset.value;
+return value===undefined?cell.textContent:value===""?null:+value};
 Array.from(body.rows).sort(function(a,b){var x=key(a),y=key(b);if(x===null)return 1;if(y===null)return -1;
-var order=typeof x==="number"?x-y:x.localeCompare(y);return down?-order:order}).forEach(function(row){body.appendChild(row)})})});
+var order=typeof x==="number"?x-y:x.localeCompare(y);return down?-order:order})
+.forEach(function(row){body.appendChild(row)})})});
 """
 
 
@@ -105,7 +110,8 @@ def table(head: Sequence[str], rows: Sequence[Sequence[Cell]], *, sortable: bool
 
 def _cell(cell: Cell) -> str:
     small = f" <small>{escape(cell.small)}</small>" if cell.small else ""
+    text = escape(cell.text).replace("_", "_<wbr>")  # long names break between their parts
     if cell.value is None:
-        return f"<td>{escape(cell.text)}{small}</td>"
+        return f"<td>{text}{small}</td>"
     value = f"{cell.value:.6g}" if math.isfinite(cell.value) else ""
-    return f'<td data-value="{value}">{escape(cell.text)}{small}</td>'
+    return f'<td data-value="{value}">{text}{small}</td>'

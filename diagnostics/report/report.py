@@ -18,7 +18,7 @@ from diagnostics.report.drawing import Drawing, draw
 from diagnostics.report.sentences import summary
 from diagnostics.report.style import png_bytes, styled
 from diagnostics.separability import Separability, separability, separability_table
-from diagnostics.training import Training, save_models, train_models, training_metrics
+from diagnostics.training import TITLES, Training, save_models, train_models, training_metrics
 from siggen.errors import DatasetError
 
 SECTIONS = (
@@ -165,6 +165,8 @@ def _write_page(
 ) -> Path:
     pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in drawing.figures().items()}
     (folder / "figures").mkdir(exist_ok=True)
+    for name in TITLES:  # matrices of classifiers that an earlier run had and this one has not
+        (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
     for name, (png, _) in pictures.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
     parts = [
@@ -191,7 +193,8 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
         )
     if section == "indicators":
         text = (
-            f"All {len(found)} features on all specimens: nothing is trained here, so none has to be held back. AUC 0.5 means "
+            f"All {len(found)} features on all specimens: nothing is trained here, so none has to be held "
+            "back. AUC 0.5 means "
             "no separation, 0 and 1 a perfect one. Limits: 95 %, resampled specimens. A click on a column's head sorts."
         )
         return [html.paragraph(text), tables.separability_html(found)]
@@ -201,5 +204,6 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
 def _provenance(dataset: Any) -> str:
     return (
         f"Set {dataset.path.name}, identity {dataset.manifest['identity']}, {len(dataset.channels)} channels at "
-        f"{dataset.fs_hz:g} Hz, records of {dataset.duration_s:g} s. Shaft angles come from the once-per-revolution pulses."
+        f"{dataset.fs_hz:g} Hz, records of {dataset.duration_s:g} s. Shaft angles come from the "
+        "once-per-revolution pulses."
     )

@@ -54,7 +54,8 @@ def scores_sentence(training: Training) -> str:
         for judged in training.judged
     ]
     return (
-        f"On {first.records} records of {first.specimens} test specimens the right one of {len(first.classes)} states was "
+        f"On {first.records} records of {first.specimens} test specimens the right one of "
+        f"{len(first.classes)} states was "
         f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(1.0 / len(first.classes))}."
     )
 
@@ -66,7 +67,8 @@ def certainty_sentence(training: Training) -> str:
     if perfect:
         return (
             f"Without a single error on {specimens} specimens the interval has no width, yet up to "
-            f"{percent(error_share_limit(specimens))} of specimens with errors remain compatible with that (95\u00a0%, binomial)."
+            f"{percent(error_share_limit(specimens))} of specimens with errors remain compatible with that "
+            "(95\u00a0%, binomial)."
         )
     return f"Intervals are 95 % and come from resampling the {specimens} test specimens; with so many they are " + (
         "rough." if specimens < 20 else "meaningful."
@@ -83,7 +85,8 @@ def control_sentence(training: Training) -> str:
         if judged.permuted_auroc.size > 1 and abs(judged.permuted_auroc.mean() - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
-        f"{' and '.join(judged.name for judged in suspicious)} stay off chance, so the scores above are not to be trusted"
+        f"{' and '.join(judged.name for judged in suspicious)} stay off chance, so the scores above are not "
+        "to be trusted"
         if suspicious
         else "chance is 0.5, so nothing but the labels carries the scores"
     )
@@ -95,19 +98,23 @@ def _control(judged: Judged) -> str:
     if areas.size == 1:
         return f"{areas[0]:.2f} in a single short run for {TITLES[judged.name]}"
     low, high = np.quantile(areas, [0.05, 0.95])
-    return f"{areas.mean():.2f} on average for {TITLES[judged.name]} ({areas.size} runs, 90 % within {low:.2f} to {high:.2f})"
+    spread = f"{areas.size} runs, 90\u00a0% within {low:.2f} to {high:.2f}"
+    return f"{areas.mean():.2f} on average for {TITLES[judged.name]} ({spread})"
 
 
 def indicator_sentences(found: list[Separability]) -> list[str]:
     """Say which state is hardest, which single indicator does best there, and what follows the damaged area."""
     sentences = []
     hardest = hardest_state(found)
+    if hardest and math.isnan(hardest[1].auc[hardest[0]].low):
+        return ["With a single specimen the indicators below describe that specimen; they say nothing about others."]
     if hardest:
         state, entry = hardest
         area = entry.auc[state]
         sentences.append(
             f"The state hardest to tell from healthy is {state}: the best of {len(found)} single indicators, "
-            f"{entry.feature}, reaches an AUC of {area.value:.2f} ({area.low:.2f} to {area.high:.2f}; chosen on the same "
+            f"{entry.feature}, reaches an AUC of {area.value:.2f} ({area.low:.2f} to {area.high:.2f}; chosen "
+            "on the same "
             "specimens, therefore optimistic)."
         )
     followed = [entry for entry in found if math.isfinite(entry.spearman.value)]

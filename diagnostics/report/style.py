@@ -35,7 +35,7 @@ def state_colours(states: tuple[str, ...], healthy: set[str]) -> dict[str, str]:
     """Return a colour per state: grey for healthy ones, warmer and darker with the order of the others."""
     faulty = [state for state in states if state not in healthy]
     last = len(FAULT_COLOURS) - 1
-    return {state: HEALTHY_COLOUR for state in healthy} | {
+    return dict.fromkeys(healthy, HEALTHY_COLOUR) | {
         state: FAULT_COLOURS[min(position, last)] for position, state in enumerate(faulty)
     }
 

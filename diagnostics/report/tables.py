@@ -47,7 +47,8 @@ def _details(details: dict[str, Any]) -> str:
     if "strength" in details:
         return f"{details['features']} features, C = {details['strength']:g}"
     return (
-        f"windows of {details['revolutions_per_window']} pinion revolutions × {details['samples_per_revolution']} samples, "
+        f"windows of {details['revolutions_per_window']} pinion revolutions × "
+        f"{details['samples_per_revolution']} samples, "
         f"epoch {details['best_epoch']} of {details['epochs']}"
     )
 

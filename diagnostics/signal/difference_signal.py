@@ -1,9 +1,9 @@
 """Regular, residual and difference signal of a synchronous average, by zeroing of whole orders.
 
-residual = average minus shaft orders and ALL mesh harmonics (sidebands kept); difference = residual minus the first-order
-sidebands; regular = average minus difference. Orders are whole bins of one revolution, so nothing rings and nothing depends
-on speed, unlike notch filters in Hz. Source: Lebold et al. 2000 for the separation of residual and difference; all mesh
-harmonics below the band edge are removed, not the first two that some toolboxes take.
+residual = average minus shaft orders and ALL mesh harmonics (sidebands kept); difference = residual minus the first-
+order sidebands; regular = average minus difference. Orders are whole bins of one revolution, so nothing rings and
+nothing depends on speed, unlike notch filters in Hz. Source: Lebold et al. 2000 for the separation of residual and
+difference; all mesh harmonics below the band edge are removed, not the first two that some toolboxes take.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """A record resampled to equal steps of shaft angle, with the angle taken from the once-per-revolution pulses.
 
 The angle is a cubic spline through the exact pulse times (never the nominal speed: a droop of 0.2 % already destroys an
-average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline on the twice oversampled record;
-oversampling, spline prefilter and band limit are one multiplication in the frequency domain.
-Source: order tracking by interpolation is standard literature; the B-spline prefilter follows Unser 1999, the rest derived.
+average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline on the twice oversampled
+record; oversampling, spline prefilter and band limit are one multiplication in the frequency domain. Source: order
+tracking by interpolation is standard literature; the B-spline prefilter follows Unser 1999, the rest derived.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 SAMPLES_PER_TOOTH = 128
-"""Angle steps per mesh period: 128 keeps the band of a 51.2 kHz record above a mesh frequency of 400 Hz and one definition
-of every indicator below it."""
+"""Angle steps per mesh period: 128 keeps the band of a 51.2 kHz record above a mesh frequency of 400 Hz and one
+definition of every indicator below it."""
 
 OVERSAMPLING = 2
 EDGE_SAMPLES = 1024
@@ -83,8 +83,8 @@ def _polynomials(pulses: np.ndarray) -> np.ndarray:
 def resample_to_angle(signal: np.ndarray, fs_hz: float, grid: AngleGrid) -> np.ndarray:
     """Return the record at the angle steps, limited to the band that the steps can carry.
 
-    The error is below 3e-5 of the amplitude up to 0.25 fs and below 1e-3 up to 0.4 fs (tested), apart from the outermost
-    milliseconds of the record.
+    The error is below 3e-5 of the amplitude up to 0.25 fs and below 1e-3 up to 0.4 fs (tested), apart from the
+    outermost milliseconds of the record.
 
     Parameters
     ----------

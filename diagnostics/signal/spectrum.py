@@ -36,7 +36,8 @@ def revolutions_needed(order: int, teeth: int, other_teeth: int) -> float:
     """Return the revolutions of a shaft from which its sideband `order` stands clear of the other shaft's sidebands.
 
     With Hann weighting two lines are apart from two bins on. The other shaft's sidebands lie at multiples of
-    teeth / other_teeth orders (distance from the mesh line, counted in orders of this shaft), and the mesh line at zero.
+    teeth / other_teeth orders (distance from the mesh line, counted in orders of this shaft), and the mesh line at
+    zero.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """Average of a record over whole revolutions of the pinion shaft or of the gear shaft.
 
-A mesh period holds a fixed number of angle steps, so one grid serves both shafts: a pinion revolution is z1 mesh periods, a
-gear revolution z2 (gear angle = pinion angle z1/z2). Source: synchronous averaging, standard literature (McFadden 1987).
+A mesh period holds a fixed number of angle steps, so one grid serves both shafts: a pinion revolution is z1 mesh
+periods, a gear revolution z2 (gear angle = pinion angle z1/z2). Source: synchronous averaging, standard literature
+(McFadden 1987).
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ class SynchronousAverage:
     teeth : int
         Teeth of the averaged gear; mesh harmonic h is shaft order h * teeth.
     revolutions : int
-        Whole revolutions averaged. What is locked to the other shaft cancels exactly only if this is a multiple of the other
-        gear's tooth number (over their common divisor), and falls about as 1/revolutions otherwise.
+        Whole revolutions averaged. What is locked to the other shaft cancels exactly only if this is a multiple of the
+        other gear's tooth number (over their common divisor), and falls about as 1/revolutions otherwise.
     """
 
     signal: np.ndarray

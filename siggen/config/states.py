@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from siggen.config.damage import DAMAGE, DamageModel
 from siggen.config.problems import MISSING, refusal
@@ -18,8 +18,15 @@ RESERVED_NAMES = ("previous", "none")
 STATE_NAME = Said("lower-case letters, digits, - and _, beginning with a letter")
 
 
+def _labels_are_optional(schema: dict[str, Any]) -> None:
+    """Keep the labels out of the required keys for editors: they are filled in before validation."""
+    schema["required"] = [key for key in schema["required"] if key not in ("fault", "severity")]
+
+
 class State(Section):
     """One condition: its label, its damage, and the milder state it has grown from."""
+
+    model_config = ConfigDict(json_schema_extra=_labels_are_optional)
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]*$"), STATE_NAME] = Field(description="label of the state")
     fault: Literal["healthy", "pitting", "spalling"] = Field(description="default: pitting with damage, else healthy")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 
+import jsonschema
 import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
-from siggen.config import Config
+from siggen.config import Config, read_yaml
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +63,15 @@ def test_operating_points_may_be_a_list_or_a_mapping(schema):
 def test_damage_is_chosen_by_its_kind(schema):
     (kinds,) = [c for c in schema["$defs"]["State"]["properties"]["damage"]["anyOf"] if "discriminator" in c]
     assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "list"}
+
+
+@pytest.mark.parametrize("name", ["quickstart", "paper_a"])
+def test_an_editor_with_the_schema_accepts_the_shipped_configurations(schema, name):
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.validate(read_yaml(f"configs/{name}.yaml"), schema)
+
+
+def test_an_editor_with_the_schema_marks_a_misspelt_key(schema):
+    wrong = {**read_yaml("configs/quickstart.yaml"), "specimen": 3}
+    with pytest.raises(jsonschema.ValidationError, match="specimen"):
+        jsonschema.validate(wrong, schema)

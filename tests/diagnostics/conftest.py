@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
@@ -145,3 +145,9 @@ def features(dataset: MemoryDataset) -> pa.Table:
     from diagnostics.feature_table import feature_table
 
     return feature_table(dataset)
+
+
+@pytest.fixture(scope="session")
+def make_dataset() -> Callable[..., MemoryDataset]:
+    """Return the function that makes such sets."""
+    return memory_dataset

@@ -58,7 +58,9 @@ def test_permuted_labels_give_chance(matrix: FeatureMatrix, split: SpecimenSplit
     assert permutation_control(matrix, split, seed=1, repeats=10).mean() == pytest.approx(0.5, abs=0.12)
 
 
-def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(
+    matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
     truth = state_index(matrix, split.classes)
     shuffled = permuted_target(truth, split, seed=1, repeat=0)
     np.testing.assert_array_equal(shuffled[split.test], truth[split.test])

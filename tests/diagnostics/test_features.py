@@ -13,7 +13,9 @@ from diagnostics.features import FeatureSettings, RecordFeatures, record_feature
 FS_HZ, TEETH = 25_600.0, (18, 47)
 
 
-def record(duration_s: float, pinion: float = 0.0, gear: float = 0.0, speed_hz: float = 30.0) -> tuple[np.ndarray, np.ndarray]:
+def record(
+    duration_s: float, pinion: float = 0.0, gear: float = 0.0, speed_hz: float = 30.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Return a mesh tone of amplitude 2 modulated by both shafts, and its pulses."""
     time_s = np.arange(round(FS_HZ * duration_s)) / FS_HZ
     turns = speed_hz * time_s + 0.4
@@ -29,8 +31,8 @@ def features_of(duration_s: float = 2.0, **depths: float) -> RecordFeatures:
 
 def test_modulations_of_both_shafts_are_read_back_from_one_record() -> None:
     found = features_of(pinion=0.2, gear=0.1).values
-    # over 59 pinion revolutions the plain average keeps up to 1/(pi * 59 * 0.38) = 1.4 % of a gear sideband (5e-2 of the
-    # mesh line): 7e-4; the Hann average of the gear leaks far less
+    # over 59 pinion revolutions the plain average keeps up to 1/(pi * 59 * 0.38) = 1.4 % of a gear sideband (5e-2 of
+    # the mesh line): 7e-4; the Hann average of the gear leaks far less
     assert found["sideband_pinion_h1_upper1__a"] == pytest.approx(0.1, abs=7e-4)
     assert found["sideband_pinion_h1_lower1__a"] == pytest.approx(0.1, abs=7e-4)
     assert found["sideband_gear_h1_upper1__a"] == pytest.approx(0.05, abs=1e-4)

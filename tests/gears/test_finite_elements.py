@@ -39,16 +39,17 @@ def test_mean_twist_of_a_circle_in_the_body_is_that_of_a_twisted_ring():
     twist = (-x * np.cos(angle)[:, None] + y * np.sin(angle)[:, None]).mean(axis=0)
     shear = 1 / 2.6
     exact = gear.base_radius_m * radius * (gear.bore_radius_m**-2 - radius**-2) / (4 * pi * shear)
-    # The bore is a polygon inscribed in its circle: its radius is 0.05 % small, hence the twist 0.13 % large.
-    np.testing.assert_allclose(twist, exact, rtol=3e-3)
+    # Measured 6e-5: what the polygons of bore and elements leave.
+    np.testing.assert_allclose(twist, exact, rtol=3e-4)
 
 
 @pytest.mark.parametrize("shape", [ToothShape(18, 2.17), ToothShape(47, 3.894), ToothShape(90, 6.5)], ids=str)
-def test_halving_the_mesh_changes_the_compliance_by_less_than_a_third_of_a_percent(shape):
+def test_halving_the_mesh_changes_the_compliance_by_less_than_a_tenth_of_a_percent(shape):
     gear = shape.gear()
     roll = np.linspace(gear.involute_start_roll_rad, gear.tip_roll_rad, 9)[1:-1]
     coarse, fine = (tooth_compliance(gear, roll, size=s) for s in (0.06, 0.03))
-    np.testing.assert_allclose(coarse, fine, rtol=3e-3)
+    # Measured 4e-4 at most.
+    np.testing.assert_allclose(coarse, fine, rtol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -65,11 +66,11 @@ def test_calibrated_compliance_meets_finite_elements_of_a_gear_it_was_not_fitted
 
 def test_analytical_models_are_softer_than_finite_elements_at_the_pitch_point():
     pair = paper_a_pair()
-    for gear, expected in ((pair.pinion, (1.037, 1.358, 1.097)), (pair.gear, (1.213, 1.158, 1.045))):
+    for gear, expected in ((pair.pinion, (1.037, 1.359, 1.097)), (pair.gear, (1.213, 1.159, 1.045))):
         roll = np.array([np.tan(gear.pressure_angle_rad)])
         ratios = model_ratios(gear, roll, tooth_compliance(gear, roll, size=0.04))
-        # Values of docs/finite_elements.md; this mesh and that one differ by 0.1 %.
-        np.testing.assert_allclose([r[0] for r in list(ratios.values())[:3]], expected, rtol=3e-3)
+        # Values of docs/finite_elements.md; their last digit and this mesh differ by 0.05 % each.
+        np.testing.assert_allclose([r[0] for r in list(ratios.values())[:3]], expected, rtol=1e-3)
 
 
 def test_plane_strain_is_stiffer_than_plane_stress_but_not_by_more_than_its_modulus():

@@ -37,7 +37,8 @@ def test_version(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
 
 
 def test_help_loads_nothing_heavy() -> None:
-    code = "import sys, diagnostics.cli.app; print([m for m in ('numpy','scipy','torch','sklearn','pyarrow','matplotlib') if m in sys.modules])"
+    heavy = ("numpy", "scipy", "torch", "sklearn", "pyarrow", "matplotlib")
+    code = f"import sys, diagnostics.cli.app; print([m for m in {heavy} if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
 

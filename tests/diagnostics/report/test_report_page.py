@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
 from diagnostics.realism import meaning_of_scores
+from diagnostics.report.examples import OrderSpectrum, strongest_harmonic
 from diagnostics.report.report import write_report
 
 
@@ -44,7 +47,15 @@ def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
 
 def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     written = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-    figures = ("waveforms", "spectrum_h1", "scores", "permuted", "confusion_indicators", "confusion_rms", "stiffness_loss")
+    figures = (
+        "waveforms",
+        "spectrum_h1",
+        "scores",
+        "permuted",
+        "confusion_indicators",
+        "confusion_rms",
+        "stiffness_loss",
+    )
     assert {f"figures/{name}.png" for name in figures} <= written
     assert {"features.parquet", "separability.csv", "separability.parquet", "models/model_card.md"} <= written
     metrics = json.loads((folder / "metrics.json").read_text())
@@ -56,6 +67,28 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
 def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
     notes = json.loads((folder / "metrics.json").read_text())["notes"]
     assert any(note.startswith("No stiffness curves") for note in notes)
+
+
+def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
+    short = make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25)
+    earlier = [tmp_path / "models" / "cnn.onnx", tmp_path / "figures" / "confusion_network.png"]
+    for path in earlier:
+        path.parent.mkdir()
+        path.write_bytes(b"of an earlier run")
+    write_report(short, tmp_path, seed=0)
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    assert set(metrics["training"]["classifiers"]) == {"indicators", "rms"}
+    assert any(note.startswith("No network: record") for note in metrics["notes"])
+    assert any("gear sidebands not resolved by 2 gear revolutions" in note for note in metrics["notes"])
+    assert any("no validation specimens" in note for note in metrics["notes"])
+    assert not any(path.exists() for path in earlier)
+
+
+def test_strongest_mesh_harmonic_is_found() -> None:
+    order = np.arange(18 * 64 * 10) / 10
+    amplitude = np.full(order.size, 0.1)
+    amplitude[[18 * 10, 5 * 18 * 10, 7 * 10]] = [1.0, 2.0, 9.0]  # the strongest line of all is no mesh line
+    assert strongest_harmonic(OrderSpectrum(order, amplitude, 10), 18) == 5
 
 
 def test_a_set_without_test_specimens_still_gets_its_report(dataset: Any, tmp_path: Path) -> None:

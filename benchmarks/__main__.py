@@ -1,0 +1,66 @@
+"""`python -m benchmarks [topic ...] [--quick]`: what siggen costs, as a table beside named alternatives."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Iterator, Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.machine import load_average, machine_lines
+from benchmarks.row import Row
+
+TOPICS = ("startup", "stiffness", "integration", "record", "storage", "workers", "quickstart")
+
+
+def main() -> None:
+    """Measure the topics that the command line names (all of them without one) and print the table."""
+    arguments = _arguments()
+    console = Console(width=None if Console().is_terminal else 160)
+    for line in machine_lines():
+        console.print(line, style="yellow" if line.startswith("WARNING") else None, highlight=False)
+    rows = [(topic, row) for topic in arguments.topics or TOPICS for row in _rows(topic, arguments.quick, console)]
+    console.print(_table(rows))
+    console.print(f"load average at the end: {load_average():.2f}", highlight=False)
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    # no `choices`: argparse would refuse the empty list of a call without topics
+    parser.add_argument("topics", nargs="*", metavar="topic", help=f"one or more of {', '.join(TOPICS)}; default: all")
+    parser.add_argument("--quick", action="store_true", help="fewer repeats, smaller sets, no whole quickstart")
+    arguments = parser.parse_args()
+    if unknown := [topic for topic in arguments.topics if topic not in TOPICS]:
+        parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join(TOPICS)}")
+    return arguments
+
+
+def _rows(topic: str, quick: bool, console: Console) -> Iterator[Row]:
+    # imported one by one: a topic that is not asked for costs nothing
+    module = importlib.import_module(f"benchmarks.{topic}")
+    with console.status(f"measuring {topic}"):
+        yield from module.rows(quick=quick)
+
+
+def _table(rows: Sequence[tuple[str, Row]]) -> Table:
+    table = Table(show_lines=False)
+    for column in ("what", "measured", "alternative"):
+        table.add_column(column, overflow="fold")
+    for column in ("ratio", "goal", "met"):
+        table.add_column(column, justify="right", no_wrap=True)
+    previous = ""
+    for topic, row in rows:
+        if topic != previous:
+            table.add_section()
+            table.add_row(f"[bold]{topic}")
+        previous = topic
+        met = "-" if row.met is None else "yes" if row.met else "[red]no"
+        ratio = "" if row.ratio is None else f"{row.ratio:.3g}"
+        table.add_row(row.what, row.measured, row.alternative, ratio, row.goal, met)
+    return table
+
+
+if __name__ == "__main__":
+    main()

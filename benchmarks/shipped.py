@@ -1,0 +1,17 @@
+"""The configurations that the benchmarks run: those that are shipped, some with values replaced."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from siggen.config import Config
+from siggen.loading import load_config
+
+ROOT = Path(__file__).resolve().parents[1]
+QUICKSTART = ROOT / "configs" / "quickstart.yaml"
+PAPER_A = ROOT / "configs" / "paper_a.yaml"
+
+
+def shipped(path: Path, *overrides: str) -> Config:
+    """Return a shipped configuration with overrides such as `specimens=12`."""
+    return load_config(path, overrides)
