@@ -31,7 +31,7 @@ def flank_figure(views: Sequence[FlankView]) -> Figure:
     columns = 1 if len(shown) <= 4 else 2
     rows = ceil(len(shown) / columns)
     width_mm = max(view.face_width_mm for view in shown)
-    height_mm = max(view.tip_mm for view in shown)
+    height_mm = max(view.tip_mm - view.foot_mm for view in shown)
     size = (
         columns * (INCHES_PER_MM * width_mm * 1.5 + 2.2) + 1.0,
         rows * (INCHES_PER_MM * 1.5 * height_mm + 0.9) + 0.4,
@@ -55,7 +55,7 @@ def _draw(axis: Axes, view: FlankView, colours: ScalarMappable) -> None:
 
     axis.set_aspect("equal")
     axis.set_xlim(-MARGIN_MM, view.face_width_mm + MARGIN_MM)
-    axis.set_ylim(min(0.0, view.foot_mm) - MARGIN_MM, view.tip_mm + MARGIN_MM)
+    axis.set_ylim(view.foot_mm - MARGIN_MM, view.tip_mm + MARGIN_MM)
     fewest = min(zone.pairs for zone in view.zones)
     for zone in view.zones:
         shade = "0.84" if zone.pairs == fewest else "0.94"
@@ -87,7 +87,7 @@ def _name_heights(axis: Axes, view: FlankView) -> None:
     names += [(view.start_mm, "start of active profile", "tab:green")]
     for zone in view.zones:
         names.append((0.5 * (zone.low_mm + zone.high_mm), f"{_NUMBERS.get(zone.pairs, zone.pairs)} contact", "0.45"))
-    room = 0.075 * (view.tip_mm + 2 * MARGIN_MM)
+    room = 0.075 * (view.tip_mm - view.foot_mm + 2 * MARGIN_MM)
     last = -float("inf")
     for height, text, colour in sorted(names):
         last = max(height, last + room)
