@@ -71,6 +71,12 @@ class FlankView:
 def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) -> list[FlankView]:
     """Return all damaged flanks of a specimen, state by state; of one state if it is named.
 
+    Parameters
+    ----------
+    config : Config
+    specimen_id : int
+    state : name of a state, or None for all
+
     Raises
     ------
     UsageError
@@ -90,6 +96,8 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) 
 
 def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None = None) -> pa.Table:
     """Return one row per damage of a specimen, state by state: the state's name, then the columns of `damage/`.
+
+    Lengths are in mm. Parameters as in `flank_views`.
 
     Raises
     ------

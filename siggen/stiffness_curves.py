@@ -46,7 +46,11 @@ class StiffnessCurve:
 
 
 def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
-    """Return first and last engagement, counted from angle 0, that meets damage; (0, 0) without any."""
+    """Return first and last engagement, counted from angle 0, that meets damage; (0, 0) without any.
+
+    Engagement n is pinion tooth n mod z1 with gear tooth n mod z2; damage of the pinion counts before that of the
+    gear.
+    """
     teeth = sorted({p.tooth for p in damage if p.gear == "pinion"}) or sorted({p.tooth for p in damage})
     count = pair.pinion.teeth if any(p.gear == "pinion" for p in damage) else pair.gear.teeth
     if not teeth:

@@ -42,6 +42,12 @@ plane (at 0.25: 1 %, measured); a wider contact, on the last remains of a pitted
 def linear_compliance(pair: GearPair, length_m: FloatArray) -> FloatArray:
     """Return 1/k = 4 (1 - nu^2)/(pi E L) of contacts of length L (k,) [m/N].
 
+    Parameters
+    ----------
+    pair : GearPair
+    length_m : (k,)
+        Contact lengths, above 0 [m].
+
     Source: Yang and Sun; once per pair, equal materials.
     """
     return 4.0 / (pi * _plane_modulus(pair) * length_m)
@@ -49,6 +55,14 @@ def linear_compliance(pair: GearPair, length_m: FloatArray) -> FloatArray:
 
 def power_law_compliance(pair: GearPair, length_m: FloatArray, force_n: float) -> FloatArray:
     """Return 1/k = 1.275/(E^0.9 L^0.8 F^0.1) of contacts of length L (k,) [m/N].
+
+    Parameters
+    ----------
+    pair : GearPair
+    length_m : (k,)
+        Contact lengths, above 0 [m].
+    force_n : float
+        Normal force of the pair, above 0 [N].
 
     Source: memory of the literature; see this module's docstring for what speaks for it.
     """
@@ -59,6 +73,16 @@ def weber_banaschek_compliance(
     pair: GearPair, roll_pinion: FloatArray, roll_gear: FloatArray, length_m: FloatArray, force_n: float
 ) -> FloatArray:
     """Return the secant compliance of contacts at roll angles and of length L (k,) [m/N].
+
+    Parameters
+    ----------
+    pair : GearPair
+    roll_pinion, roll_gear : (k,)
+        Roll angles of the contact on the two flanks, above 0 [rad].
+    length_m : (k,)
+        Contact lengths, above 0 [m].
+    force_n : float
+        Normal force of the pair, above 0 [N].
 
     Source: Weber and Banaschek 1953, derived as in this module's docstring.
     """
@@ -74,14 +98,34 @@ def weber_banaschek_compliance(
 def contact_half_width(
     pair: GearPair, roll_pinion: FloatArray, roll_gear: FloatArray, length_m: FloatArray, force_n: float
 ) -> FloatArray:
-    """Return Hertz's half width a_H of contacts at roll angles, shape of `length_m` [m]."""
+    """Return Hertz's half width a_H of contacts at roll angles (k,) [m].
+
+    Parameters as in `weber_banaschek_compliance`. Radii of curvature are rho_i = R_bi psi_i. Source: Hertz, parallel
+    cylinders.
+    """
     first, second = roll_pinion * pair.pinion.base_radius_m, roll_gear * pair.gear.base_radius_m
     radius = first * second / (first + second)
     return np.sqrt(8.0 * force_n * radius / (pi * _plane_modulus(pair) * length_m))
 
 
 def centre_line_depth(pair: GearPair, which: str, roll: FloatArray) -> FloatArray:
-    """Return the distance from contact to tooth centre line along the line of action, h/cos(alpha_1), (k,) [m]."""
+    """Return the distance from contact to tooth centre line along the line of action, h/cos(alpha_1), (k,) [m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    which : str
+        'pinion' or 'gear'.
+    roll : (k,)
+        Roll angles of the contact [rad].
+
+    Raises
+    ------
+    ValueError
+        For any other gear name.
+
+    Source: derived; alpha_1 is the angle between load and the normal to the centre line.
+    """
     gear = pair.member(which)
     return gear.half_thickness_m(roll) / np.cos(roll - gear.base_half_angle_rad)
 

@@ -131,7 +131,9 @@ def pair_compliance(
     pinion_pits: Iterable[Pit] = (),
     gear_pits: Iterable[Pit] = (),
 ) -> PairCompliance:
-    """Return the compliance of one tooth pair in its parts; arguments and errors as in `pair_stiffness`.
+    """Return the compliance of one tooth pair in its parts, (k,) each [m/N].
+
+    Arguments and errors are those of `pair_stiffness`, which is the inverse of the sum.
 
     Source: paper A, section 2.2 (springs in series).
     """
