@@ -13,8 +13,9 @@ surface of a half plane approaches a point at depth h >> a_H by 2 F (1 - nu^2)/(
 the tooth's centre line along the line of action, h(psi)/cos(alpha_1), beyond which bending takes over. `power_law` is
 from memory of the gear literature. Its dimension is right (N^0.9 m^-1.8 m^0.8 N^0.1 = N/m) and its exponent is that
 of Palmgren's roller contact, F^0.9; at the local exponent 0.9 the bracket of `weber_banaschek` is 5 (it is 3 to 5 for
-teeth). Its constant is uncertain: Cornell (1981) has 1.37 in place of 1.275, Palmgren's rollers 2.33. It knows
-neither curvature nor tooth thickness. Take it for comparisons with work that used it.
+teeth). Its constant is uncertain: Cornell (1981) has 1.37 in place of 1.275 and Palmgren's rollers have
+3.81 [2 (1 - nu^2)/pi]^0.9 = 2.33, both from memory too. It knows neither curvature nor tooth thickness. Take it for
+comparisons with work that used it.
 
 `linear` is `weber_banaschek` with a bracket of 1: it makes the contact three to five times too stiff, but is what
 paper A's kind of model uses. The force is one number for all contacts, the mesh force in single-pair contact. Where
