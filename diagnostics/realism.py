@@ -13,8 +13,18 @@ def is_error_free(config: Mapping[str, Any]) -> bool:
     return not config.get(MANUFACTURE_KEY)
 
 
-def meaning_of_scores(config: Mapping[str, Any]) -> str:
-    """Return the sentence that has to stand before any score of the set."""
+def meaning_of_scores(config: Mapping[str, Any], *, scored: bool = True) -> str:
+    """Return the sentence that has to stand before any score of the set, or say that there is none."""
+    if not scored:
+        return (
+            "This page has no scores, for the reason in the notes at its end, so it shows nothing about how well the "
+            "damage could be found, neither in simulation nor on a real machine"
+            + (
+                "; the gears of this set have no manufacturing errors: healthy records are free of sidebands."
+                if is_error_free(config)
+                else "."
+            )
+        )
     if is_error_free(config):
         return (
             "These scores show that the simulated damage reaches the signals and that the evaluation is "

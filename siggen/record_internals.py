@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
-from siggen.config import Config
+from siggen.config import Config, constant
 from siggen.dataset.plan import planned_record
-from siggen.dataset.specimen import draw_specimen
+from siggen.dataset.specimen import Specimen, draw_specimen
 from siggen.sensor_channels import measured_channels
 from siggen.simulation import record_response, specimen_state
 
@@ -37,6 +37,7 @@ def internals_table(config: Config, record_id: int) -> pa.Table:
         **{f"clean_accel_{_flat(place)}_m_s2": a for place, a in response.acceleration_m_s2.items()},
         **{f"bearing_force_{_flat(place)}_n": f for place, f in response.bearing_force_n.items()},
         **response.internals,
+        "transmission_error_m": _transmission_error(response.internals["approach_m"], specimen),
     }
     facts = {
         "record_id": str(record_id),
@@ -47,6 +48,12 @@ def internals_table(config: Config, record_id: int) -> pa.Table:
         "fs_hz": repr(config.fs_hz),
     }
     return pa.table(columns).replace_schema_metadata(facts)
+
+
+def _transmission_error(approach_m: np.ndarray, specimen: Specimen) -> np.ndarray:
+    """Return the dynamic transmission error on the line of action: the approach beyond the half backlash it closed."""
+    half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
+    return approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m)
 
 
 def _flat(place: str) -> str:

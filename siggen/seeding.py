@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
 from enum import IntEnum
 
 import numpy as np
@@ -43,7 +45,39 @@ def generator(seed: int, stage: Stage, *owner: int) -> np.random.Generator:
     ValueError
         If the number of owner keys is not the one fixed for the stage.
     """
+    _check_owner(stage, owner)
+    return _philox(seed, int(stage), *owner)
+
+
+def named_generator(seed: int, stage: Stage, *owner: int, name: str) -> np.random.Generator:
+    """Return the generator of one named thing of an owner, such as a channel; other names never shift its stream.
+
+    Raises
+    ------
+    ValueError
+        If the number of owner keys is not the one fixed for the stage.
+    """
+    _check_owner(stage, owner)
+    return _philox(seed, int(stage), *owner, _key(name))
+
+
+def named_uniforms(seed: int, stage: Stage, *owner: int) -> Callable[[str], float]:
+    """Return a function from names (paths of configuration keys) to uniforms in [0, 1) that belong to one owner.
+
+    A name's uniform depends on nothing but seed, stage, owner and the name itself, so keys may be added anywhere later.
+    """
+    return lambda name: float(named_generator(seed, stage, *owner, name=name).random())
+
+
+def _key(name: str) -> int:
+    """Return 64 bits of the name, the highest one set: always two words, so that no name can look like an index."""
+    return int.from_bytes(hashlib.sha256(name.encode()).digest()[:8]) | 1 << 63
+
+
+def _check_owner(stage: Stage, owner: tuple[int, ...]) -> None:
     if len(owner) != OWNER_KEYS[stage]:
         raise ValueError(f"stage {stage.name} takes {OWNER_KEYS[stage]} owner keys, received {owner}")
-    sequence = np.random.SeedSequence(seed, spawn_key=(int(stage), *owner))
-    return np.random.Generator(np.random.Philox(sequence))
+
+
+def _philox(seed: int, *key: int) -> np.random.Generator:
+    return np.random.Generator(np.random.Philox(np.random.SeedSequence(seed, spawn_key=key)))

@@ -119,6 +119,8 @@ def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Recor
             yield _simulated(config, specimen, state_of(record.state_id), record)
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
+        except ValueError as error:  # what was drawn is beyond a model's limits; the message names them
+            yield RecordFailure(record.record_id, "outside_model", str(error))
 
 
 def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:

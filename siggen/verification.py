@@ -145,7 +145,8 @@ def _simulate_again(
     try:
         config = _config(storage, dataset.manifest)
     except (ConfigError, DatasetError) as error:
-        return (), f"none: this version of siggen reads the configuration otherwise ({error})", []
+        why = f"this version of siggen reads the configuration otherwise ({error})"
+        return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
     ids = _sample(dataset, sample)
     here = environment()
     exact = {record_id: _environment(dataset.manifest, record_id) == here for record_id in ids}

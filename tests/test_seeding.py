@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.seeding import OWNER_KEYS, Stage, generator
+from siggen.seeding import OWNER_KEYS, Stage, generator, named_generator, named_uniforms
 
 KEYS = st.integers(0, 2**40)
 
@@ -70,3 +70,22 @@ def test_integers_of_stages_are_part_of_every_identity():
 def test_a_stream_is_the_one_that_existing_sets_were_made_with():
     # recorded once from this function; another value means that every existing set has become irreproducible
     assert generator(20260917, Stage.NOISE, 3, 2, 1, 0).random() == 0.14864908787470932
+
+
+def test_a_named_stream_depends_on_its_name_alone_and_on_no_other_name():
+    first, second = named_uniforms(7, Stage.GEARS, 3), named_uniforms(7, Stage.GEARS, 3)
+    second("gears.module_mm")
+    assert first("gears.face_width_mm") == second("gears.face_width_mm")
+    assert first("gears.module_mm") != first("gears.face_width_mm")
+
+
+def test_named_streams_meet_neither_each_other_nor_the_streams_of_owners():
+    named = [named_generator(7, Stage.GEARS, i, name=n).random() for i in range(3) for n in ("a", "b", "a.b")]
+    plain = [generator(7, Stage.GEARS, i).random() for i in range(3)]
+    two_keys = [generator(7, Stage.OPERATING_POINT, i, j).random() for i in range(3) for j in range(3)]
+    assert len({*named, *plain, *two_keys}) == 9 + 3 + 9
+
+
+def test_a_named_stream_of_a_wrong_owner_is_refused():
+    with pytest.raises(ValueError, match="GEARS"):
+        named_generator(7, Stage.GEARS, 1, 2, name="a")

@@ -28,7 +28,7 @@ def summary(config: dict[str, Any], training: Training | None, found: list[Separ
     found : list of Separability
         All features, strongest first.
     """
-    sentences = [meaning_of_scores(config)]
+    sentences = [meaning_of_scores(config, scored=training is not None)]
     if training:
         sentences += [scores_sentence(training), certainty_sentence(training), control_sentence(training)]
     return [*sentences, *indicator_sentences(found)]

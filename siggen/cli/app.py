@@ -59,6 +59,8 @@ def main() -> None:
     except SiggenError as error:
         typer.echo(f"siggen: {error}", err=True)
         sys.exit(error.exit_code)
+    except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
+        sys.stdout = None
     except KeyboardInterrupt:
         typer.echo("siggen: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)

@@ -99,4 +99,5 @@ def _report(generation: Generation) -> None:
         typer.echo(f"record {failure.record_id} failed: {failure.status} ({failure.reason})", err=True)
     if generation.failures:
         count = len(generation.failures)
-        typer.echo(f"{count} records could not be simulated; the set is usable, manifest.json lists them", err=True)
+        verdict = "the set is usable" if generation.rows else "the set has no rows"
+        typer.echo(f"{count} records could not be simulated; {verdict}, manifest.json lists them", err=True)

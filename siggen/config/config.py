@@ -51,7 +51,9 @@ class Config(Section):
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$"), CONFIG_NAME] = Field(description="name of the set")
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(description="where all randomness begins")
-    specimens: Annotated[Whole, Field(ge=1)] = Field(description="number of gearboxes; not part of the identity")
+    specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
+        description="number of gearboxes; not part of the identity"
+    )
     fs_hz: Annotated[Real, Field(gt=0, le=1e7)] = Field(default=51_200.0, description="sampling rate")
     duration_s: Annotated[Real, Field(gt=0, le=86_400)] = Field(default=1.0, description="length of a record")
     mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
@@ -91,11 +93,28 @@ class Config(Section):
 
     @cached_property
     def identity(self) -> str:
-        """SHA-256 (hexadecimal) of the canonical form without `specimens`: what the records follow from."""
-        content = {**self.canonical(), "schema_version": SCHEMA_VERSION}
+        """SHA-256 (hexadecimal) of what differs from the defaults, without `specimens`: what the records follow from.
+
+        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist.
+        """
+        content = {**_told(self), "schema_version": SCHEMA_VERSION}
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _told(value: Any) -> Any:
+    """Return a value as plain mappings and lists without the keys that are at their defaults; `kind` always counts."""
+    match value:
+        case Section():
+            fields = type(value).model_fields.items()
+            items = {
+                name: (getattr(value, name), field.get_default(call_default_factory=True)) for name, field in fields
+            }
+            return {name: _told(item) for name, (item, default) in items.items() if name == "kind" or item != default}
+        case tuple():
+            return [_told(item) for item in value]
+    return _plain(value)
 
 
 def _plain(value: Any) -> Any:

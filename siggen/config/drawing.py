@@ -6,49 +6,52 @@ import itertools
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
-import numpy as np
-
 from siggen.config.number import Choice, LogUniform, Normal, Uniform, Within, at, bounds
 from siggen.config.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
 
 
-def draw(section: SomeSection, rng: np.random.Generator) -> SomeSection:
+def draw(section: SomeSection, uniform: Callable[[str], float], path: str) -> SomeSection:
     """Return a section with every distribution replaced by a value.
 
-    Every physical number takes exactly one uniform from `rng`, in the order in which the section declares them,
-    constants and nulls too; so a number that becomes a distribution leaves its neighbours as they were.
+    Parameters
+    ----------
+    section : Section
+    uniform : callable
+        Path of a key -> the uniform in [0, 1) that belongs to it.
+    path : str
+        Where the section stands in the configuration; keys below it are joined with dots.
     """
 
-    def drawn(value: object) -> object:
-        u = rng.random()
-        return at(value, u) if isinstance(value, (Uniform, LogUniform, Normal, Choice)) else value
+    def drawn(value: object, name: str) -> object:
+        is_drawn = isinstance(value, (Uniform, LogUniform, Normal, Choice))
+        return at(value, uniform(name)) if is_drawn else value  # type: ignore[arg-type]
 
-    return _replaced(section, drawn)
+    return _replaced(section, drawn, path)
 
 
 def corners(section: SomeSection) -> Iterator[SomeSection]:
     """Yield the section with its distributions at every combination of their bounds; itself if it has none."""
     pairs: list[tuple[object, ...]] = []
 
-    def noted(value: object) -> object:
+    def noted(value: object, _: str) -> object:
         is_drawn = isinstance(value, (Uniform, LogUniform, Normal, Choice))
         pairs.append(tuple(dict.fromkeys(bounds(value))) if is_drawn else (value,))  # type: ignore[arg-type]
         return value
 
-    _replaced(section, noted)
+    _replaced(section, noted, "")
     for combination in itertools.product(*pairs):
         values = iter(combination)
-        yield _replaced(section, lambda _, values=values: next(values))  # type: ignore[misc]
+        yield _replaced(section, lambda *_, values=values: next(values), "")
 
 
-def _replaced(section: SomeSection, replacement: Callable[[object], object]) -> SomeSection:
+def _replaced(section: SomeSection, replacement: Callable[[object, str], object], path: str) -> SomeSection:
     changed: dict[str, object] = {}
     for name, field in type(section).model_fields.items():
         value = getattr(section, name)
         if any(isinstance(marker, Within) for marker in field.metadata):
-            changed[name] = replacement(value)
+            changed[name] = replacement(value, f"{path}.{name}")
         elif isinstance(value, Section):
-            changed[name] = _replaced(value, replacement)
+            changed[name] = _replaced(value, replacement, f"{path}.{name}")
     return section.model_copy(update=changed)

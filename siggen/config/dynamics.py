@@ -36,7 +36,11 @@ class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
     model: Literal["8dof", "6dof"] = Field(default="8dof", description="6dof leaves out motor and load")
-    integrator: Literal["product", "runge_kutta"] = Field(default="product", description="how the motion is integrated")
+    integrator: Literal["product", "runge_kutta"] = Field(
+        default="product",
+        description="product integrates the tabulated stiffness exactly; runge_kutta is a plain reference, of "
+        "first order where teeth enter and leave contact (2 percent off at 8 steps per sample)",
+    )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample"
     )

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from siggen.config.number import Number, Within, at
@@ -83,7 +82,10 @@ class Sensor(Section):
             raise refusal(problems)
         return self
 
-    def drawn(self, rng: np.random.Generator) -> Sensor:
+    def drawn(self, uniform: Callable[[str], float]) -> Sensor:
         """Return the sensor of one specimen: one gain per axis, everything per record left as it is."""
         gains = self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
-        return self.model_copy(update={"gain": tuple(at(gain, rng.random()) for gain in gains)})
+        drawn = (
+            at(gain, uniform(f"sensors.{self.name}.{axis}.gain")) for gain, axis in zip(gains, self.axes, strict=True)
+        )
+        return self.model_copy(update={"gain": tuple(drawn)})

@@ -131,7 +131,7 @@ States:
 
 def _limits(config: Config) -> str:
     """Say what follows from the gears being perfect, as long as the configuration has no manufacturing errors."""
-    perfect_gears = "" if hasattr(config, "manufacturing") else PERFECT_GEARS
+    perfect_gears = "" if getattr(config, "manufacturing", None) else PERFECT_GEARS
     return f"""## What it can teach, and what it cannot
 
 {perfect_gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.
@@ -169,8 +169,12 @@ def _loading(config: Config, splits: Sequence[str]) -> str:
     return f"""## Loading
 
 ```python
-from datasets import load_dataset                       # labels alone: load_dataset(".", "labels")
-records = load_dataset(".", split="{split}").with_format("numpy")
+from pathlib import Path
+
+from datasets import load_dataset
+
+here = str(Path(".").resolve())                         # datasets wants a folder with a name, which "." has not
+records = load_dataset(here, split="{split}").with_format("numpy")     # labels alone: load_dataset(here, "labels")
 
 import numpy as np, pandas as pd
 frame = pd.read_parquet("data/{split}-00000.parquet", columns=["record_id", "state", "{column}"])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from siggen.config import yaml_text
+from siggen.config import parse, yaml_text
 from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError
@@ -66,6 +66,8 @@ def _refuse_other_set(storage: Storage, config: Config) -> None:
         found = yaml.safe_load(stored)
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise DatasetError(f"{storage.location}/{CONFIG} cannot be read ({error}); name a new folder") from error
+    if _is_same_set(found, config):
+        return
     differences = list(_differences("", found, config.canonical()))
     if [path for path, _, _ in differences] == ["specimens"]:
         before, now = differences[0][1:]
@@ -79,6 +81,12 @@ def _refuse_other_set(storage: Storage, config: Config) -> None:
     listed += [f"  and {more} more"] if more > 0 else []
     listed = listed or ["  written in another form; was it edited?"]
     raise DatasetError("\n".join([f"{storage.location} holds another data set; name a new folder", *listed]))
+
+
+def _is_same_set(found: Any, config: Config) -> bool:
+    """Tell whether a stored configuration describes this set in another form, as a version with fewer keys wrote it."""
+    stored = parse(found).config if isinstance(found, Mapping) else None
+    return stored is not None and (stored.identity, stored.specimens) == (config.identity, config.specimens)
 
 
 def _differences(path: str, before: Any, now: Any) -> list[tuple[str, Any, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -83,7 +84,7 @@ class Dataset:
             If the split or a column does not exist.
         """
         for shard in self._shards(split):
-            with self._storage.open(shard["file"]) as source, pq.ParquetFile(source) as file:
+            with self._parquet(shard["file"]) as file:
                 self._check_columns(file.schema_arrow, columns)
                 for group in range(file.num_row_groups):
                     table = file.read_row_group(group, columns=_as_list(columns), use_threads=False).combine_chunks()
@@ -105,7 +106,7 @@ class Dataset:
         raise UsageError(self._why_no_record(record_id))
 
     def _row(self, name: str, record_id: int) -> pa.Table | None:
-        with self._storage.open(name) as source, pq.ParquetFile(source) as file:
+        with self._parquet(name) as file:
             for group in range(file.num_row_groups):
                 # column 0 is record_id, for which every row group has statistics
                 statistics = file.metadata.row_group(group).column(0).statistics
@@ -126,10 +127,22 @@ class Dataset:
     def _table(self, folder: str, split: str | None, columns: Sequence[str] | None) -> pa.Table:
         tables = []
         for name in self._splits(split):
-            with self._storage.open(f"{folder}/{name}.parquet") as source, pq.ParquetFile(source) as file:
+            with self._parquet(f"{folder}/{name}.parquet") as file:
                 self._check_columns(file.schema_arrow, columns)
                 tables.append(file.read(columns=_as_list(columns), use_threads=False))
         return pa.concat_tables(tables)
+
+    @contextmanager
+    def _parquet(self, name: str) -> Iterator[pq.ParquetFile]:
+        """Open a file of the set; what makes it unreadable becomes a message that says how to go on."""
+        try:
+            with self._storage.open(name) as source, pq.ParquetFile(source) as file:
+                yield file
+        except (OSError, pa.ArrowException) as error:
+            raise DatasetError(
+                f"{self.path}/{name} cannot be read ({error}); `siggen verify {self.path}` finds all damaged files, and "
+                "after deleting them `siggen generate` with the set's config.yaml makes them again"
+            ) from error
 
     def _splits(self, split: str | None) -> tuple[str, ...]:
         if split is None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness, at, draw
 from siggen.dataset.plan import split_of
-from siggen.seeding import Stage, generator
+from siggen.seeding import Stage, named_uniforms
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,20 +34,23 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
 
     Noise of the sensors belongs to records and is left as it is.
     """
-    gears_rng = generator(config.seed, Stage.GEARS, specimen_id)
-    sensor_rng = generator(config.seed, Stage.SENSOR, specimen_id)
+    gears = named_uniforms(config.seed, Stage.GEARS, specimen_id)
+    supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
+    sensor = named_uniforms(config.seed, Stage.SENSOR, specimen_id)
     return Specimen(
         specimen_id,
         split_of(config, specimen_id),
-        gears=draw(config.gears, gears_rng),
-        stiffness=draw(config.stiffness, gears_rng),
-        dynamics=draw(config.dynamics, generator(config.seed, Stage.SUPPORTS, specimen_id)),
-        sensors=tuple(sensor.drawn(sensor_rng) for sensor in config.sensors),
+        gears=draw(config.gears, gears, "gears"),
+        stiffness=draw(config.stiffness, gears, "stiffness"),
+        dynamics=draw(config.dynamics, supports, "dynamics"),
+        sensors=tuple(one.drawn(sensor) for one in config.sensors),
     )
 
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
     """Return an operating point of a specimen; the same for all of its states."""
-    rng = generator(config.seed, Stage.OPERATING_POINT, specimen_id, operating_point_id)
+    uniform = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, operating_point_id)
     ranges = config.operating_points[operating_point_id]
-    return OperatingPoint(speed_hz=at(ranges.speed_hz, rng.random()), torque_nm=at(ranges.torque_nm, rng.random()))
+    return OperatingPoint(
+        speed_hz=at(ranges.speed_hz, uniform("speed_hz")), torque_nm=at(ranges.torque_nm, uniform("torque_nm"))
+    )

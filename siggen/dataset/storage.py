@@ -146,8 +146,13 @@ class LocalFolder:
         """
         if self.path.exists() and not self.path.is_dir():
             raise DatasetError(f"{self.path} is a file; a data set is a folder: name another path")
-        self.path.mkdir(parents=True, exist_ok=True)
-        lock = _lock(self.path)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            lock = _lock(self.path)
+        except OSError as error:
+            raise DatasetError(
+                f"{self.path} cannot be written: {error.strerror or error}; name another folder"
+            ) from error
         try:
             yield
         finally:

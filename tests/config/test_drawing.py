@@ -1,11 +1,13 @@
-"""Drawing a section: one uniform per number, in declared order."""
+"""Drawing a section: every number by the uniform that belongs to its path."""
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from siggen.config import Dynamics, Gears, Sensor, bounds, corners, draw
+from siggen.config import Dynamics, Gears, Sensor, Uniform, bounds, corners, draw
+from siggen.config.number import Within
+from siggen.config.section import Section
+from siggen.seeding import Stage, named_uniforms
 from tests.config.minimal import config
 
 SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}
@@ -23,8 +25,11 @@ def numbers(section) -> dict[str, float]:
     return found
 
 
+UNIFORM = named_uniforms(11, Stage.SUPPORTS, 0)
+
+
 def drawn(section):
-    return draw(section, np.random.default_rng(11))
+    return draw(section, UNIFORM, type(section).__name__.lower())
 
 
 def test_constants_are_left_as_they_are():
@@ -52,12 +57,24 @@ def test_a_null_that_becomes_a_distribution_does_not_shift_its_neighbours():
 
 
 @pytest.mark.parametrize(("section", "count"), [("gears", 12), ("dynamics", 20), ("stiffness", 0)])
-def test_every_number_takes_exactly_one_uniform(section, count):
+def test_every_number_is_drawn_by_its_own_path(section, count):
     # 8 numbers of the pair and 2 per wheel; 4 of the gearbox, 6 per rotor and 2 per coupling
-    rng, expected = np.random.default_rng(3), np.random.default_rng(3)
-    draw(getattr(config(), section), rng)
-    expected.random(count)
-    assert rng.random() == expected.random()
+    asked: list[str] = []
+
+    def everywhere(value):
+        return Uniform(low=0.0, high=1.0) if isinstance(value, float) or value is None else value
+
+    def spread(part):
+        changed = {}
+        for name, field in type(part).model_fields.items():
+            value = getattr(part, name)
+            is_number = any(isinstance(marker, Within) for marker in field.metadata)
+            changed[name] = everywhere(value) if is_number else spread(value) if isinstance(value, Section) else value
+        return part.model_copy(update=changed)
+
+    draw(spread(getattr(config(), section)), lambda name: asked.append(name) or 0.5, section)
+    assert len(asked) == len(set(asked)) == count
+    assert all(name.startswith(f"{section}.") for name in asked)
 
 
 def test_equal_distributions_of_different_numbers_are_drawn_independently():
@@ -69,10 +86,10 @@ def test_gain_is_drawn_per_axis_and_noise_is_left_to_the_record():
     sensor = Sensor.model_validate(
         {"name": "a", "axes": ["vertical", "horizontal"], "gain": SPREAD, "noise": {"floor_m_s2": SPREAD}}
     )
-    gains = sensor.drawn(np.random.default_rng(1)).gain
+    gains = sensor.drawn(UNIFORM).gain
     assert isinstance(gains, tuple)
     assert len(set(gains)) == 2
-    assert sensor.drawn(np.random.default_rng(1)).noise == sensor.noise
+    assert sensor.drawn(UNIFORM).noise == sensor.noise
 
 
 def test_corners_are_all_combinations_of_the_bounds():

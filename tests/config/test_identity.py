@@ -113,3 +113,41 @@ def test_a_configuration_cannot_be_changed_and_travels_between_processes():
     assert travelled == first
     assert hash(travelled) == hash(first)
     assert isinstance(travelled, Config)
+
+
+GOLDEN = "36cde563b6a956719c5b3e55e7b0c5f504abd4e091e4710529d9c00d61512e84"
+"""Of the minimal configuration. If it changes, every set that exists is orphaned."""
+
+
+def test_the_identity_of_a_given_configuration_never_changes():
+    assert config().identity == GOLDEN
+
+
+def test_a_key_at_its_default_does_not_count_wherever_it_stands(monkeypatch):
+    # as if a later version had added a key to a section that exists sets were written with
+    class Later(Config):
+        manufacturing: float | None = None
+
+    assert Later.model_validate(minimal()).identity == GOLDEN
+    assert Later.model_validate({**minimal(), "manufacturing": 6.0}).identity != GOLDEN
+
+
+def test_defaults_that_records_follow_from_stay_as_they_are():
+    # keys may be added; a default that changes gives other records under the same identity
+    canonical = config().canonical()
+    assert (
+        canonical["stiffness"] | {"beam": "rack_trochoid", "foundation": "sainsot", "table_points": 2049}
+        == canonical["stiffness"]
+    )
+    known = {
+        "model": "8dof",
+        "integrator": "product",
+        "steps_per_sample": 4,
+        "mesh_damping_ratio": 0.07,
+        "backlash_um": 80.0,
+        "motor_inertia_kg_m2": 0.016107,
+        "load_inertia_kg_m2": 0.005153,
+        "input_coupling": {"stiffness_nm_per_rad": 330.0, "damping_nm_s_per_rad": 0.231},
+    }
+    assert canonical["dynamics"] | known == canonical["dynamics"]
+    assert canonical["sensors"][0] | {"gain": 1.0, "range_m_s2": 500.0, "bits": 16} == canonical["sensors"][0]

@@ -38,7 +38,7 @@ MISTAKES = [
     ({"gears__module_mm": float("nan")}, "gears.module_mm", "nan", "a number above 0"),
     ({"gears__module_mm": 10**400}, "gears.module_mm", "1000", "a number above 0"),
     ({"gears": 3}, "gears", "3", "a mapping with the keys module_mm, "),
-    ({"specimens": True}, "specimens", "true", "a whole number of at least 1"),
+    ({"specimens": True}, "specimens", "true", "a whole number from 1"),
     ({"states": {}}, "states", "an empty mapping", "a list of at least 1, each entry a mapping"),
     ({"states__1": None}, "states.1", "null", "a mapping with the keys name, "),
     ({"operating_points": 5}, "operating_points", "5", "mapping with speed_hz and torque_nm"),
@@ -51,7 +51,7 @@ MISTAKES = [
     ({"sensors__0__axes": ["up"]}, "sensors.0.axes.0", "the text 'up'", "one of vertical, horizontal"),
     ({"sensors__0__bits": 64}, "sensors.0.bits", "64", "from 4 to 24, or null"),
     ({"name": "Bad Name"}, "name", "the text 'Bad Name'", "lower-case letters"),
-    ({"specimens": 0}, "specimens", "0", "of at least 1"),
+    ({"specimens": 0}, "specimens", "0", "from 1"),
     ({"splits": {"train": 12, "test": 5}}, "splits", "12 + 4 + 5 = 21", "add up to 20"),
     # models that do not go together
     ({"stiffness__foundation": "none"}, "stiffness.foundation", "'none'", "sainsot with beam: calibrated"),

@@ -131,3 +131,13 @@ print(sorted(slow & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_damaged_shard_is_named_with_the_way_to_mend_it(tmp_path: Path) -> None:
+    write_fake_set(tmp_path / "set")
+    shard = tmp_path / "set" / "data" / "train-00000.parquet"
+    content = bytearray(shard.read_bytes())
+    content[len(content) // 3 : len(content) // 3 + 200] = bytes(200)
+    shard.write_bytes(bytes(content))
+    with pytest.raises(DatasetError, match="train-00000.parquet cannot be read .* siggen verify"):
+        list(open_set(tmp_path / "set").records("train"))
