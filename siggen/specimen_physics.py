@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-from siggen.config import Gears, Stiffness, Wheel, constant
+from siggen.config import Config, Gears, Stiffness, Wheel, constant, corners
 from siggen.gears.damage import axial_height
 from siggen.gears.geometry import GearPair, SpurGear
-from siggen.gears.stiffness import StiffnessOptions
+from siggen.gears.stiffness_notes import stiffness_notes
+from siggen.gears.stiffness_options import StiffnessOptions
 
 
 def gear_pair(gears: Gears) -> GearPair:
@@ -31,7 +32,16 @@ def gear_pair(gears: Gears) -> GearPair:
 
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     """Return the options of the stiffness model that a section `stiffness` names."""
-    return StiffnessOptions(stiffness.beam, stiffness.foundation, stiffness.foundation_angle)
+    return StiffnessOptions(
+        stiffness.beam, stiffness.foundation, stiffness.foundation_angle, stiffness.hertz, stiffness.hertz_force_n
+    )
+
+
+def model_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
+    options = stiffness_options(config.stiffness)
+    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options))
+    return tuple(dict.fromkeys(notes))
 
 
 def _spur_gear(gears: Gears, wheel: Wheel) -> SpurGear:

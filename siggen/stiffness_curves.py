@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -12,14 +13,17 @@ from numpy.typing import NDArray
 
 from siggen.config import Config
 from siggen.dataset.specimen import Specimen, draw_specimen
-from siggen.gears.damage import Damage
+from siggen.gears.damage import Damage, pits_of
 from siggen.gears.geometry import GearPair
-from siggen.gears.stiffness import mesh_stiffness
+from siggen.gears.stiffness import mesh_stiffness, pair_compliance
+from siggen.gears.stiffness_options import StiffnessOptions
 from siggen.loading import load_config
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.state_damage import state_damage
 
 FloatArray = NDArray[np.float64]
+
+TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +35,22 @@ class StiffnessCurve:
     state : name of the state
     angle_rad : (k,)
     mesh_stiffness_n_per_m : (k,)
+    parts_m_per_n : name of a part -> (k,) compliance of the pair of the first damaged tooth, NaN where it is not in
+        contact; the parts of both teeth from the root to the contact, in the order in which they are drawn
     """
 
     state: str
     angle_rad: FloatArray
     mesh_stiffness_n_per_m: FloatArray
+    parts_m_per_n: Mapping[str, FloatArray]
 
 
 def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
-    """Return first and last engagement, counted from angle 0, that meets damage; (0, 0) without any."""
+    """Return first and last engagement, counted from angle 0, that meets damage; (0, 0) without any.
+
+    Engagement n is pinion tooth n mod z1 with gear tooth n mod z2; damage of the pinion counts before that of the
+    gear.
+    """
     teeth = sorted({p.tooth for p in damage if p.gear == "pinion"}) or sorted({p.tooth for p in damage})
     count = pair.pinion.teeth if any(p.gear == "pinion" for p in damage) else pair.gear.teeth
     if not teeth:
@@ -51,7 +62,9 @@ def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
     return ordered[0], ordered[-1]
 
 
-def stiffness_curves(config: Config, specimen_id: int = 0, points_per_pitch: int = 400) -> list[StiffnessCurve]:
+def stiffness_curves(
+    config: Config, specimen_id: int = 0, points_per_pitch: int = 400, pitches: int | None = None
+) -> list[StiffnessCurve]:
     """Return the curve of every state of one specimen, from one pitch before the damage to two pitches behind it.
 
     Parameters
@@ -59,36 +72,73 @@ def stiffness_curves(config: Config, specimen_id: int = 0, points_per_pitch: int
     config : Config
     specimen_id : int
     points_per_pitch : int, samples over one angular pitch of the pinion
+    pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
 
     Raises
     ------
     ValueError
-        If the drawn damage cannot be computed by the stiffness model (the message names it).
+        If there are no points or pitches, or the drawn damage cannot be computed by the stiffness model (the message
+        names it).
+
+    Source: paper A, section 2.2, by `siggen.gears.stiffness`.
     """
+    if points_per_pitch < 1 or (pitches is not None and pitches < 1):
+        raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
     specimen = draw_specimen(config, specimen_id)
     pair = gear_pair(specimen.gears)
     damages = [state_damage(config, specimen_id, pair, i) for i in range(len(config.states))]
     first, last = damaged_engagements(pair, max(damages, key=len))
-    steps = np.arange(-points_per_pitch, (last - first + 2) * points_per_pitch + 1) / points_per_pitch
+    count = last - first + 3 if pitches is None else pitches
+    steps = np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
     angle = steps * 2 * pi / pair.pinion.teeth
-    offset = first * 2 * pi / pair.pinion.teeth
     return [
-        _curve(specimen, pair, state.name, damage, angle, offset)
+        _curve(specimen, pair, state.name, damage, angle, first)
         for state, damage in zip(config.states, damages, strict=True)
     ]
 
 
 def _curve(
-    specimen: Specimen, pair: GearPair, state: str, damage: Damage, angle: FloatArray, offset: float
+    specimen: Specimen, pair: GearPair, state: str, damage: Damage, angle: FloatArray, engagement: int
 ) -> StiffnessCurve:
-    stiffness = mesh_stiffness(pair, angle + offset, stiffness_options(specimen.stiffness), damage)
-    return StiffnessCurve(state, angle, stiffness)
+    options = stiffness_options(specimen.stiffness)
+    offset = engagement * 2 * pi / pair.pinion.teeth
+    stiffness = mesh_stiffness(pair, angle + offset, options, damage)
+    return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement))
 
 
-def curve_table(curves: list[StiffnessCurve]) -> pa.Table:
-    """Return the curves as a table: the angle in degrees, and one column `<state>_n_per_m` for every state."""
-    columns = {"angle_deg": np.degrees(curves[0].angle_rad)}
-    columns |= {f"{curve.state}_n_per_m": curve.mesh_stiffness_n_per_m for curve in curves}
+def _parts(
+    pair: GearPair, options: StiffnessOptions, damage: Damage, angle: FloatArray, engagement: int
+) -> dict[str, FloatArray]:
+    """Return the compliances of one engagement's pair over the angle since it entered contact, (k,) each [m/N]."""
+    position = pair.contact_start_m + pair.pinion.base_radius_m * angle
+    inside = (angle >= 0.0) & (position <= pair.contact_end_m)
+    on_pinion = pits_of(damage, "pinion", engagement % pair.pinion.teeth)
+    on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
+    found = pair_compliance(pair, position[inside], options, on_pinion, on_gear)
+    parts = {
+        f"{name}_{part}": getattr(getattr(found, name), part) for name in ("pinion", "gear") for part in TOOTH_PARTS
+    }
+    return {name: _spread(inside, values) for name, values in {**parts, "contact": found.contact}.items()}
+
+
+def _spread(inside: NDArray[np.bool_], values: FloatArray) -> FloatArray:
+    out = np.full(inside.size, np.nan)
+    out[inside] = values
+    return out
+
+
+def curve_table(curves: list[StiffnessCurve], *, parts: bool = False) -> pa.Table:
+    """Return the curves as a table: the angle in degrees, and one column `<state>_n_per_m` for every state.
+
+    With `parts` also `<state>_<part>_m_per_n` for every part of the compliance of the first damaged tooth's pair,
+    null where that pair is not in contact.
+    """
+    columns = {"angle_deg": pa.array(np.degrees(curves[0].angle_rad))}
+    columns |= {f"{curve.state}_n_per_m": pa.array(curve.mesh_stiffness_n_per_m) for curve in curves}
+    if parts:
+        for curve in curves:
+            for name, values in curve.parts_m_per_n.items():
+                columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
 
 
@@ -101,6 +151,13 @@ def mesh_stiffness_curves(
     ----------
     config : Config, or path of a YAML file
     specimen_id : int
+
+    Raises
+    ------
+    ConfigError
+        If the file holds no usable configuration.
+    ValueError
+        If the drawn damage cannot be computed by the stiffness model.
     """
     usable = config if isinstance(config, Config) else load_config(config)
     return {c.state: (np.degrees(c.angle_rad), c.mesh_stiffness_n_per_m) for c in stiffness_curves(usable, specimen_id)}

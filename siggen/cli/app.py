@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.plan import plan
 from siggen.cli.schema import schema
@@ -20,7 +21,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (plan, generate, verify, show, simulate, tvms, schema)
+COMMANDS = (plan, generate, verify, show, simulate, tvms, flank, schema)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",

@@ -38,11 +38,14 @@ def plan(
     console = Console()
     console.print(_overview(summary))
     console.print(_states(summary))
+    for note in summary["stiffness_notes"]:
+        console.print(f"note: {note}", highlight=False, markup=False)
 
 
 def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
+    from siggen.specimen_physics import model_notes
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
@@ -66,6 +69,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
+        "stiffness_notes": list(model_notes(config)),
     }
 
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from siggen.cli.stiffness_figure import PICTURE_ENDINGS
-from siggen.errors import UsageError
+from siggen.cli.picture_file import save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,11 +95,4 @@ def save_record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float
     UsageError
         If matplotlib is missing or the ending is none that it draws.
     """
-    if path.suffix.lower() not in PICTURE_ENDINGS:
-        raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed are {', '.join(PICTURE_ENDINGS)}")
-    try:
-        figure = record_figure(record, channel, fs_hz)
-    except ImportError:
-        raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
+    save_figure(lambda: record_figure(record, channel, fs_hz), path)

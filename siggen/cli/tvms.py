@@ -13,23 +13,42 @@ def tvms(
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    pitches: Annotated[
+        int | None,
+        typer.Option(
+            "--pitches", min=1, help="Tooth pitches to compute; by default two behind the last damaged tooth."
+        ),
+    ] = None,
+    parts: Annotated[
+        bool,
+        typer.Option(
+            "--parts", help="Add the compliances that the damaged tooth's pair is made of: contact and tooth."
+        ),
+    ] = False,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override a key, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
     """Write the mesh stiffness of every state against the pinion angle (0: the first damaged tooth enters contact).
 
+    The curves begin one pitch before that angle.
+
     Example: siggen tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
     """
+    from siggen.cli.stiffness_figure import check_picture_file, save_stiffness_figure
     from siggen.dataset.table_file import check_table_file, write_table_file
     from siggen.loading import load_config
+    from siggen.specimen_physics import model_notes
     from siggen.stiffness_curves import curve_table, stiffness_curves
 
     check_table_file(out)
-    curves = stiffness_curves(load_config(config, overrides or ()), specimen)
-    write_table_file(curve_table(curves), out)
     if png is not None:
-        from siggen.cli.stiffness_figure import save_stiffness_figure
-
-        save_stiffness_figure(curves, png)
+        check_picture_file(png)
+    usable = load_config(config, overrides or ())
+    curves = stiffness_curves(usable, specimen, pitches=pitches)
+    write_table_file(curve_table(curves, parts=parts), out)
+    if png is not None:
+        save_stiffness_figure(curves, png, parts=parts)
+    for note in model_notes(usable):
+        typer.echo(f"note: {note}", err=True)
     typer.echo(str(out))

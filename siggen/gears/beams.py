@@ -52,7 +52,8 @@ def first_roll(gear: SpurGear, beam: str) -> float:
 def root_integrals(gear: SpurGear, beam: str, face_width_m: float) -> tuple[float, float, float, float]:
     """Return (J0, J1, J2, JA) of the part of a beam below its involute; all 0 for the base-circle beam.
 
-    Units: 1/m^3, 1/m^2, 1/m, 1/m.
+    Units: 1/m^3, 1/m^2, 1/m, 1/m. The face width is in m. Source: closed forms of the straight piece (Liang/Zuo),
+    trochoid as in `siggen.gears.trochoid`.
     """
     if beam == "rack_trochoid":
         values = trochoid_integrals(
@@ -106,7 +107,9 @@ def _panel_width(roll: float, base_radius: float, half_angle: float) -> float:
 def involute_integrals(
     rolls: FloatArray, start: float, base_radius: float, half_angle: float, face_width: float
 ) -> FloatArray:
-    """Return (J0, J1, J2, JA) from the roll angle `start` to each of the rolls, (4, k).
+    """Return (J0, J1, J2, JA) from the roll angle `start` to each of the rolls, (4, k) [1/m^3, 1/m^2, 1/m, 1/m].
+
+    Rolls in rad, in any order; base radius and face width in m. Source: derived.
 
     Integrated in the roll angle, where x has no square-root branch at the base circle. Full panels are summed once,
     each contact adds its own piece of a panel: a contact's result is the same to the bit whatever other contacts come
@@ -135,7 +138,30 @@ def involute_integrals(
 
 
 def beam_integrals(gear: SpurGear, beam: str, rolls: FloatArray, face_width_m: float) -> FloatArray:
-    """Return (J0, J1, J2, JA) of a healthy tooth from the foot of the beam to each of the rolls, (4, k)."""
+    """Return (J0, J1, J2, JA) of a healthy tooth from the foot of the beam to each of the rolls, (4, k).
+
+    Parameters
+    ----------
+    gear : SpurGear
+    beam : str
+        'base_circle', 'root_circle' or 'rack_trochoid'.
+    rolls : (k,)
+        Roll angles of the contacts, in any order; below the beam's first roll as at it [rad].
+    face_width_m : float
+        [m].
+
+    Returns
+    -------
+    (4, k) array
+        [1/m^3, 1/m^2, 1/m, 1/m].
+
+    Raises
+    ------
+    ValueError
+        For an unknown beam, or when the whole involute is undercut.
+
+    Source: derived.
+    """
     root = np.array(root_integrals(gear, beam, face_width_m))
     flank = involute_integrals(
         rolls, first_roll(gear, beam), gear.base_radius_m, gear.base_half_angle_rad, face_width_m

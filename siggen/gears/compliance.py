@@ -5,6 +5,9 @@ roll-angle form. With alpha_1 = psi_c - alpha_2 (signed: negative near the base 
 
     1/k_b = int [cos(alpha_1) (d - x) - sin(alpha_1) h_c]^2/(E I) dx
     1/k_s = 1.2 cos^2(alpha_1) int dx/(G A)        1/k_a = sin^2(alpha_1) int dx/(E A)
+
+The calibrated tooth scales all four parts of the healthy rack-cut tooth by the finite-element factor of
+`siggen.gears.calibration`; what pits add to the beam is not scaled, since the factor was made on healthy teeth.
 """
 
 from __future__ import annotations
@@ -16,55 +19,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from siggen.gears import involute
-from siggen.gears.beams import BEAMS, beam_integrals, first_roll
+from siggen.gears.beams import beam_integrals, first_roll
+from siggen.gears.calibration import calibration_factor
 from siggen.gears.damage import Pit, pit_rows
 from siggen.gears.foundation import foundation_compliance
 from siggen.gears.geometry import GearPair
 from siggen.gears.kinks import section_kinks
 from siggen.gears.pitted_beams import pit_integrals
 from siggen.gears.spur_gear import SpurGear
+from siggen.gears.stiffness_options import StiffnessOptions
 
 FloatArray = NDArray[np.float64]
 
-FOUNDATIONS = ("sainsot", "none")
-FOUNDATION_ANGLES = ("auto", "profile", "rack")
 SHEAR_FACTOR = 1.2
 ROLL_TOLERANCE = 1e-9
 """Contacts this far (relative to the tip's roll) outside the flank count as its end: rounding of positions, no more."""
 PIECE_RAD = 0.02
 """Longest piece of the pits' integrals: short enough for 16 nodes when a contact stops just below a kink."""
-
-
-@dataclass(frozen=True, slots=True)
-class StiffnessOptions:
-    """How a tooth's stiffness is modelled.
-
-    Parameters
-    ----------
-    beam : str
-        Foot of the cantilever: 'base_circle' (paper A), 'root_circle' or 'rack_trochoid'.
-    foundation : str
-        'sainsot' or 'none'.
-    foundation_angle : str
-        Tooth root that the foundation sees: 'profile', 'rack', or 'auto' (rack for the trochoid, else profile).
-    """
-
-    beam: str = "rack_trochoid"
-    foundation: str = "sainsot"
-    foundation_angle: str = "auto"
-
-    def __post_init__(self) -> None:
-        """Refuse unknown names."""
-        for name, allowed in (("beam", BEAMS), ("foundation", FOUNDATIONS), ("foundation_angle", FOUNDATION_ANGLES)):
-            if getattr(self, name) not in allowed:
-                raise ValueError(f"received {name} {getattr(self, name)!r}; allowed: {', '.join(allowed)}")
-
-    @property
-    def root_reading(self) -> str:
-        """Tooth root of the foundation, 'profile' or 'rack', with 'auto' resolved."""
-        if self.foundation_angle != "auto":
-            return self.foundation_angle
-        return "rack" if self.beam == "rack_trochoid" else "profile"
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,22 +73,27 @@ def tooth_compliance(
     ------
     ValueError
         If a roll angle is off the involute of the beam, or a pit leaves no section.
+
+    Source: paper A, section 2.2; with 'calibrated' derived (finite elements, healthy tooth).
     """
     gear = pair.member(which)
     rows = pit_rows(pits)
-    angles = _on_flank(gear, options.beam, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
-    healthy = beam_integrals(gear, options.beam, angles, pair.face_width_m)
-    gain = _pit_gain(pair, gear, options.beam, angles, rows) if rows.size else None
-    shape = _beam_compliances(pair, gear, angles, healthy, gain)
+    angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
+    beam = _beam_compliances(pair, gear, angles, beam_integrals(gear, options.shape, angles, pair.face_width_m))
     if options.foundation == "none":
         foundation = np.zeros(angles.size)
     else:
         foundation = foundation_compliance(
             gear, angles, options.root_reading, pair.youngs_modulus_pa, pair.face_width_m
         )
-    for array in (shape, foundation):
+    if options.beam == "calibrated":
+        factor = calibration_factor(gear, angles)
+        beam, foundation = factor * beam, factor * foundation
+    if rows.size:
+        beam = beam + _beam_compliances(pair, gear, angles, _pit_gain(pair, gear, options.shape, angles, rows))
+    for array in (beam, foundation):
         array.setflags(write=False)
-    return ToothCompliance(shape[0], shape[1], shape[2], foundation)
+    return ToothCompliance(beam[0], beam[1], beam[2], foundation)
 
 
 def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, which: str) -> FloatArray:
@@ -149,20 +125,15 @@ def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start:
     return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))
 
 
-def _beam_compliances(
-    pair: GearPair, gear: SpurGear, roll: FloatArray, healthy: FloatArray, gain: FloatArray | None
-) -> FloatArray:
+def _beam_compliances(pair: GearPair, gear: SpurGear, roll: FloatArray, integrals: FloatArray) -> FloatArray:
+    """Return bending, shear and axial compliance (3, k) [m/N] of integrals (J0, J1, J2, JA), (4, k)."""
     slant = roll - gear.base_half_angle_rad
     along, across = np.sin(slant), np.cos(slant)
     lever = across * gear.height_m(roll) - along * gear.half_thickness_m(roll)
     young = pair.youngs_modulus_pa
     shear_modulus = young / (2.0 * (1.0 + pair.poisson_ratio))
-
-    def compliances(j0: FloatArray, j1: FloatArray, j2: FloatArray, ja: FloatArray) -> FloatArray:
-        bending = (lever * lever * j0 - 2.0 * lever * across * j1 + across * across * j2) / young
-        # Differences of large terms: a square's integral is never negative, rounding can be.
-        bending = np.maximum(bending, 0.0)
-        return np.stack([bending, SHEAR_FACTOR * across**2 * ja / shear_modulus, along**2 * ja / young])
-
-    total = compliances(*healthy)
-    return total if gain is None else total + compliances(*gain)
+    j0, j1, j2, ja = integrals
+    bending = (lever * lever * j0 - 2.0 * lever * across * j1 + across * across * j2) / young
+    # Differences of large terms: a square's integral is never negative, rounding can be.
+    bending = np.maximum(bending, 0.0)
+    return np.stack([bending, SHEAR_FACTOR * across**2 * ja / shear_modulus, along**2 * ja / young])

@@ -1,35 +1,56 @@
 """Stiffness of one tooth pair along the line of action, and of the whole mesh over the pinion's angle.
 
-Source: paper A, section 2.2 (structure); the contact compliance is Yang and Sun's, 1/k_h = 4 (1 - nu^2)/(pi E L),
-once per pair. The map from angle to contact is linear in the roll angle: s = s_A + R_b1 (theta - 2 pi n/z1) for the
-n-th pair since angle 0.
+Source: paper A, section 2.2 (structure); contact laws: `siggen.gears.hertz`, once per pair. The map from angle to
+contact is linear in the roll angle: s = s_A + R_b1 (theta - 2 pi n/z1) for the n-th pair since angle 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import ceil, pi
+from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from siggen.gears import involute
-from siggen.gears.compliance import ROLL_TOLERANCE, StiffnessOptions, ToothCompliance, tooth_compliance
+from siggen.gears.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
 from siggen.gears.damage import WHOLE_FACE, Damage, Pit, damaged_teeth, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
+from siggen.gears.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
+from siggen.gears.stiffness_options import StiffnessOptions
 from siggen.gears.union import lengths_covered
 
 __all__ = [
+    "PairCompliance",
     "StiffnessOptions",
     "ToothCompliance",
     "contact_compliance",
     "mesh_stiffness",
+    "pair_compliance",
     "pair_stiffness",
     "tooth_compliance",
 ]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+LINEAR = StiffnessOptions()
+"""The options of a contact that does not depend on the force."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairCompliance:
+    """Compliance of a tooth pair at each contact in its parts: contact (k,) [m/N] and both teeth."""
+
+    contact: FloatArray
+    pinion: ToothCompliance
+    gear: ToothCompliance
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of all parts, (k,) [m/N]."""
+        return self.contact + self.pinion.total + self.gear.total
 
 
 def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -50,16 +71,32 @@ def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def contact_compliance(
-    pair: GearPair, position_m: ArrayLike, pinion_pits: Iterable[Pit] = (), gear_pits: Iterable[Pit] = ()
+    pair: GearPair,
+    position_m: ArrayLike,
+    pinion_pits: Iterable[Pit] = (),
+    gear_pits: Iterable[Pit] = (),
+    options: StiffnessOptions = LINEAR,
 ) -> FloatArray:
     """Return 1/k_h of a tooth pair at contact positions (k,) [m/N].
 
     The contact length is what the pits of both flanks together leave of the face.
 
+    Parameters
+    ----------
+    pair : GearPair
+    position_m : (k,)
+        Contact positions from the pinion's base tangent point, in any order [m].
+    pinion_pits, gear_pits : iterables of Pit
+        Pits of the two teeth in contact; their `gear` and `tooth` are not read.
+    options : StiffnessOptions
+        Contact law and its force; the tooth's options are not read.
+
     Raises
     ------
     ValueError
         If a position is off the path of contact or the whole contact length is lost.
+
+    Source: `siggen.gears.hertz`; the remaining length as contact length: paper A, section 2.2.
     """
     position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
     rows_pinion, rows_gear = pit_rows(pinion_pits), pit_rows(gear_pits)
@@ -76,8 +113,38 @@ def contact_compliance(
             raise ValueError(
                 f"pits take {worst:.6g} m of contact length; allowed: less than the face width {width:.6g} m"
             )
-    modulus = pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
-    return 4.0 / (pi * modulus * (width - lost))
+    return _law(pair, position, width - lost, options)
+
+
+def _law(pair: GearPair, position_m: FloatArray, length_m: FloatArray, options: StiffnessOptions) -> FloatArray:
+    if options.hertz_force_n is None:
+        return linear_compliance(pair, length_m)
+    if options.hertz == "power_law":
+        return power_law_compliance(pair, length_m, options.hertz_force_n)
+    return weber_banaschek_compliance(pair, *rolls_at(pair, position_m), length_m, options.hertz_force_n)
+
+
+def pair_compliance(
+    pair: GearPair,
+    position_m: ArrayLike,
+    options: StiffnessOptions,
+    pinion_pits: Iterable[Pit] = (),
+    gear_pits: Iterable[Pit] = (),
+) -> PairCompliance:
+    """Return the compliance of one tooth pair in its parts, (k,) each [m/N].
+
+    Arguments and errors are those of `pair_stiffness`, which is the inverse of the sum.
+
+    Source: paper A, section 2.2 (springs in series).
+    """
+    position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
+    pinion_pits, gear_pits = tuple(pinion_pits), tuple(gear_pits)
+    roll_pinion, roll_gear = rolls_at(pair, position)
+    return PairCompliance(
+        contact=contact_compliance(pair, position, pinion_pits, gear_pits, options),
+        pinion=tooth_compliance(pair, "pinion", roll_pinion, options, pinion_pits),
+        gear=tooth_compliance(pair, "gear", roll_gear, options, gear_pits),
+    )
 
 
 def pair_stiffness(
@@ -102,14 +169,10 @@ def pair_stiffness(
     ------
     ValueError
         If a position is off the path of contact, or the pits leave no contact or no section.
+
+    Source: paper A, section 2.2.
     """
-    position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
-    pinion_pits, gear_pits = tuple(pinion_pits), tuple(gear_pits)
-    roll_pinion, roll_gear = rolls_at(pair, position)
-    compliance = contact_compliance(pair, position, pinion_pits, gear_pits)
-    compliance = compliance + tooth_compliance(pair, "pinion", roll_pinion, options, pinion_pits).total
-    compliance = compliance + tooth_compliance(pair, "gear", roll_gear, options, gear_pits).total
-    return 1.0 / compliance
+    return 1.0 / pair_compliance(pair, position_m, options, pinion_pits, gear_pits).total
 
 
 def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptions, damage: Damage = ()) -> FloatArray:
@@ -130,6 +193,8 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
     ------
     ValueError
         If an angle is not finite, or the pits leave no contact or no section.
+
+    Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer).
     """
     angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
     if not np.all(np.isfinite(angle)):

@@ -12,10 +12,11 @@ from math import lcm
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.gears.compliance import StiffnessOptions, tooth_compliance
+from siggen.gears.compliance import tooth_compliance
 from siggen.gears.damage import Damage, damaged_teeth, flank_heights, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import contact_compliance, rolls_at
+from siggen.gears.stiffness_options import StiffnessOptions
 
 FloatArray = NDArray[np.float64]
 HEALTHY = -1
@@ -105,7 +106,23 @@ def kind_stiffness(
     kinds: tuple[tuple[int, int], ...],
     position_m: FloatArray,
 ) -> FloatArray:
-    """Return the pair stiffness of each kind at positions (k,), (kinds, k) [N/m]."""
+    """Return the pair stiffness of each kind at positions (k,), (kinds, k) [N/m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    damage : tuple of Pit
+    options : StiffnessOptions
+    kinds : tuple of (int, int)
+        Pinion tooth and gear tooth of each kind, HEALTHY for any undamaged one.
+    position_m : (k,)
+        Contact positions on the path of contact, in any order [m].
+
+    Raises
+    ------
+    ValueError
+        If a position is off the path of contact, or pits leave no contact or no section.
+    """
     rolls = dict(zip(("pinion", "gear"), rolls_at(pair, position_m), strict=True))
     tooth: dict[tuple[str, int], FloatArray] = {}
     for which, column in (("pinion", 0), ("gear", 1)):
@@ -115,7 +132,7 @@ def kind_stiffness(
     out = np.empty((len(kinds), position_m.size))
     for row, (first, second) in enumerate(kinds):
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits)
+        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits, options)
         out[row] = 1.0 / (contact + tooth["pinion", first] + tooth["gear", second])
     return out
 
@@ -132,7 +149,10 @@ def _table_of_pair(pair: GearPair, kinds: tuple[tuple[int, int], ...]) -> NDArra
 
 
 def table_error(pair: GearPair, damage: Damage, options: StiffnessOptions, tables: MeshTables) -> float:
-    """Return the largest relative error of linear interpolation in the tables, at all mid points."""
+    """Return the largest relative error of linear interpolation in the tables, at all mid points (dimensionless).
+
+    `pair`, `damage` and `options` are those that the tables were made from.
+    """
     rows = tables.pair_stiffness_n_per_m
     middle = tables.start_m + tables.step_m * (np.arange(rows.shape[1] - 1) + 0.5)
     direct = kind_stiffness(pair, damage, options, pair_kinds(pair, damage), middle)

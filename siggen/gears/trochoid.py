@@ -63,8 +63,8 @@ def trochoid_integrals(
 ) -> FloatArray:
     """Return int dx/I, int x dx/I, int x^2 dx/I and int dx/A from the root to `last_gamma` (4,), without 1/E.
 
-    x counts from `base_height_m`, the height of the base-circle point. Four panels of 48 nodes: the integrand is
-    analytic.
+    Units: 1/m^3, 1/m^2, 1/m, 1/m. x counts from `base_height_m`, the height of the base-circle point; the other
+    lengths are those of `trochoid_point`. Four panels of 48 nodes: the integrand is analytic.
     """
     out = np.zeros(4)
     panels = 4

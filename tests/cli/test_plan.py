@@ -69,6 +69,15 @@ def test_the_table_shows_identity_splits_and_size(path):
         assert part in text
 
 
+def test_gears_outside_a_models_range_are_named_with_the_limits(path):
+    assert json.loads(run("plan", path, "--json"))["stiffness_notes"] == []
+    override = ("--set", "gears.pinion.bore_radius_mm={kind: uniform, low: 3, high: 10}")
+    (note,) = json.loads(run("plan", path, *override, "--json"))["stiffness_notes"]
+    assert "pinion (18 teeth)" in note
+    assert "1.4 to 7" in note
+    assert f"note: {note}" in " ".join(run("plan", path, *override).split())
+
+
 def test_a_large_set_is_planned_quickly(path):
     # a million records; listing must stay far from the minutes that simulating one shard takes
     summary = json.loads(run("plan", path, "--set", "specimens=500000", "--json"))

@@ -46,3 +46,42 @@ def test_the_stiffness_is_the_same_until_the_contact_reaches_the_pits(tmp_path: 
 def test_an_unknown_ending_is_refused_before_any_work(tmp_path: Path, name: str) -> None:
     with pytest.raises(UsageError, match="allowed are"):
         run("configs/paper_a.yaml", "--out", tmp_path / name)
+
+
+def test_parts_add_up_to_the_pair_of_the_damaged_tooth(tmp_path: Path) -> None:
+    run("configs/paper_a.yaml", "--out", tmp_path / "parts.parquet", "--png", tmp_path / "parts.png", "--parts")
+    table = pyarrow.parquet.read_table(tmp_path / "parts.parquet")
+    parts = [name for name in table.column_names if name.startswith("severe_") and name.endswith("_m_per_n")]
+    assert len(parts) == 9
+    total = sum(table[name].to_numpy() for name in parts)
+    degrees, mesh = table["angle_deg"].to_numpy(), table["severe_n_per_m"].to_numpy()
+    # Alone in contact from the end of double contact, 12.735 degrees, to the next pair's entry at 20.
+    single = (degrees > 12.8) & (degrees < 19.95)
+    np.testing.assert_allclose(1.0 / total[single], mesh[single], rtol=1e-12)
+    in_contact = ~np.isnan(total)
+    # Contact ratio 1.63676 times a pitch of 20 degrees.
+    assert degrees[in_contact][[0, -1]] == pytest.approx([0.0, 32.735], abs=0.051)
+    assert table["severe_contact_m_per_n"].null_count == int(np.sum(~in_contact))
+    assert (tmp_path / "parts.png").stat().st_size > 10_000
+
+
+def test_pitches_say_how_much_is_computed(tmp_path: Path) -> None:
+    run("configs/paper_a.yaml", "--out", tmp_path / "five.parquet", "--pitches", 5)
+    degrees = pyarrow.parquet.read_table(tmp_path / "five.parquet")["angle_deg"].to_numpy()
+    assert degrees[[0, -1]] == pytest.approx([-20.0, 80.0])
+
+
+def test_limits_of_the_models_are_told_beside_the_table(tmp_path: Path) -> None:
+    out = str(tmp_path / "tvms.csv")
+    result = runner.invoke(
+        app, ["tvms", "configs/quickstart.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
+    )
+    assert result.exit_code == 0
+    assert "gear (47 teeth): calibration: h_f" in result.stderr
+    assert result.stdout.strip() == out
+
+
+def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="allowed are"):
+        run("configs/paper_a.yaml", "--out", tmp_path / "tvms.csv", "--png", tmp_path / "tvms.bmp")
+    assert not (tmp_path / "tvms.csv").exists()

@@ -1,0 +1,85 @@
+"""Table of docs/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
+
+from math import radians
+
+import numpy as np
+
+from siggen.gears import GearPair, SpurGear, StiffnessOptions, pair_stiffness
+
+MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
+LINE_LOAD_N_PER_M = 300e3
+PAIRS = ((18, 18), (18, 25), (18, 47), (18, 90), (20, 20), (20, 60), (23, 31), (23, 77), (25, 25), (25, 50),
+         (30, 30), (30, 45), (30, 100), (35, 35), (40, 40), (40, 80), (47, 47), (60, 60), (60, 100), (100, 100))
+MODELS = {
+    "base_circle": StiffnessOptions("base_circle"),
+    "rack_trochoid": StiffnessOptions("rack_trochoid"),
+    "calibrated": StiffnessOptions(),
+    "calibrated, weber_banaschek": StiffnessOptions(
+        hertz="weber_banaschek", hertz_force_n=LINE_LOAD_N_PER_M * FACE_WIDTH_M
+    ),
+}
+
+
+def gear_pair(first: int, second: int) -> GearPair:
+    """Return a standard pair whose roots are three times their bores."""
+    gears = (SpurGear(z, MODULE_M, radians(20), 0.0, 1.0, 0.25, (z / 2 - 1.25) * MODULE_M / RADIUS_RATIO) for z in (first, second))
+    return GearPair(*gears, FACE_WIDTH_M, 206e9, 0.3)
+
+
+def iso_single(pair: GearPair) -> tuple[float, float]:
+    """Return c'_th and c' of ISO 6336-1, equations 82 to 94, without shift [N/(mm um)]; C_M 0.8, C_R 1, C_B 0.975."""
+    theory = 1.0 / (0.04723 + 0.15551 / pair.pinion.teeth + 0.25791 / pair.gear.teeth)
+    return theory, theory * 0.8 * (1 + 0.5 * (1.2 - 1.25))
+
+
+def body_twist(pair: GearPair) -> float:
+    """Return the twist of both rings between root and bore as compliance along the line of action [mm um/N].
+
+    R_b^2 (1/r_bore^2 - 1/R_f^2)/(4 pi G L) each: exact for a ring under torsion, times the face width here.
+    """
+    shear_modulus = 206e9 / 2.6
+    total = sum(g.base_radius_m**2 * (g.bore_radius_m**-2 - g.root_radius_m**-2) for g in (pair.pinion, pair.gear))
+    return total / (4 * np.pi * shear_modulus) * 1e9
+
+
+def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
+    """Return largest single-pair stiffness and mean mesh stiffness over a pitch, each over the face width [N/(mm um)]."""
+    start, end = pair.contact_start_m, pair.contact_end_m
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    stiffness = pair_stiffness(pair, start + 0.5 * (end - start) * (1 + nodes), options)
+    # Every pair passes each position once per pitch: the mean is the integral over the whole path by the pitch.
+    mean = 0.5 * (end - start) * float(weights @ stiffness) / pair.base_pitch_m
+    along = pair_stiffness(pair, np.linspace(start, end, 801), options)
+    return float(along.max()) / FACE_WIDTH_M / 1e9, mean / FACE_WIDTH_M / 1e9
+
+
+def main() -> None:
+    print("| z1/z2 | ε | c'th | c' | cγα of c'th | cγα | " + " | ".join(MODELS) + " |")
+    print("|---" * (6 + len(MODELS)) + "|")
+    ratios = {name: [] for name in MODELS}
+    singles = {name: [] for name in MODELS}
+    untwisted = {name: [] for name in MODELS}
+    for first, second in PAIRS:
+        pair = gear_pair(first, second)
+        theory, corrected = iso_single(pair)
+        factor = 0.75 * pair.contact_ratio + 0.25
+        cells = []
+        for name, options in MODELS.items():
+            single, mean = ours(pair, options)
+            ratios[name].append(mean / (theory * factor))
+            singles[name].append(single / theory)
+            untwisted[name].append(1 / (1 / single - body_twist(pair)) / theory)
+            cells.append(f"{mean:.1f} ({ratios[name][-1]:.2f})")
+        values = f"{theory:.1f} | {corrected:.1f} | {theory * factor:.1f} | {corrected * factor:.1f}"
+        print(f"| {first}/{second} | {pair.contact_ratio:.2f} | {values} | " + " | ".join(cells) + " |")
+    print("\nover the pairs, smallest and largest:\n")
+    print("| model | mean / cγα of c'th | largest single pair / c'th | the same without twist of the rings | mean / (largest single pair x (0.75 ε + 0.25)) |")
+    print("|---|---|---|---|---|")
+    for name in MODELS:
+        shape = np.array(ratios[name]) / np.array(singles[name])
+        spans = [f"{min(v):.2f} to {max(v):.2f}" for v in (ratios[name], singles[name], untwisted[name], shape)]
+        print(f"| {name} | " + " | ".join(spans) + " |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""`siggen flank`: the damage on the flanks of one specimen, as a table and drawn to scale."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from pyarrow import Table
+
+
+def flank(
+    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")],
+    png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    state: Annotated[str | None, typer.Option("--state", help="Only this state; by default all with damage.")] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Override a key, such as gears.module_mm=3.5.")
+    ] = None,
+) -> None:
+    """Write the damage of one specimen, and draw its damaged flanks to scale with the zones of contact.
+
+    Example: siggen flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
+    """
+    from siggen.cli.picture_file import check_picture_file
+    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.errors import UsageError
+    from siggen.flank_views import flank_damage_table, flank_views
+    from siggen.loading import load_config
+
+    check_table_file(out)
+    usable = load_config(config, overrides or ())
+    table = flank_damage_table(usable, specimen, state)
+    if png is not None:
+        check_picture_file(png)
+        views = flank_views(usable, specimen, state)
+        if not views:
+            raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png")
+    write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
+    if png is not None:
+        from siggen.cli.flank_figure import save_flank_figure
+
+        save_flank_figure(views, png)
+    typer.echo(str(out))
+
+
+def _without_lists(table: Table) -> Table:
+    """Return the table with its lists written as text, such as [1.0, 2.5]: a CSV file holds none."""
+    import json
+
+    import pyarrow as pa
+
+    for index, field in enumerate(table.schema):
+        if pa.types.is_list(field.type):
+            texts = [json.dumps(value) for value in table.column(index).to_pylist()]
+            table = table.set_column(index, field.name, pa.array(texts, pa.string()))
+    return table

@@ -1,0 +1,47 @@
+"""A picture in a file of its own: endings that are drawn, and what is said when drawing is impossible."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PICTURE_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def check_picture_file(path: Path) -> Path:
+    """Return the path if a picture can go there; call it before long work.
+
+    Raises
+    ------
+    UsageError
+        If the ending is none that is drawn.
+    """
+    if path.suffix.lower() not in PICTURE_ENDINGS:
+        raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed are {', '.join(PICTURE_ENDINGS)}")
+    return path
+
+
+def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
+    """Draw a figure into a file.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib is missing, the ending is none that is drawn, or the file cannot be written.
+    """
+    check_picture_file(path)
+    try:
+        figure = draw()
+    except ImportError:
+        raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(path, dpi=dpi)
+    except OSError as error:
+        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
