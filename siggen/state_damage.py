@@ -1,7 +1,9 @@
-"""The damage of one specimen in one state: configuration and draws in, a tuple of pits out.
+"""The damage of one specimen in one state: configuration and draws in, a tuple of pits and spalls out.
 
 A state holds the damage of the milder state that it grew from and adds its own up to the count that it names. What a
 state adds is drawn by a generator of its own, so the damage of a state does not depend on which others are simulated.
+A spall that grows from a spall is drawn by the generator of the first one: its centre stays and its sizes keep their
+rank. What a grown spall hides is no damage of its own any more.
 """
 
 from __future__ import annotations
@@ -11,19 +13,31 @@ from typing import TypeGuard
 
 import numpy as np
 
-from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, ListedPit, ListedPits, Number, at
-from siggen.gears.damage import Damage, Pit, flank_heights
+from siggen.config import (
+    ClusteredPits,
+    Config,
+    DamageModel,
+    LayeredPits,
+    ListedPit,
+    ListedPits,
+    Number,
+    Spalls,
+    at,
+    draw,
+)
+from siggen.gears.damage import Damage, Pit, Spall, flank_heights, hides_damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.layouts import clustered_centres, layered_centres
 from siggen.gears.spur_gear import SpurGear
 from siggen.seeding import Stage, generator
+from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_physics import pit_height_m
 
 MM = 1e-3
 
 
 def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int) -> Damage:
-    """Return all pits of a specimen in a state, those of the milder state first.
+    """Return all pits and spalls of a specimen in a state, those of the milder state first.
 
     Parameters
     ----------
@@ -44,11 +58,13 @@ def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int
     rng = generator(config.seed, Stage.DAMAGE, specimen_id, state_id)
     if isinstance(damage_model, ListedPits):
         return _united(before, _listed(damage_model, pair, rng))
+    if isinstance(damage_model, Spalls):
+        return _united(before, _spalls(config, specimen_id, pair, damage_model, state_id))
     return _united(before, tuple(_grown(config, specimen_id, pair, damage_model, milder, before, rng)))
 
 
 def damaged_teeth(
-    config: Config, specimen_id: int, gear: SpurGear, damage_model: LayeredPits | ClusteredPits
+    config: Config, specimen_id: int, gear: SpurGear, damage_model: LayeredPits | ClusteredPits | Spalls
 ) -> tuple[int, ...]:
     """Return the teeth that are hit: the listed ones, or neighbours from a tooth drawn once per specimen and gear."""
     if isinstance(damage_model.teeth, tuple):
@@ -59,7 +75,22 @@ def damaged_teeth(
 
 
 def _united(before: Damage, new: Damage) -> Damage:
-    return (*before, *(pit for pit in new if pit not in before))
+    spalls = [one for one in new if isinstance(one, Spall)]
+    left = (pit for pit in before if pit in new or not any(hides_damage(spall, pit) for spall in spalls))
+    return (*left, *(pit for pit in new if pit not in before))
+
+
+def _spalls(config: Config, specimen_id: int, pair: GearPair, model: Spalls, state_id: int) -> Damage:
+    """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
+    first, milder = state_id, config.grown_from(state_id)
+    while milder is not None:
+        older = config.states[milder].damage
+        if isinstance(older, Spalls) and older.gear == model.gear:
+            first = milder
+        milder = config.grown_from(milder)
+    rng = generator(config.seed, Stage.DAMAGE, specimen_id, first)
+    teeth = damaged_teeth(config, specimen_id, pair.member(model.gear), model)
+    return tuple(spall_on_tooth(pair, draw(model, rng), model.height_reading, tooth) for tooth in teeth)
 
 
 def _grown(
@@ -147,7 +178,7 @@ def _clustered(model: ClusteredPits, pair: GearPair, count: int, rng: np.random.
 
 
 def _listed(model: ListedPits, pair: GearPair, rng: np.random.Generator) -> Damage:
-    return tuple(
+    pits = tuple(
         _pit(
             pit,
             pair,
@@ -158,6 +189,8 @@ def _listed(model: ListedPits, pair: GearPair, rng: np.random.Generator) -> Dama
         )
         for pit in model.pits
     )
+    reading = model.height_reading
+    return (*pits, *(spall_on_tooth(pair, draw(spall, rng), reading, spall.tooth) for spall in model.spalls))
 
 
 def _height(height_mm: Number | str, reading: str, pair: GearPair, which: str, rng: np.random.Generator) -> float:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from siggen.gears.compliance import StiffnessOptions, ToothCompliance, tooth_compliance
-from siggen.gears.damage import Damage, DamageProblem, Pit, axial_height, damage_problems
+from siggen.gears.damage import Damage, DamageProblem, Pit, Spall, axial_height, damage_problems
 from siggen.gears.foundation import outside_foundation_fit
 from siggen.gears.geometry import GearPair, GeometryProblem, SpurGear, geometry_problems
 from siggen.gears.layouts import clustered_centres, layered_centres
+from siggen.gears.outlines import Ellipse, Polygon, rectangle, v_outline
 from siggen.gears.sections import contact_length_loss, section_loss, union_area_m2
 from siggen.gears.stiffness import mesh_stiffness, pair_stiffness
 from siggen.gears.summary import DamageSummary, damage_summary
@@ -16,10 +17,13 @@ __all__ = [
     "Damage",
     "DamageProblem",
     "DamageSummary",
+    "Ellipse",
     "GearPair",
     "GeometryProblem",
     "MeshTables",
     "Pit",
+    "Polygon",
+    "Spall",
     "SpurGear",
     "StiffnessOptions",
     "ToothCompliance",
@@ -35,8 +39,10 @@ __all__ = [
     "mesh_tables",
     "outside_foundation_fit",
     "pair_stiffness",
+    "rectangle",
     "section_loss",
     "table_error",
     "tooth_compliance",
     "union_area_m2",
+    "v_outline",
 ]

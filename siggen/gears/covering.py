@@ -61,10 +61,8 @@ def hides(one: FloatArray, two: FloatArray) -> bool:
     """Whether row `one` is at least as deep as row `two` everywhere inside the outline of `two`."""
     if one[4] < two[4] or not _outline_contains(one, two):
         return False
-    if one[5] == 0.0:
-        return True
-    if two[5] == 0.0 or one[6] != two[6]:
-        return False
+    if one[5] == 0.0 or two[5] == 0.0 or one[6] != two[6]:
+        return one[5] == 0.0
     if one[6] == 0.0:
         # Concentric: the difference of squares is linear in the squared distances, so three corners decide.
         return one[0] == two[0] and one[1] == two[1]

@@ -63,7 +63,6 @@ class Pit:
     depth_m: float
     floor: str = "flat"
 
-
     @property
     def kind(self) -> str:
         """Kind of damage."""
@@ -270,7 +269,9 @@ def _contact_problems(pair: GearPair, damage: Damage) -> Iterator[DamageProblem]
     for which, tooth, mate in lost_contacts(pair, damage):
         index, pit = next((i, pit) for i, pit in enumerate(damage) if pit.gear == which and pit.tooth == tooth)
         together = "" if mate is None else f" together with gear tooth {mate}"
-        received = f"{_kinds(damage, which, tooth)} of {which} tooth {tooth}{together} that take the whole contact length"
+        received = (
+            f"{_kinds(damage, which, tooth)} of {which} tooth {tooth}{together} that take the whole contact length"
+        )
         allowed = f"a loss below the face width {pair.face_width_m:.6g} m everywhere"
         yield DamageProblem(index, received, allowed, pit.kind, "contact")
 

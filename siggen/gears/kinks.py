@@ -85,7 +85,15 @@ def roots_between(poly: FloatArray, low: float, high: float, touching: float) ->
 
 @njit(cache=True)
 def _ellipse_points(
-    mu: float, w: float, a: float, b: float, mu2: float, w2: float, a2: float, b2: float, points: list[tuple[float, float]]
+    mu: float,
+    w: float,
+    a: float,
+    b: float,
+    mu2: float,
+    w2: float,
+    a2: float,
+    b2: float,
+    points: list[tuple[float, float]],
 ) -> None:
     """Append the points where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
     low, high = max(mu - b, mu2 - b2), min(mu + b, mu2 + b2)
@@ -141,9 +149,7 @@ def _points_at(
 
 
 @njit(cache=True)
-def _face_points(
-    mu: float, w: float, a: float, b: float, face_width: float, points: list[tuple[float, float]]
-) -> None:
+def _face_points(mu: float, w: float, a: float, b: float, face_width: float, points: list[tuple[float, float]]) -> None:
     """Append the points where an ellipse outline leaves the face."""
     for end in (0.0, face_width):
         v = (end - w) / a
@@ -176,7 +182,9 @@ def _ellipse_side_points(
 
 
 @njit(cache=True)
-def _equal_depth_points(one: FloatArray, two: FloatArray, face_width: float, points: list[tuple[float, float]]) -> None:
+def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
+    one: FloatArray, two: FloatArray, face_width: float, points: list[tuple[float, float]]
+) -> None:
     """Append lowest, highest and edge points of the curve on which two rows, at least one a dish, are equally deep."""
     low, high = max(one[7], two[7]), min(one[8], two[8])
     if one[5] == 0.0 or two[5] == 0.0:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import isfinite
 from typing import TypeAlias
 
@@ -128,7 +129,9 @@ def rectangle(height_range_m: tuple[float, float], face_range_m: tuple[float, fl
     return Polygon(((low, left), (low, right), (high, right), (high, left)), "rectangle")
 
 
-def v_outline(height_range_m: tuple[float, float], face_m: float, lower_width_m: float, upper_width_m: float) -> Polygon:
+def v_outline(
+    height_range_m: tuple[float, float], face_m: float, lower_width_m: float, upper_width_m: float
+) -> Polygon:
     """Return the V (triangle or trapezoid, symmetric about `face_m`) with widths at its lower and upper edge."""
     low, high = height_range_m
     corners = [
@@ -156,7 +159,7 @@ def trapezoids(polygon: Polygon) -> tuple[tuple[float, ...], ...]:
     start, stop = np.where(rising[:, np.newaxis], corners, after), np.where(rising[:, np.newaxis], after, corners)
     levels = np.unique(corners[:, 0])
     out = []
-    for low, high in zip(levels[:-1], levels[1:], strict=True):
+    for low, high in pairwise(levels):
         crossing = (start[:, 0] <= low) & (stop[:, 0] >= high)
         lower, upper = (_faces_at(start[crossing], stop[crossing], level) for level in (low, high))
         order = np.argsort(lower + upper, kind="stable")

@@ -162,7 +162,9 @@ def pit_integrals(
             if k != present:
                 # Up to the next break the same rows are present, for however many contacts.
                 stop = breaks[k + 1] if k + 1 < breaks.size else high
-                count = _active_between(low, stop, pits, base_radius, half_angle, face_width, left, right, owner, active)
+                count = _active_between(
+                    low, stop, pits, base_radius, half_angle, face_width, left, right, owner, active
+                )
                 present = k if k + 1 < breaks.size else -1
             _add_piece(
                 low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, cuts, total

@@ -50,7 +50,10 @@ def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def contact_compliance(
-    pair: GearPair, position_m: ArrayLike, pinion_pits: Iterable[Pit | Spall] = (), gear_pits: Iterable[Pit | Spall] = ()
+    pair: GearPair,
+    position_m: ArrayLike,
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
 ) -> FloatArray:
     """Return 1/k_h of a tooth pair at contact positions (k,) [m/N].
 

@@ -195,17 +195,13 @@ def cut_room(pits: int) -> int:
 
 
 @njit(cache=True)
-def _append(
-    x: float, pits: FloatArray, low: float, high: float, i: int, stretches: FloatArray, count: int
-) -> int:
+def _append(x: float, pits: FloatArray, low: float, high: float, i: int, stretches: FloatArray, count: int) -> int:
     """Append a stretch whose deepest row is i, or lengthen the last one where its depth goes on; return how many."""
     if high <= low:
         return count
     if count > 0:
         j = int(stretches[2, count - 1])
-        if i == j or (
-            not (curved(pits, i) or curved(pits, j)) and level_depth(x, pits, i) == level_depth(x, pits, j)
-        ):
+        if i == j or (not (curved(pits, i) or curved(pits, j)) and level_depth(x, pits, i) == level_depth(x, pits, j)):
             stretches[1, count - 1] = high
             return count
     if count >= stretches.shape[1]:

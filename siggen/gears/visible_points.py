@@ -56,7 +56,7 @@ def shows(x: float, w: float, square: float, pits: FloatArray, i: int, j: int) -
     """Whether no third row hides what rows i and j do at a point; a point without face coordinate (NaN) shows."""
     if isnan(w):
         return True
-    for k in range(pits.shape[0]):
+    for k in range(pits.shape[0]):  # noqa: SIM110 - compiled: a generator costs more than the loop
         if k not in (i, j) and hidden_by(x, w, square, pits, k):
             return False
     return True
@@ -66,7 +66,7 @@ def shows(x: float, w: float, square: float, pits: FloatArray, i: int, j: int) -
 def segment_shows(x: float, left: float, right: float, square: float, pits: FloatArray, i: int) -> bool:
     """Whether no other flat row hides the whole segment across the face on which row i ends (outlines are convex)."""
     for k in range(pits.shape[0]):
-        if k != i and pits[k, 5] == 0.0 and hidden_by(x, left, square, pits, k):
-            if hidden_by(x, right, square, pits, k):
-                return False
+        both = k != i and pits[k, 5] == 0.0 and hidden_by(x, left, square, pits, k)
+        if both and hidden_by(x, right, square, pits, k):
+            return False
     return True
