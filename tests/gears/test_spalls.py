@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.gears import (
@@ -189,6 +189,8 @@ def test_a_further_damage_never_raises_the_stiffness(layout, further):
 @given(mixtures, st.floats(0.4, 5.0))
 def test_sections_equal_independent_integration_across_the_face(layout, height_mm):
     x = height_mm * MM
+    # At an end itself, rounding decides on which side a height lies.
+    assume(all(abs(x - end) > 1e-9 for p in layout for end in p.outline.height_range_m))
     h = float(GEAR.half_thickness_m(GEAR.roll_at_height(x)))
     s0, s1, s2 = depth_integrals(layout, x, h, WIDTH)
     ours = section_loss(GEAR, layout, WIDTH, x)
