@@ -18,8 +18,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.gears.involute import half_thickness, height
-from siggen.gears.quadrature import NODES_6, NODES_8, NODES_16, WEIGHTS_6, WEIGHTS_8, WEIGHTS_16
-from siggen.gears.union import active_pits, add_intervals, covered_length, cut_room, depth_moments
+from siggen.gears.quadrature import NODES_4, NODES_6, NODES_16, WEIGHTS_4, WEIGHTS_6, WEIGHTS_16
+from siggen.gears.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -80,16 +80,15 @@ def _add_piece(
     owner: IntArray,
     active: IntArray,
     count: int,
-    cuts: FloatArray,
+    stretches: FloatArray,
     total: FloatArray,
 ) -> None:
     """Add a piece without kinks inside.
 
     Near the lowest or highest point of an ellipse or a dish roll = middle - half cos t turns its square-root end into
     a smooth function of t; two widths away from every such point 6 plain nodes are exact to 1e-11 of the piece.
-    A square root's end weighs as the 1.5th power of the piece's height: in thin pieces 6 plain nodes (exact to 1e-3 of
-    such an end) or 8 in t (to 1e-5, beside a neighbour's end) are exact to 3e-8 of what one damage adds, itself less
-    than 1e-2 of a compliance.
+    A square root's end weighs as the 1.5th power of the piece's height over the damage's, so thin pieces do with fewer
+    nodes: 1e-7 of what one damage adds, itself less than 1e-2 of a compliance.
     """
     if count == 0:
         return
@@ -98,13 +97,13 @@ def _add_piece(
     clearance = smallest = np.inf
     for k in range(count):
         i = active[k]
+        smallest = min(smallest, pits[i, 3])
         if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
             clearance = min(clearance, bottom - (pits[i, 0] - pits[i, 3]), pits[i, 0] + pits[i, 3] - top)
-            smallest = min(smallest, pits[i, 3])
     smooth = clearance >= 2.0 * (top - bottom) or top - bottom <= THIN * smallest
     nodes, weights = (NODES_6, WEIGHTS_6) if smooth else (NODES_16, WEIGHTS_16)
-    if not smooth and top - bottom <= NARROW * smallest:
-        nodes, weights = NODES_8, WEIGHTS_8
+    if top - bottom <= NARROW * smallest:
+        nodes, weights = (NODES_4, WEIGHTS_4) if smooth else (NODES_6, WEIGHTS_6)
     moments = np.empty(3)
     for node in range(nodes.size):
         if smooth:
@@ -115,7 +114,7 @@ def _add_piece(
         x = height(roll, base_radius, half_angle)
         h = half_thickness(roll, base_radius, half_angle)
         filled = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(x, pits, left, right, owner, filled, cuts, moments)
+        depth_moments(x, pits, left, right, owner, filled, stretches, moments)
         area_loss, inertia_loss = section_losses(h, face_width, moments)
         dx = step * base_radius * roll * cos(roll - half_angle)
         area, inertia = 2.0 * h * face_width, 2.0 / 3.0 * h * h * h * face_width
@@ -140,7 +139,7 @@ def pit_integrals(
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    cuts = np.empty(cut_room(room))
+    stretches = stretch_room(room)
     highest = np.max(rolls) if rolls.size else breaks[0]
     sums = np.zeros((breaks.size, 4))
     for k in range(1, breaks.size):
@@ -150,7 +149,7 @@ def pit_integrals(
         count = _active_between(low, high, pits, base_radius, half_angle, face_width, left, right, owner, active)
         sums[k] = sums[k - 1]
         _add_piece(
-            low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, cuts, sums[k]
+            low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, stretches, sums[k]
         )
     total = np.empty(4)
     present, count = -1, 0
@@ -167,7 +166,19 @@ def pit_integrals(
                 )
                 present = k if k + 1 < breaks.size else -1
             _add_piece(
-                low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, cuts, total
+                low,
+                high,
+                pits,
+                base_radius,
+                half_angle,
+                face_width,
+                left,
+                right,
+                owner,
+                active,
+                count,
+                stretches,
+                total,
             )
         out[:, i] = total
     return out

@@ -19,7 +19,7 @@ from siggen.gears.kinks import section_kinks
 from siggen.gears.outlines import COLUMNS
 from siggen.gears.pitted_beams import flank_area, section_losses
 from siggen.gears.spur_gear import SpurGear
-from siggen.gears.union import active_pits, add_intervals, covered_length, cut_room, depth_moments, lengths_covered
+from siggen.gears.union import active_pits, add_intervals, covered_length, depth_moments, lengths_covered, stretch_room
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -85,12 +85,12 @@ def _losses_at(height: FloatArray, thickness: FloatArray, pits: FloatArray, face
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    cuts, moments = np.empty(cut_room(room)), np.empty(3)
+    stretches, moments = stretch_room(room), np.empty(3)
     out = np.zeros((3, height.size))
     for i in range(height.size):
         count = active_pits(height[i], pits, active)
         filled = add_intervals(height[i], pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(height[i], pits, left, right, owner, filled, cuts, moments)
+        depth_moments(height[i], pits, left, right, owner, filled, stretches, moments)
         out[0, i] = covered_length(left, right, filled)
         out[1, i], out[2, i] = section_losses(thickness[i], face_width, moments)
     return out

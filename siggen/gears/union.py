@@ -185,13 +185,13 @@ def _depth_crossings(x: float, pits: FloatArray, i: int, j: int) -> tuple[float,
 
 
 @njit(cache=True)
-def cut_room(pits: int) -> int:
-    """Return the working room that `depth_moments` needs for so many rows.
+def stretch_room(pits: int) -> FloatArray:
+    """Return the working room that `depth_moments` needs for so many rows: start, end and deepest row of stretches.
 
-    Six numbers for each stretch of the deepest row. Curves that cross twice at most (Davenport and Schinzel, order 4)
-    make fewer than 16 stretches each for any number of rows that a computer holds.
+    Twice, and 16 stretches for each row: curves that cross twice at most (Davenport and Schinzel, order 4) make fewer
+    for any number of rows that a computer holds.
     """
-    return 6 * (16 * pits + 64)
+    return np.empty((6, 16 * pits + 64))
 
 
 @njit(cache=True)
@@ -215,9 +215,13 @@ def _append_deeper(
     x: float, pits: FloatArray, low: float, high: float, i: int, j: int, stretches: FloatArray, count: int
 ) -> int:
     """Append [low, high] split where rows i and j are equally deep, each part to the deeper one; return how many."""
-    one = two = np.nan
-    if curved(pits, i) or curved(pits, j):
-        one, two = _depth_crossings(x, pits, i, j)
+    curved_i, curved_j = curved(pits, i), curved(pits, j)
+    if not curved_i and (not curved_j or level_depth(x, pits, i) >= pits[j, 4]):
+        deeper = j if not curved_j and level_depth(x, pits, j) >= level_depth(x, pits, i) else i
+        return _append(x, pits, low, high, deeper, stretches, count)
+    if not curved_j and level_depth(x, pits, j) >= pits[i, 4]:
+        return _append(x, pits, low, high, j, stretches, count)
+    one, two = _depth_crossings(x, pits, i, j)
     start = low
     for cut in (one, two, high):
         stop = cut if low < cut < high else (high if cut == high else start)
@@ -238,15 +242,13 @@ def _add_cluster(
     owner: IntArray,
     first: int,
     last: int,
-    cuts: FloatArray,
+    stretches: FloatArray,
     moments: FloatArray,
 ) -> None:
     """Add the moments of intervals first..last-1, an overlapping chain, stretch by stretch of its deepest row.
 
     Intervals come sorted by their left ends, so each one meets only the last few stretches of those before.
     """
-    size = cuts.size // 6
-    stretches, tail = cuts[: 3 * size].reshape(3, size), cuts[3 * size : 6 * size].reshape(3, size)
     count = 0
     for k in range(first, last):
         low, high, i = left[k], right[k], owner[k]
@@ -256,19 +258,16 @@ def _add_cluster(
         met = count - start
         end = stretches[1, count - 1] if count > 0 else low
         for q in range(met):
-            tail[0, q], tail[1, q], tail[2, q] = (
-                stretches[0, start + q],
-                stretches[1, start + q],
-                stretches[2, start + q],
-            )
+            for part in range(3):
+                stretches[3 + part, q] = stretches[part, start + q]
         count = start
         for q in range(met):
-            j = int(tail[2, q])
-            begin, stop = max(tail[0, q], low), min(tail[1, q], high)
-            count = _append(x, pits, tail[0, q], min(tail[1, q], begin), j, stretches, count)
+            head, tail, j = stretches[3, q], stretches[4, q], int(stretches[5, q])
+            begin, stop = max(head, low), min(tail, high)
+            count = _append(x, pits, head, min(tail, begin), j, stretches, count)
             if stop > begin:
                 count = _append_deeper(x, pits, begin, stop, i, j, stretches, count)
-            count = _append(x, pits, max(stop, begin), tail[1, q], j, stretches, count)
+            count = _append(x, pits, max(stop, begin), tail, j, stretches, count)
         count = _append(x, pits, max(end, low), high, i, stretches, count)
     for q in range(count):
         _add_piece(x, stretches[0, q], stretches[1, q], pits, int(stretches[2, q]), moments)
@@ -282,12 +281,12 @@ def depth_moments(
     right: FloatArray,
     owner: IntArray,
     count: int,
-    cuts: FloatArray,
+    stretches: FloatArray,
     moments: FloatArray,
 ) -> None:
     """Write int D dw [m2], int D^2 dw [m3] and int D^3 dw [m4] of the union of the intervals into `moments` (3,).
 
-    `cuts` is working room of size `cut_room(number of pits)`.
+    `stretches` is working room, `stretch_room(number of rows)`.
     """
     moments[:] = 0.0
     uniform = True
@@ -311,7 +310,7 @@ def depth_moments(
         if last == first + 1:
             _add_piece(x, left[first], right[first], pits, owner[first], moments)
         else:
-            _add_cluster(x, pits, left, right, owner, first, last, cuts, moments)
+            _add_cluster(x, pits, left, right, owner, first, last, stretches, moments)
         first = last
 
 
