@@ -17,7 +17,6 @@ from siggen.gears import (
     StiffnessOptions,
     contact_length_loss,
     damage_problems,
-    involute,
     pair_stiffness,
     rectangle,
     section_loss,
@@ -25,6 +24,7 @@ from siggen.gears import (
     union_area_m2,
     v_outline,
 )
+from siggen.gears.compliance import section_breaks
 from siggen.gears.damage import hides_damage, length_squared_depth_m, pit_rows, profile_arc_m
 from siggen.gears.kinks import section_kinks
 from siggen.gears.pitted_beams import pit_integrals
@@ -224,19 +224,12 @@ def test_compliances_equal_slow_quadrature(layout):
 @given(mixtures)
 def test_kinks_leave_smooth_pieces(layout):
     # Halving every piece changes little only if no piece has a kink inside, none that was taken for hidden either.
-    roll = np.array([GEAR.tip_roll_rad])
     rows = pit_rows(layout)
-    kinks = section_kinks(rows, WIDTH)
-    if kinks.size < 2:
-        return
-    fine = np.unique(np.concatenate([kinks, 0.5 * (kinks[1:] + kinks[:-1])]))
-    low, high = GEAR.involute_start_roll_rad, GEAR.tip_roll_rad
-    found = []
-    for cuts in (kinks, fine):
-        breaks = involute.rolls_at_heights(cuts, GEAR.base_radius_m, GEAR.base_half_angle_rad)
-        breaks = np.unique(np.concatenate([[low], breaks[(breaks > low) & (breaks < high)], [high]]))
-        found.append(pit_integrals(roll, breaks, rows, GEAR.base_radius_m, GEAR.base_half_angle_rad, WIDTH))
-    assert found[0] == pytest.approx(found[1], rel=1e-7)
+    breaks = section_breaks(GEAR, rows, WIDTH, GEAR.involute_start_roll_rad)
+    fine = np.unique(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
+    roll, base, half = np.array([GEAR.tip_roll_rad]), GEAR.base_radius_m, GEAR.base_half_angle_rad
+    coarse, halved = (pit_integrals(roll, cuts, rows, base, half, WIDTH) for cuts in (breaks, fine))
+    assert coarse == pytest.approx(halved, rel=1e-7)
 
 
 def test_spalls_are_clipped_to_face_and_flank():
