@@ -5,20 +5,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.gears.damage import Pit
+from siggen.gears.damage import Pit, Spall
+from siggen.gears.outlines import Polygon
 
 FloatArray = NDArray[np.float64]
 
 
-def outline_mm(damage: Pit, points: int = 181) -> FloatArray:
+def outline_mm(damage: Pit | Spall, points: int = 181) -> FloatArray:
     """Return the corners of a closed outline (n, 2): face coordinate and height above the base circle [mm].
 
     The height is along the tooth's centre line, as in the configuration. Not clipped to the flank. A smooth outline is
     a polygon on it; the first corner is not repeated.
 
-    Source: paper A, section 2.1 (ellipses).
+    Source: paper A, section 2.1 (ellipses); polygons derived.
     """
+    outline = damage.outline
+    if isinstance(outline, Polygon):
+        return 1e3 * np.array(outline.vertices_m)[:, ::-1]
     turn = 2.0 * np.pi * np.arange(points) / points
-    face = damage.face_m + damage.semi_axis_face_m * np.cos(turn)
-    height = damage.height_m + damage.semi_axis_profile_m * np.sin(turn)
+    face = outline.face_m + outline.semi_axis_face_m * np.cos(turn)
+    height = outline.height_m + outline.semi_axis_profile_m * np.sin(turn)
     return 1e3 * np.stack([face, height], axis=1)

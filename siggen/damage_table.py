@@ -1,4 +1,4 @@
-"""Rows of the damage table: the pits of one record with their places and sizes."""
+"""Rows of the damage table: the pits and spalls of one record with their places and sizes."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from functools import lru_cache
 from siggen.config import Config
 from siggen.dataset.plan import planned_record
 from siggen.dataset.specimen import draw_specimen
-from siggen.gears.damage import Damage, Pit
+from siggen.gears.damage import Damage, Pit, Spall
+from siggen.gears.outlines import Ellipse, Polygon
 from siggen.specimen_physics import gear_pair
 from siggen.state_damage import state_damage
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
-    """Return one row per pit of a record, lengths in mm; none for a healthy record."""
+    """Return one row per pit or spall of a record, lengths in mm; none for a healthy record."""
     record = planned_record(config, record_id)
     damage = _damage(config, record.specimen_id, record.state_id)
     return [{"record_id": record_id, **_row(pit)} for pit in damage]
@@ -25,18 +26,25 @@ def _damage(config: Config, specimen_id: int, state_id: int) -> Damage:
     return state_damage(config, specimen_id, pair, state_id)
 
 
-def _row(pit: Pit) -> dict[str, object]:
+def _row(pit: Pit | Spall) -> dict[str, object]:
+    outline = pit.outline
+    (low, high), (left, right) = outline.height_range_m, outline.face_range_m
+    corners = outline.vertices_m if isinstance(outline, Polygon) else ()
+    if isinstance(outline, Ellipse):
+        across, along = outline.semi_axis_face_m, outline.semi_axis_profile_m
+    else:
+        across, along = 0.5 * (right - left), 0.5 * (high - low)
     return {
         "gear": pit.gear,
         "tooth": pit.tooth,
-        "kind": "pit",
-        "shape": "ellipse",
-        "height_mm": 1e3 * pit.height_m,
-        "face_mm": 1e3 * pit.face_m,
-        "semi_axis_face_mm": 1e3 * pit.semi_axis_face_m,
-        "semi_axis_profile_mm": 1e3 * pit.semi_axis_profile_m,
+        "kind": pit.kind,
+        "shape": outline.shape,
+        "height_mm": 1e3 * outline.height_m,
+        "face_mm": 1e3 * outline.face_m,
+        "semi_axis_face_mm": 1e3 * across,
+        "semi_axis_profile_mm": 1e3 * along,
         "depth_mm": 1e3 * pit.depth_m,
         "depth_law": pit.floor,
-        "polygon_face_mm": [],
-        "polygon_height_mm": [],
+        "polygon_face_mm": [1e3 * face for _, face in corners],
+        "polygon_height_mm": [1e3 * height for height, _ in corners],
     }

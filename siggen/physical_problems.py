@@ -1,4 +1,4 @@
-"""What is physically impossible in a configuration: gears that cannot mesh, pits that do not lie on the flank.
+"""What is physically impossible in a configuration: gears that cannot mesh, damage that does not lie on the flank.
 
 Everything is checked at the bounds of the distributions, so that no specimen can turn out impossible.
 """
@@ -17,13 +17,16 @@ from siggen.config import (
     ListedPits,
     Number,
     ParsedConfig,
+    Spalls,
+    SpallSize,
     bounds,
     corners,
 )
 from siggen.config.damage import PitSize
 from siggen.errors import Problem
-from siggen.gears.damage import Pit, damage_problems, flank_heights
+from siggen.gears.damage import Damage, Pit, Spall, damage_problems, flank_heights
 from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
+from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_physics import gear_pair, pit_height_m
 
 PROBE_M = 1e-9
@@ -36,6 +39,15 @@ KEYS = {
     "rack tip": "clearance_coefficient",
 }
 """Key of the configuration that a geometry problem is about, where one key is to blame."""
+
+SIZE_KEYS = ("face_length_mm", "profile_length_mm", "lower_width_mm", "upper_width_mm", "depth_mm")
+SPALL_KEYS = {
+    "height_m": "centre_height_mm",
+    "face_m": "face_centre_mm",
+    "depth_m": "depth_mm",
+    "vertices_m": "vertices",
+}
+"""Key of the configuration that a problem of a spall is about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +112,8 @@ def _in_mm(text: str) -> str:
 def _state_problems(pairs: list[GearPair], damage: DamageModel, path: str) -> Iterator[Problem]:
     for pair in pairs:
         misplaced = [problem for place in _places(pair, damage) for problem in _place_problems(pair, place, path)]
+        for key, size, reading in _spalls(damage):
+            misplaced += _spall_problems(pair, size, reading, f"{path}.{key}" if key else path)
         yield from misplaced
         if not misplaced:
             yield from _found(pair, _widest_row(pair, damage), path)
@@ -125,7 +139,42 @@ def _probe(place: _Place, height_m: float, face_m: float) -> Pit:
     return Pit(place.gear, 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
 
 
-def _found(pair: GearPair, pits: tuple[Pit, ...], path: str, remark: str = "") -> list[Problem]:
+def _spalls(damage: DamageModel) -> Iterator[tuple[str, SpallSize, str]]:
+    """Yield the spalls of a state: the key below which they stand, their section, and how their heights are read."""
+    match damage:
+        case Spalls():
+            yield "", damage, damage.height_reading
+        case ListedPits():
+            yield from ((f"spalls.{i}", spall, damage.height_reading) for i, spall in enumerate(damage.spalls))
+
+
+def _spall_problems(pair: GearPair, size: SpallSize, reading: str, path: str) -> Iterator[Problem]:
+    """Yield what is wrong with a spall by itself, at every combination of its bounds."""
+    for corner in corners(size):
+        spall = spall_on_tooth(pair, corner, reading, 0)
+        for problem in damage_problems(pair, (spall,)):
+            if problem.name != "contact":
+                key = _spall_key(size, problem.name)
+                yield Problem(f"{path}.{key}", _in_mm(problem.received), _allowed(problem.allowed))
+
+
+def _spall_key(size: SpallSize, name: str) -> str:
+    if size.shape == "polygon" and name in ("height_m", "face_m"):
+        return "vertices"
+    if name == "depth_m" and size.depth_law == "length_squared":
+        return "depth_coefficient_um_per_mm2"
+    return SPALL_KEYS.get(name, "profile_length_mm")
+
+
+def _largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+    """Return a spall with all its sizes at their upper and its place at its lower bounds, without depth to speak of."""
+    sizes = {key: value for key in SIZE_KEYS if (value := getattr(size, key)) is not None}
+    largest = size.model_copy(update={key: bounds(value)[1] for key, value in sizes.items()})
+    spall = spall_on_tooth(pair, next(corners(largest)), reading, tooth)
+    return replace(spall, depth_m=PROBE_M)
+
+
+def _found(pair: GearPair, pits: Damage, path: str, remark: str = "") -> list[Problem]:
     return [
         Problem(path, f"{remark}{_in_mm(problem.received)}", _allowed(problem.allowed))
         for problem in damage_problems(pair, pits)
@@ -181,8 +230,8 @@ def _heights_m(pair: GearPair, gear: str, height_mm: Number | str, reading: str)
     return [pit_height_m(pair, gear, value, reading) for value in dict.fromkeys(bounds(height_mm))]
 
 
-def _widest_row(pair: GearPair, damage: DamageModel) -> tuple[Pit, ...]:
-    """Return the pits of a state that may together take away the whole width of contact, as large as they may be.
+def _widest_row(pair: GearPair, damage: DamageModel) -> Damage:
+    """Return the damage of a state that may together take away the whole width of contact, as large as it may be.
 
     Scattered pits are left out: how much of the width they take is known only when they are drawn.
     """
@@ -190,8 +239,10 @@ def _widest_row(pair: GearPair, damage: DamageModel) -> tuple[Pit, ...]:
         case LayeredPits():
             height_m = _heights_m(pair, damage.gear, damage.first_height_mm, damage.height_reading)[0]
             return tuple(_largest(damage.gear, 0, height_m, face_m, damage) for face_m in _row_faces_m(pair, damage))
+        case Spalls():
+            return (_largest_spall(pair, damage, damage.height_reading, 0),)
         case ListedPits():
-            return tuple(
+            pits = tuple(
                 _largest(
                     pit.gear,
                     pit.tooth,
@@ -202,6 +253,8 @@ def _widest_row(pair: GearPair, damage: DamageModel) -> tuple[Pit, ...]:
                 for pit in damage.pits
                 if pit.tooth < pair.member(pit.gear).teeth  # others are refused by name elsewhere
             )
+            spalls = [s for s in damage.spalls if s.tooth < pair.member(s.gear).teeth]
+            return (*pits, *(_largest_spall(pair, s, damage.height_reading, s.tooth) for s in spalls))
     return ()
 
 

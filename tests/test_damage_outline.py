@@ -8,6 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.damage_outline import outline_mm
+from siggen.gears.damage import Spall
+from siggen.gears.outlines import rectangle
 from tests.gears.builders import pit
 
 
@@ -24,3 +26,8 @@ def test_an_ellipse_has_its_place_extent_and_area(height, face, a, b):
     assert np.ptp(corners, axis=0) == pytest.approx([2 * a, 2 * b], rel=2e-4)
     assert corners.mean(axis=0) == pytest.approx([face, height], abs=1e-9)
     assert polygon_area(corners) == pytest.approx(np.pi * a * b, rel=3e-4)
+
+
+def test_a_rectangular_spall_is_drawn_by_its_corners() -> None:
+    spall = Spall("pinion", 0, rectangle((1e-3, 3e-3), (4e-3, 9e-3)), 0.2e-3)
+    assert sorted(map(tuple, outline_mm(spall).round(9))) == [(4.0, 1.0), (4.0, 3.0), (9.0, 1.0), (9.0, 3.0)]

@@ -127,3 +127,22 @@ def test_listed_pits_appear_as_they_are_listed() -> None:
     assert [(p.gear, p.tooth) for p in damage] == [("pinion", 3), ("gear", 40)]
     assert [p.height_m for p in damage] == pytest.approx([1.5e-3, 2.5e-3], rel=1e-15)
     assert not damage_problems(gear_pair(draw_specimen(config, 0).gears), damage)
+
+
+def test_growing_damage_stays_where_it_began_when_its_place_is_drawn() -> None:
+    place = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    model = {"kind": "clustered", "spread_profile_mm": 0.01, "centre_height_mm": place, **PIT}
+    config = config_with(*({**model, "count": n} for n in (4, 9, 20)))
+    heights = [np.array([p.height_m for p in damage_of(config, i)]) for i in (1, 2, 3)]
+    # 20 pits with a standard deviation of 0.01 mm: further than 5 of them from the first ones only if the place moved
+    assert np.abs(heights[2] - heights[0].mean()).max() < 0.05e-3
+    assert abs(np.mean([p.height_m for p in damage_of(config, 1, specimen_id=1)]) - heights[0].mean()) > 0.05e-3
+
+
+def test_growing_layers_keep_their_lattice_even_from_odd_to_even_columns() -> None:
+    place = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    model = {"kind": "layered", "layers": 1, "first_height_mm": place, "spacing_face_mm": 1.0, **PIT}
+    severe = damage_of(config_with(*({**model, "pits_per_layer": n} for n in (3, 4, 7))), 3)
+    assert len({round(p.height_m, 9) for p in severe}) == 1
+    # seven neighbours one spacing apart: no gap and no half step where the number of columns was even in between
+    assert np.diff(sorted(p.face_m for p in severe)) == pytest.approx([1e-3] * 6, rel=1e-9)

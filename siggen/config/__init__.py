@@ -11,6 +11,7 @@ from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
+from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
@@ -28,6 +29,7 @@ __all__ = [
     "LayeredPits",
     "ListedPit",
     "ListedPits",
+    "ListedSpall",
     "LogUniform",
     "NoiseFloor",
     "NoiseRatio",
@@ -37,6 +39,8 @@ __all__ = [
     "ParsedConfig",
     "Rotor",
     "Sensor",
+    "SpallSize",
+    "Spalls",
     "Splits",
     "State",
     "Stiffness",

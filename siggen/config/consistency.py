@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config.damage import ClusteredPits, LayeredPits, ListedPits
 from siggen.config.number import bounds
+from siggen.config.spall import Spalls
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 
@@ -136,7 +137,8 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
 def _selected_teeth(state: State) -> Iterator[tuple[str, str, int | tuple[int, ...]]]:
     """Yield the keys of a state that name teeth, the gear they belong to, and how many or which ones they name."""
     match state.damage:
-        case ListedPits(pits=pits):
+        case ListedPits(pits=pits, spalls=spalls):
             yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(pits))
-        case LayeredPits() | ClusteredPits() as damage:
+            yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(spalls))
+        case LayeredPits() | ClusteredPits() | Spalls() as damage:
             yield "teeth", damage.gear, damage.teeth

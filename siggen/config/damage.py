@@ -1,28 +1,23 @@
-"""Damage of a state: layers of pits, a cluster of pits, or pits listed one by one (paper A, section 2.1, for the pit).
+"""Damage of a state: layers or a cluster of pits, spalls, or both listed one by one (pits: paper A, section 2.1).
 
 Sizes are those of one pit: an ellipse on the flank with semi-axes across the face and along the profile, and a depth.
-A distribution of a size is drawn once per pit.
+A distribution of a size is drawn once per pit or spall.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.number import Number, Within
+from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.config.problems import refusal
 from siggen.config.section import Section, Whole
+from siggen.config.spall import ListedSpall, Spalls
 from siggen.config.teeth import Teeth
 from siggen.config.wording import Said
-
-GearName: TypeAlias = Literal["pinion", "gear"]
-HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
-
-Length = Annotated[Number, Within(above=0)]
-Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",))]
-PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,))]
-
-READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
+from siggen.errors import Problem
 
 
 class PitSize(Section):
@@ -85,13 +80,20 @@ class ListedPit(PitSize):
 
 
 class ListedPits(Section):
-    """Pits one by one."""
+    """Pits and spalls one by one."""
 
     kind: Literal["list"] = "list"
     height_reading: HeightReading = Field(default="axial", description=READING)
-    pits: Annotated[tuple[ListedPit, ...], Field(min_length=1)] = Field(description="the pits")
+    pits: tuple[ListedPit, ...] = Field(default=(), description="the pits")
+    spalls: tuple[ListedSpall, ...] = Field(default=(), description="the spalls")
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> ListedPits:
+        if not (self.pits or self.spalls):
+            raise refusal([Problem("pits", "no pits and no spalls", "allowed: at least 1 pit or spall")])
+        return self
 
 
-DamageModel: TypeAlias = LayeredPits | ClusteredPits | ListedPits
+DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits
 
-DAMAGE = Said("null, or a mapping with kind: layered, clustered or list")
+DAMAGE = Said("null, or a mapping with kind: layered, clustered, spall or list")

@@ -29,7 +29,9 @@ class State(Section):
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]*$"), STATE_NAME] = Field(description="label of the state")
-    fault: Literal["healthy", "pitting", "spalling"] = Field(description="default: pitting with damage, else healthy")
+    fault: Literal["healthy", "pitting", "spalling"] = Field(
+        description="default: spalling with damage of kind spall, pitting with any other, healthy with none"
+    )
     severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
         description="default: the state's name if that is a severity; healthy without damage"
     )
@@ -48,7 +50,7 @@ class State(Section):
         if not isinstance(value, Mapping):
             return value
         damaged = value.get("damage") is not None
-        labels = {"fault": "pitting" if damaged else "healthy"}
+        labels = {"fault": _fault(value["damage"]) if damaged else "healthy"}
         name = value.get("name")
         if not damaged:
             labels["severity"] = "healthy"
@@ -97,3 +99,10 @@ def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
     if state.grows_from == "previous":
         return earlier[-1] if earlier else None
     return next(i for i in earlier if states[i].name == state.grows_from)
+
+
+def _fault(damage: object) -> str:
+    """Return the fault that a damage, raw or parsed, is by default; a list is spalling if it has spalls and no pits."""
+    read = damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
+    spalls_alone = read("kind") == "list" and bool(read("spalls")) and not read("pits")
+    return "spalling" if read("kind") == "spall" or spalls_alone else "pitting"

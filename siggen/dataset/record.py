@@ -129,15 +129,30 @@ DAMAGE_COLUMNS = (
     Column("gear", pa.string(), "", "pinion or gear"),
     Column("tooth", pa.int32(), "", "index of the tooth"),
     Column("kind", pa.string(), "", "pit or spall"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse or polygon"),
-    Column("height_mm", pa.float64(), MILLIMETRE, "centre above the base circle along the tooth's axis"),
+    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v or polygon"),
+    Column(
+        "height_mm",
+        pa.float64(),
+        MILLIMETRE,
+        "centre above the base circle along the tooth's axis; of a polygon the middle of its range",
+    ),
     Column("face_mm", pa.float64(), MILLIMETRE, "centre across the face, from the face's edge"),
-    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face"),
-    Column("semi_axis_profile_mm", pa.float64(), MILLIMETRE, "semi-axis along the profile"),
+    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face; of a polygon half its range"),
+    Column(
+        "semi_axis_profile_mm",
+        pa.float64(),
+        MILLIMETRE,
+        "semi-axis along the tooth's axis; of a polygon half its range",
+    ),
     Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
-    Column("depth_law", pa.string(), "", "how the depth runs inside the outline: flat or dish"),
-    Column("polygon_face_mm", _list_of(pa.float64()), MILLIMETRE, "corners of a polygon, across the face; else empty"),
-    Column("polygon_height_mm", _list_of(pa.float64()), MILLIMETRE, "corners of a polygon, heights; else empty"),
+    Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
+    Column(
+        "polygon_face_mm",
+        _list_of(pa.float64()),
+        MILLIMETRE,
+        "corners (rectangle, v, polygon) across the face; else empty",
+    ),
+    Column("polygon_height_mm", _list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
 """Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
 

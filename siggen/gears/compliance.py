@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from siggen.gears import involute
 from siggen.gears.beams import beam_integrals, first_roll
 from siggen.gears.calibration import calibration_factor
-from siggen.gears.damage import Pit, pit_rows
+from siggen.gears.damage import Pit, Spall, pit_rows
 from siggen.gears.foundation import foundation_compliance
 from siggen.gears.geometry import GearPair
 from siggen.gears.kinks import section_kinks
@@ -54,7 +54,7 @@ class ToothCompliance:
 
 
 def tooth_compliance(
-    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[Pit] = ()
+    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[Pit | Spall] = ()
 ) -> ToothCompliance:
     """Return the compliances of one tooth loaded at roll angles (k,).
 
@@ -66,7 +66,7 @@ def tooth_compliance(
     roll : (k,)
         Roll angles of the contact, in any order [rad].
     options : StiffnessOptions
-    pits : iterable of Pit
+    pits : iterable of Pit or Spall
         Pits of this tooth; their `gear` and `tooth` are not read.
 
     Raises
@@ -119,7 +119,7 @@ def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, rows:
 
 
 def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start: float) -> FloatArray:
-    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 6), (k,) [rad]."""
+    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 13), (k,) [rad]."""
     kinks = involute.rolls_at_heights(section_kinks(rows, face_width_m), gear.base_radius_m, gear.base_half_angle_rad)
     inside = kinks[(kinks > start) & (kinks < gear.tip_roll_rad)]
     return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))

@@ -1,9 +1,9 @@
-"""Heights at which the section of a pitted tooth changes its form: where its integrals must be split.
+"""Heights at which the section of a damaged tooth changes its form: where its integrals must be split.
 
-Derived. Section quantities are smooth in x between: the lowest and highest point of each ellipse, crossings of two
-ellipses, crossings of an ellipse with the ends of the face, and, where a dish meets a pit of another depth, the same
-points of the curve of equal depth. Two ellipses with semi-axes along w of P_i = a_i^2 (1 - u_i^2) cross where (P_1 -
-P_2 + D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic.
+Derived. Section quantities are smooth in x between: the lowest and highest points of each outline, crossings of two
+outlines, crossings of an outline with the ends of the face, and, where a dish meets another depth, the same points of
+the curve of equal depth. Two ellipses with semi-axes along w of P_i = a_i^2 (1 - u_i^2) cross where (P_1 - P_2 +
+D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic. Points that a deeper damage hides are left out.
 """
 
 from __future__ import annotations
@@ -14,7 +14,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from siggen.gears.straight_edges import corner_points, side_conic_points, side_side_points
+from siggen.gears.union import square_depth
+from siggen.gears.visible_points import edge_square, segment_shows, shows
+
 FloatArray = NDArray[np.float64]
+
+MERGED_M = 1e-16
+"""Kinks nearer than this are one: rounding of a crossing, and 1e-13 of the height of a tooth."""
 
 
 @njit(cache=True)
@@ -77,10 +84,18 @@ def roots_between(poly: FloatArray, low: float, high: float, touching: float) ->
 
 
 @njit(cache=True)
-def _crossing_heights(
-    mu: float, w: float, a: float, b: float, mu2: float, w2: float, a2: float, b2: float, out: list[float]
+def _ellipse_points(
+    mu: float,
+    w: float,
+    a: float,
+    b: float,
+    mu2: float,
+    w2: float,
+    a2: float,
+    b2: float,
+    points: list[tuple[float, float]],
 ) -> None:
-    """Append the heights where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
+    """Append the points where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
     low, high = max(mu - b, mu2 - b2), min(mu + b, mu2 + b2)
     gap = abs(w2 - w)
     if high <= low or gap >= a + a2:
@@ -97,83 +112,187 @@ def _crossing_heights(
     first, last = (low - mu) / b, (high - mu) / b
     size = abs(n0) + abs(n1) + abs(n2)
     for t in roots_between(quartic, first, last, 1e-12 * (size * size + four)):
-        out.append(mu + b * t)
+        _points_at(t, mu, w, a, b, mu2, w2, a2, b2, points)
     # Columns one above the other: the quartic is (nearly) a square, whose roots rounding can hide. Extra kinks do no
     # harm.
     if abs(distance) < 1e-5:
         for t in roots_between(np.array([n0, n1, n2]), first, last, 1e-12 * size):
-            out.append(mu + b * t)
+            _points_at(t, mu, w, a, b, mu2, w2, a2, b2, points)
 
 
 @njit(cache=True)
-def _face_heights(mu: float, w: float, a: float, b: float, face_width: float, out: list[float]) -> None:
-    """Append the heights where an ellipse outline leaves the face."""
+def _points_at(
+    t: float,
+    mu: float,
+    w: float,
+    a: float,
+    b: float,
+    mu2: float,
+    w2: float,
+    a2: float,
+    b2: float,
+    points: list[tuple[float, float]],
+) -> None:
+    """Append the points of a crossing's height where the outlines (nearly) meet; without face coordinate if none do."""
+    x = mu + b * t
+    u = (x - mu2) / b2
+    reach, reach2 = a * sqrt(max((1.0 - t) * (1.0 + t), 0.0)), a2 * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
+    found = False
+    for side in (-1.0, 1.0):
+        at = w + side * reach
+        # Steep near an ellipse's ends: a root's rounding becomes its square root.
+        if min(abs(at - w2 - reach2), abs(at - w2 + reach2)) <= 1e-4 * (a + a2):
+            points.append((x, at))
+            found = True
+    if not found:
+        points.append((x, np.nan))
+
+
+@njit(cache=True)
+def _face_points(mu: float, w: float, a: float, b: float, face_width: float, points: list[tuple[float, float]]) -> None:
+    """Append the points where an ellipse outline leaves the face."""
     for end in (0.0, face_width):
         v = (end - w) / a
         if abs(v) < 1.0:
             u = sqrt((1.0 - v) * (1.0 + v))
-            out.append(mu - b * u)
-            out.append(mu + b * u)
+            points.append((mu - b * u, end))
+            points.append((mu + b * u, end))
 
 
 @njit(cache=True)
-def _equal_depth_heights(one: FloatArray, two: FloatArray, face_width: float, out: list[float]) -> None:
-    """Append lowest, highest and edge points of the curve on which two pits, at least one a dish, are equally deep."""
+def _crossing_points(one: FloatArray, two: FloatArray, points: list[tuple[float, float]]) -> None:
+    """Append the points where the outlines of two rows cross."""
+    if one[6] == 0.0 and two[6] == 0.0:
+        _ellipse_points(one[0], one[1], one[2], one[3], two[0], two[1], two[2], two[3], points)
+    elif one[6] != 0.0 and two[6] != 0.0:
+        side_side_points(one, two, points)
+    else:
+        ellipse, trapezoid = (one, two) if one[6] == 0.0 else (two, one)
+        _ellipse_side_points(ellipse[0], ellipse[1], ellipse[2], ellipse[3], trapezoid, points)
+
+
+@njit(cache=True)
+def _ellipse_side_points(
+    mu: float, w: float, a: float, b: float, trapezoid: FloatArray, points: list[tuple[float, float]]
+) -> None:
+    low, high = max(mu - b, trapezoid[7]), min(mu + b, trapezoid[8])
+    square = (a / b) ** 2
+    # (w - w_i)^2 + (a/b)^2 (x - mu)^2 - a^2 = 0 about the ellipse's centre
+    side_conic_points(trapezoid, mu, w, 1.0, 0.0, -a * a, 0.0, square, low, high, points)
+
+
+@njit(cache=True)
+def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
+    one: FloatArray, two: FloatArray, face_width: float, points: list[tuple[float, float]]
+) -> None:
+    """Append lowest, highest and edge points of the curve on which two rows, at least one a dish, are equally deep."""
+    low, high = max(one[7], two[7]), min(one[8], two[8])
     if one[5] == 0.0 or two[5] == 0.0:
         dish, flat = (two, one) if one[5] == 0.0 else (one, two)
         if flat[4] >= dish[4]:
             return
         scale = sqrt(1.0 - (flat[4] / dish[4]) ** 2)
         mu, w, a, b = dish[0], dish[1], scale * dish[2], scale * dish[3]
-        bottom, top = max(mu - dish[3], flat[0] - flat[3]), min(mu + dish[3], flat[0] + flat[3])
-        level = [mu - b, mu + b]
-        _face_heights(mu, w, a, b, face_width, level)
-        _crossing_heights(mu, w, a, b, flat[0], flat[1], flat[2], flat[3], level)
-        for x in level:
-            # A kink outside the shared heights would split sections that the upper pit must not touch.
-            if bottom < x < top:
-                out.append(x)
+        level = [(mu - b, w), (mu + b, w)]
+        if dish[6] != 0.0:
+            level = [(mu - b, np.nan), (mu + b, np.nan)]
+        else:
+            _face_points(mu, w, a, b, face_width, level)
+            if flat[6] == 0.0:
+                _ellipse_points(mu, w, a, b, flat[0], flat[1], flat[2], flat[3], level)
+            else:
+                _ellipse_side_points(mu, w, a, b, flat, level)
+        for point in level:
+            # A kink outside the shared heights would split sections that the upper row must not touch.
+            if low < point[0] < high:
+                points.append(point)
         return
     # c2 w^2 + c1 w + c0(x) = 0, c0 = k0 + k1 x + k2 x^2 about the first centre: vertical tangents and the ends of the
-    # face
+    # face, and the sides of trapezoids, where a dish has a depth
     c2 = c1 = k0 = k1 = k2 = 0.0
     for sign, pit in ((1.0, one), (-1.0, two)):
         square = sign * pit[4] * pit[4]
         shift_w, shift_x = pit[1] - one[1], pit[0] - one[0]
-        curve_w, curve_x = square / pit[2] ** 2, square / pit[3] ** 2
+        curve_w, curve_x = square / pit[2] ** 2 if pit[6] == 0.0 else 0.0, square / pit[3] ** 2
         c2 -= curve_w
         c1 += 2.0 * curve_w * shift_w
         k2 -= curve_x
         k1 += 2.0 * curve_x * shift_x
         k0 += square - curve_w * shift_w**2 - curve_x * shift_x**2
-    low = max(one[0] - one[3], two[0] - two[3]) - one[0]
-    high = min(one[0] + one[3], two[0] + two[3]) - one[0]
+    first, last = low - one[0], high - one[0]
+    if c2 == 0.0 and c1 == 0.0:
+        if k0 != 0.0 or k1 != 0.0 or k2 != 0.0:
+            for x in roots_between(np.array([k0, k1, k2]), first, last, 0.0):
+                points.append((one[0] + x, np.nan))
+        return
     if c2 != 0.0:
         turning = np.array([c1 * c1 - 4.0 * c2 * k0, -4.0 * c2 * k1, -4.0 * c2 * k2])
-        for x in roots_between(turning, low, high, 0.0):
-            out.append(one[0] + x)
+        for x in roots_between(turning, first, last, 0.0):
+            points.append((one[0] + x, one[1] - 0.5 * c1 / c2))
     for end in (0.0, face_width):
         v = end - one[1]
-        for x in roots_between(np.array([c2 * v * v + c1 * v + k0, k1, k2]), low, high, 0.0):
-            out.append(one[0] + x)
+        for x in roots_between(np.array([c2 * v * v + c1 * v + k0, k1, k2]), first, last, 0.0):
+            points.append((one[0] + x, end))
+    for row in (one, two):
+        if row[6] != 0.0:
+            side_conic_points(row, one[0], one[1], c2, c1, k0, k1, k2, low, high, points)
+
+
+@njit(cache=True)
+def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) -> None:
+    """Append the heights where row i by itself begins, ends or leaves the face."""
+    row = pits[i]
+    points = [(0.0, 0.0)]
+    points.pop()
+    if row[6] == 0.0:
+        points.append((row[7], row[1]))
+        points.append((row[8], row[1]))
+        _face_points(row[0], row[1], row[2], row[3], face_width, points)
+    else:
+        for x, left, right in ((row[7], row[9], row[10]), (row[8], row[11], row[12])):
+            if segment_shows(x, left, right, edge_square(x, left, pits, i), pits, i):
+                out.append(x)
+        corner_points(row, face_width, points)
+    for x, w in points:
+        if shows(x, w, edge_square(x, w, pits, i), pits, i, i):
+            out.append(x)
 
 
 @njit(cache=True)
 def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
-    """Return all heights where the section of a flank with `pits` (n, 6) changes its form, ascending (k,) [m]."""
+    """Return all heights where the section of a flank with `pits` (n, 13) changes its form, ascending (k,) [m]."""
     out = [0.0]
     out.pop()
+    points = [(0.0, 0.0)]
     for i in range(pits.shape[0]):
         one = pits[i]
-        out.append(one[0] - one[3])
-        out.append(one[0] + one[3])
-        _face_heights(one[0], one[1], one[2], one[3], face_width, out)
+        _row_kinks(i, pits, face_width, out)
         for j in range(i):
             two = pits[j]
-            apart = abs(one[0] - two[0]) >= one[3] + two[3] or abs(one[1] - two[1]) >= one[2] + two[2]
+            apart = max(one[7], two[7]) >= min(one[8], two[8]) or abs(one[1] - two[1]) >= one[2] + two[2]
             if apart:
                 continue
-            _crossing_heights(one[0], one[1], one[2], one[3], two[0], two[1], two[2], two[3], out)
+            points.clear()
+            _crossing_points(one, two, points)
+            for x, w in points:
+                if shows(x, w, max(edge_square(x, w, pits, i), edge_square(x, w, pits, j)), pits, i, j):
+                    out.append(x)
             if one[5] != 0.0 or two[5] != 0.0:
-                _equal_depth_heights(one, two, face_width, out)
-    return np.unique(np.array(out))
+                points.clear()
+                _equal_depth_points(one, two, face_width, points)
+                for x, w in points:
+                    if shows(x, w, square_depth(x, w, pits, i), pits, i, j):
+                        out.append(x)
+    return _merged(np.unique(np.array(out)))
+
+
+@njit(cache=True)
+def _merged(kinks: FloatArray) -> FloatArray:
+    """Return ascending kinks without those nearer than rounding to the one before."""
+    keep = np.ones(kinks.size, np.bool_)
+    last = -np.inf
+    for k in range(kinks.size):
+        keep[k] = kinks[k] - last > MERGED_M
+        if keep[k]:
+            last = kinks[k]
+    return kinks[keep]

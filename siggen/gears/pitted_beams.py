@@ -1,4 +1,4 @@
-"""What pits add to the beam integrals of a tooth, as a difference that is exactly zero below the lowest pit.
+"""What pits and spalls add to the beam integrals of a tooth, as a difference that is exactly zero below the lowest.
 
 Derived. In a section with depth field D, S0 = int D dw, S1 = int D (h - D/2) dw and S2 = int [h^3 - (h - D)^3]/3 dw
 give
@@ -18,11 +18,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.gears.involute import half_thickness, height
-from siggen.gears.quadrature import NODES_6, NODES_16, WEIGHTS_6, WEIGHTS_16
-from siggen.gears.union import active_pits, add_intervals, covered_length, cut_room, depth_moments
+from siggen.gears.quadrature import NODES_4, NODES_6, NODES_16, WEIGHTS_4, WEIGHTS_6, WEIGHTS_16
+from siggen.gears.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+THIN, NARROW = 5e-4, 2e-2
+"""Heights of pieces over the smallest semi-axis in them up to which fewer nodes do."""
 
 
 @njit(cache=True)
@@ -41,6 +44,30 @@ def section_losses(h: float, face_width: float, moments: FloatArray) -> tuple[fl
 
 
 @njit(cache=True)
+def _active_between(
+    low: float,
+    high: float,
+    pits: FloatArray,
+    base_radius: float,
+    half_angle: float,
+    face_width: float,
+    left: FloatArray,
+    right: FloatArray,
+    owner: IntArray,
+    active: IntArray,
+) -> int:
+    """Write the rows present between two neighbouring breaks into `active`, sorted by their left ends; return how many.
+
+    Once per piece: presence and, but for hidden ends, order change at kinks only.
+    """
+    x = height(0.5 * (low + high), base_radius, half_angle)
+    count = active_pits(x, pits, active)
+    count = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
+    active[:count] = owner[:count]
+    return count
+
+
+@njit(cache=True)
 def _add_piece(
     low: float,
     high: float,
@@ -52,29 +79,31 @@ def _add_piece(
     right: FloatArray,
     owner: IntArray,
     active: IntArray,
-    cuts: FloatArray,
+    count: int,
+    stretches: FloatArray,
     total: FloatArray,
 ) -> None:
     """Add a piece without kinks inside.
 
-    Near the lowest or highest point of an ellipse roll = middle - half cos t turns its square-root end into a smooth
-    function of t; two widths away from every such point 6 plain nodes are exact to 1e-11 of the piece.
+    Near the lowest or highest point of an ellipse or a dish roll = middle - half cos t turns its square-root end into
+    a smooth function of t; two widths away from every such point 6 plain nodes are exact to 1e-11 of the piece.
+    A square root's end weighs as the 1.5th power of the piece's height over the damage's, so thin pieces do with fewer
+    nodes: 1e-7 of what one damage adds, itself less than 1e-2 of a compliance.
     """
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    x = height(middle, base_radius, half_angle)
-    count = active_pits(x, pits, active)
     if count == 0:
         return
-    # Sorted once per piece: the order of intervals changes at kinks only.
-    count = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-    active[:count] = owner[:count]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
     bottom, top = height(low, base_radius, half_angle), height(high, base_radius, half_angle)
-    clearance = np.inf
+    clearance = smallest = np.inf
     for k in range(count):
-        mu, b = pits[active[k], 0], pits[active[k], 3]
-        clearance = min(clearance, bottom - (mu - b), mu + b - top)
-    smooth = clearance >= 2.0 * (top - bottom)
+        i = active[k]
+        smallest = min(smallest, pits[i, 3])
+        if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
+            clearance = min(clearance, bottom - (pits[i, 0] - pits[i, 3]), pits[i, 0] + pits[i, 3] - top)
+    smooth = clearance >= 2.0 * (top - bottom) or top - bottom <= THIN * smallest
     nodes, weights = (NODES_6, WEIGHTS_6) if smooth else (NODES_16, WEIGHTS_16)
+    if top - bottom <= NARROW * smallest:
+        nodes, weights = (NODES_4, WEIGHTS_4) if smooth else (NODES_6, WEIGHTS_6)
     moments = np.empty(3)
     for node in range(nodes.size):
         if smooth:
@@ -85,7 +114,7 @@ def _add_piece(
         x = height(roll, base_radius, half_angle)
         h = half_thickness(roll, base_radius, half_angle)
         filled = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(x, pits, left, right, owner, filled, cuts, moments)
+        depth_moments(x, pits, left, right, owner, filled, stretches, moments)
         area_loss, inertia_loss = section_losses(h, face_width, moments)
         dx = step * base_radius * roll * cos(roll - half_angle)
         area, inertia = 2.0 * h * face_width, 2.0 / 3.0 * h * h * h * face_width
@@ -100,7 +129,7 @@ def _add_piece(
 def pit_integrals(
     rolls: FloatArray, breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
 ) -> FloatArray:
-    """Return what pits (n, 6) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
+    """Return what rows (n, 13) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
 
     `breaks` are ascending rolls that hold every kink. Pieces between breaks are summed once, each contact adds its
     own piece above the last break: nothing above a contact and no other contact changes a bit of its result. NaN
@@ -110,34 +139,46 @@ def pit_integrals(
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    cuts = np.empty(cut_room(room))
+    stretches = stretch_room(room)
     highest = np.max(rolls) if rolls.size else breaks[0]
     sums = np.zeros((breaks.size, 4))
     for k in range(1, breaks.size):
         if breaks[k] > highest:
             break
+        low, high = breaks[k - 1], breaks[k]
+        count = _active_between(low, high, pits, base_radius, half_angle, face_width, left, right, owner, active)
         sums[k] = sums[k - 1]
         _add_piece(
-            breaks[k - 1],
-            breaks[k],
-            pits,
-            base_radius,
-            half_angle,
-            face_width,
-            left,
-            right,
-            owner,
-            active,
-            cuts,
-            sums[k],
+            low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, stretches, sums[k]
         )
     total = np.empty(4)
+    present, count = -1, 0
     for i in range(rolls.size):
         k = max(np.searchsorted(breaks, rolls[i], side="right") - 1, 0)
         total[:] = sums[k]
         if rolls[i] > breaks[k]:
+            low, high = breaks[k], rolls[i]
+            if k != present:
+                # Up to the next break the same rows are present, for however many contacts.
+                stop = breaks[k + 1] if k + 1 < breaks.size else high
+                count = _active_between(
+                    low, stop, pits, base_radius, half_angle, face_width, left, right, owner, active
+                )
+                present = k if k + 1 < breaks.size else -1
             _add_piece(
-                breaks[k], rolls[i], pits, base_radius, half_angle, face_width, left, right, owner, active, cuts, total
+                low,
+                high,
+                pits,
+                base_radius,
+                half_angle,
+                face_width,
+                left,
+                right,
+                owner,
+                active,
+                count,
+                stretches,
+                total,
             )
         out[:, i] = total
     return out

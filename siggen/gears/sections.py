@@ -1,6 +1,6 @@
 """Exact losses of contact length, area and second moment of a pitted tooth, and the area of its damage.
 
-Derived: unions of elliptic pits (paper A, section 2.1), neither summed nor rasterised; see `siggen.gears.union`.
+Derived: unions of outlines (ellipses: paper A, section 2.1), neither summed nor rasterised; see `siggen.gears.union`.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from siggen.gears import involute
-from siggen.gears.damage import Pit, flank_heights, pit_rows
+from siggen.gears.damage import Pit, Spall, flank_heights, pit_rows
 from siggen.gears.kinks import section_kinks
+from siggen.gears.outlines import COLUMNS
 from siggen.gears.pitted_beams import flank_area, section_losses
 from siggen.gears.spur_gear import SpurGear
-from siggen.gears.union import active_pits, add_intervals, covered_length, cut_room, depth_moments, lengths_covered
+from siggen.gears.union import active_pits, add_intervals, covered_length, depth_moments, lengths_covered, stretch_room
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 GOLDEN = 0.5 * (sqrt(5.0) - 1.0)
 
 
@@ -33,12 +35,12 @@ class SectionLoss:
     inertia_m4: FloatArray
 
 
-def contact_length_loss(pits: Iterable[Pit], face_width_m: float, height_m: ArrayLike) -> FloatArray:
+def contact_length_loss(pits: Iterable[Pit | Spall], face_width_m: float, height_m: ArrayLike) -> FloatArray:
     """Return the face length that the pits of one flank cover at heights x (k,) [m].
 
     Parameters
     ----------
-    pits : iterable of Pit
+    pits : iterable of Pit or Spall
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         Face width; pits are clipped to it [m].
@@ -46,16 +48,16 @@ def contact_length_loss(pits: Iterable[Pit], face_width_m: float, height_m: Arra
         Heights above the base circle [m].
     """
     height = np.atleast_1d(np.asarray(height_m, dtype=np.float64))
-    return lengths_covered(height, pit_rows(pits), height, np.empty((0, 6)), face_width_m)
+    return lengths_covered(height, pit_rows(pits), height, np.empty((0, COLUMNS)), face_width_m)
 
 
-def section_loss(gear: SpurGear, pits: Iterable[Pit], face_width_m: float, height_m: ArrayLike) -> SectionLoss:
+def section_loss(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, height_m: ArrayLike) -> SectionLoss:
     """Return what the pits of one tooth take from its sections at heights x (k,).
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit
+    pits : iterable of Pit or Spall
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         [m].
@@ -83,30 +85,30 @@ def _losses_at(height: FloatArray, thickness: FloatArray, pits: FloatArray, face
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    cuts, moments = np.empty(cut_room(room)), np.empty(3)
+    stretches, moments = stretch_room(room), np.empty(3)
     out = np.zeros((3, height.size))
     for i in range(height.size):
         count = active_pits(height[i], pits, active)
         filled = add_intervals(height[i], pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(height[i], pits, left, right, owner, filled, cuts, moments)
+        depth_moments(height[i], pits, left, right, owner, filled, stretches, moments)
         out[0, i] = covered_length(left, right, filled)
         out[1, i], out[2, i] = section_losses(thickness[i], face_width, moments)
     return out
 
 
-def union_area_m2(gear: SpurGear, pits: Iterable[Pit], face_width_m: float, measure: str = "arc") -> float:
+def union_area_m2(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, measure: str = "arc") -> float:
     """Return the area of the union of the pits of one flank, clipped to face and rack-cut involute [m2].
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit
+    pits : iterable of Pit or Spall
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         [m].
     measure : str
         'arc': on the flank itself, an element of height dx = R_b psi cos(psi - alpha_2) dpsi counting as its arc R_b
-        psi dpsi; 'axial': in the plane of face and height, where one pit has the area pi a b.
+        psi dpsi; 'axial': in the plane of face and height, where one ellipse has the area pi a b.
     """
     if measure not in ("arc", "axial"):
         raise ValueError(f"received measure {measure!r}; allowed: 'arc', 'axial'")
@@ -125,11 +127,11 @@ def union_area_m2(gear: SpurGear, pits: Iterable[Pit], face_width_m: float, meas
     return float(area)
 
 
-def largest_contact_length_loss(gear: SpurGear, pits: Iterable[Pit], face_width_m: float) -> float:
+def largest_contact_length_loss(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float) -> float:
     """Return the largest face length that the pits of one flank cover at any height of the involute [m].
 
-    Derived: between kinks the covered length is a constant plus ends +a sqrt(1 - u^2) of merged intervals, hence
-    concave, and a golden section finds its maximum.
+    Derived: between kinks the covered length is a constant plus ends of merged intervals, straight or +a sqrt(1 -
+    u^2), hence concave, and a golden section finds its maximum. At the end of a piece the limit from inside counts.
     """
     rows = pit_rows(pits)
     ends = flank_heights(gear)
@@ -138,34 +140,48 @@ def largest_contact_length_loss(gear: SpurGear, pits: Iterable[Pit], face_width_
 
 
 @njit(cache=True)
+def _covered_at(
+    x: float,
+    pits: FloatArray,
+    face_width: float,
+    active: IntArray,
+    count: int,
+    left: FloatArray,
+    right: FloatArray,
+    owner: IntArray,
+) -> float:
+    return covered_length(left, right, add_intervals(x, pits, active, count, face_width, left, right, owner, 0))
+
+
+@njit(cache=True)
 def _largest_covered(cuts: FloatArray, pits: FloatArray, face_width: float) -> float:
-    none = np.empty((0, 6))
-    at = np.empty(1)
+    room = pits.shape[0]
+    left, right = np.empty(room), np.empty(room)
+    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
     best = 0.0
     for k in range(cuts.size - 1):
         low, high = cuts[k], cuts[k + 1]
-        ends = lengths_covered(
-            np.array([low, 0.5 * (low + high), high]), pits, np.array([low, low, low]), none, face_width
-        )
-        best = max(best, ends[0], ends[1], ends[2])
+        middle = 0.5 * (low + high)
+        count = active_pits(middle, pits, active)
+        at_middle = _covered_at(middle, pits, face_width, active, count, left, right, owner)
+        active[:count] = owner[:count]
+        at_low = _covered_at(low, pits, face_width, active, count, left, right, owner)
+        at_high = _covered_at(high, pits, face_width, active, count, left, right, owner)
+        best = max(best, at_low, at_middle, at_high)
         # Bound of a concave function from its ends and its middle: most pieces need no search.
-        if 2.0 * ends[1] - min(ends[0], ends[2]) <= best:
+        if 2.0 * at_middle - min(at_low, at_high) <= best:
             continue
         one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        at[0] = one
-        length_one = lengths_covered(at, pits, at, none, face_width)[0]
-        at[0] = two
-        length_two = lengths_covered(at, pits, at, none, face_width)[0]
+        length_one = _covered_at(one, pits, face_width, active, count, left, right, owner)
+        length_two = _covered_at(two, pits, face_width, active, count, left, right, owner)
         for _ in range(40):
             if length_one > length_two:
                 high, two, length_two = two, one, length_one
                 one = high - GOLDEN * (high - low)
-                at[0] = one
-                length_one = lengths_covered(at, pits, at, none, face_width)[0]
+                length_one = _covered_at(one, pits, face_width, active, count, left, right, owner)
             else:
                 low, one, length_one = one, two, length_two
                 two = low + GOLDEN * (high - low)
-                at[0] = two
-                length_two = lengths_covered(at, pits, at, none, face_width)[0]
+                length_two = _covered_at(two, pits, face_width, active, count, left, right, owner)
         best = max(best, length_one, length_two)
     return best

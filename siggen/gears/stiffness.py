@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from siggen.gears import involute
 from siggen.gears.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
-from siggen.gears.damage import WHOLE_FACE, Damage, Pit, damaged_teeth, pit_rows, pits_of
+from siggen.gears.damage import WHOLE_FACE, Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
 from siggen.gears.stiffness_options import StiffnessOptions
@@ -73,8 +73,8 @@ def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatA
 def contact_compliance(
     pair: GearPair,
     position_m: ArrayLike,
-    pinion_pits: Iterable[Pit] = (),
-    gear_pits: Iterable[Pit] = (),
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
     options: StiffnessOptions = LINEAR,
 ) -> FloatArray:
     """Return 1/k_h of a tooth pair at contact positions (k,) [m/N].
@@ -128,8 +128,8 @@ def pair_compliance(
     pair: GearPair,
     position_m: ArrayLike,
     options: StiffnessOptions,
-    pinion_pits: Iterable[Pit] = (),
-    gear_pits: Iterable[Pit] = (),
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
 ) -> PairCompliance:
     """Return the compliance of one tooth pair in its parts, (k,) each [m/N].
 
@@ -151,8 +151,8 @@ def pair_stiffness(
     pair: GearPair,
     position_m: ArrayLike,
     options: StiffnessOptions,
-    pinion_pits: Iterable[Pit] = (),
-    gear_pits: Iterable[Pit] = (),
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
 ) -> FloatArray:
     """Return the stiffness of one tooth pair at contact positions s (k,) [N/m].
 
@@ -162,7 +162,7 @@ def pair_stiffness(
     position_m : (k,)
         Contact positions from the pinion's base tangent point, s_A to s_E, in any order [m].
     options : StiffnessOptions
-    pinion_pits, gear_pits : iterables of Pit
+    pinion_pits, gear_pits : iterables of Pit or Spall
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
 
     Raises
@@ -186,8 +186,8 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
         global count is pinion tooth n mod z1 and gear tooth n mod z2, at s = s_A + R_b1 (angle - 2 pi n/z1). Zones
         are closed.
     options : StiffnessOptions
-    damage : tuple of Pit
-        Pits of any teeth of both gears.
+    damage : tuple of Pit or Spall
+        On any teeth of both gears.
 
     Raises
     ------

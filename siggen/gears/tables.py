@@ -58,7 +58,7 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit
+    damage : tuple of Pit or Spall
     options : StiffnessOptions
     points : int
         Grid points from s_A to s_E, at least 2.
@@ -202,13 +202,13 @@ def _sequences(pair: GearPair, table: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 def _newest_positions(pair: GearPair, damage: Damage) -> FloatArray:
-    """Return positions of the newest pair over one base pitch, with zone edges, pit centres and pits' ends (k,) [m]."""
+    """Return positions of the newest pair over one base pitch, with zone edges, centres and ends of damage (k,) [m]."""
     start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
     marks = [np.array([start, end, np.nextafter(end, np.inf)])]
     for which in ("pinion", "gear"):
         gear = pair.member(which)
         rows = pit_rows(pit for pit in damage if pit.gear == which)
-        ends = np.concatenate([rows[:, 0], rows[:, 0] - rows[:, 3], rows[:, 0] + rows[:, 3]])
+        ends = np.concatenate([rows[:, 0], rows[:, 7], rows[:, 8]])
         low, high = flank_heights(gear)
         travel = np.asarray(gear.roll_at_height(np.clip(ends, low, high))) * gear.base_radius_m
         marks.append(travel if which == "pinion" else pair.line_of_action_m - travel)

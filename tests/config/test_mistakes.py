@@ -76,9 +76,9 @@ MISTAKES = [
     ({"sensors__0__gain": [1, -1]}, "sensors.0.gain.1", "-1.0", "above 0"),
     ({"sensors__0__gain": [1, 1]}, "sensors.0.gain", "a list of 2", "a list of 1 (one per axis)"),
     # damage
-    ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, list"),
-    ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, list"),
-    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered or list"),
+    ({"states__1__damage__kind": "blob"}, "states.1.damage.kind", "'blob'", "one of layered, clustered, spall, list"),
+    ({"states__1__damage": {"layers": 1}}, "states.1.damage.kind", "nothing", "one of layered, clustered, spall, list"),
+    ({"states__1__damage": []}, "states.1.damage", "a list of 0", "kind: layered, clustered, spall or list"),
     ({"states__1__damage__teeth": [0, 0]}, "states.1.damage.teeth", "[0, 0]", "different tooth indices"),
     ({"states__1__damage__teeth": 0}, "states.1.damage.teeth", "0", "a whole number from 1"),
     ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),

@@ -14,6 +14,8 @@ from math import asin, cos, pi, sin, sqrt, tan
 import numpy as np
 from scipy.integrate import quad
 
+from siggen.gears import Pit
+
 
 class Outline:
     """Involute outline of a gear in its roll angle, from teeth, module, shift and pressure angle alone."""
@@ -33,14 +35,29 @@ class Outline:
         return self.radius * roll * cos(roll - self.half)
 
 
+def spall_intervals(spall, x):
+    """Intervals of the face that a polygonal spall covers at a height, each with its depth there (even-odd rule)."""
+    corners = spall.outline.vertices_m
+    ends = []
+    for (x1, w1), (x2, w2) in zip(corners, corners[1:] + corners[:1], strict=True):
+        if (x1 <= x) != (x2 <= x):
+            ends.append(w1 + (x - x1) / (x2 - x1) * (w2 - w1))
+    heights = [height for height, _ in corners]
+    u = (2 * x - max(heights) - min(heights)) / (max(heights) - min(heights))
+    depth = spall.depth_m * (sqrt(max(1 - u * u, 0.0)) if spall.floor == "dish" else 1.0)
+    ends.sort()
+    return [(pair, depth) for pair in zip(ends[::2], ends[1::2], strict=True)]
+
+
 def depth_integrals(pits, x, h, face_width):
     """S0, S1, S2 of one section: the face is cut at every outline, then adaptive quadrature of the largest depth."""
-    present = [p for p in pits if abs(x - p.height_m) < p.semi_axis_profile_m]
-    if not present:
+    present = [p for p in pits if isinstance(p, Pit) and abs(x - p.height_m) < p.semi_axis_profile_m]
+    spalls = [(interval, d) for s in pits if not isinstance(s, Pit) for interval, d in spall_intervals(s, x)]
+    if not present and not spalls:
         return 0.0, 0.0, 0.0
 
     def depth(w):
-        deepest = 0.0
+        deepest = max((d for (low, high), d in spalls if low < w < high), default=0.0)
         for p in present:
             rest = 1 - ((x - p.height_m) / p.semi_axis_profile_m) ** 2 - ((w - p.face_m) / p.semi_axis_face_m) ** 2
             if rest > 0:
@@ -51,6 +68,7 @@ def depth_integrals(pits, x, h, face_width):
     for p in present:
         reach = p.semi_axis_face_m * sqrt(1 - ((x - p.height_m) / p.semi_axis_profile_m) ** 2)
         cuts |= {min(max(p.face_m + side * reach, 0.0), face_width) for side in (-1, 1)}
+    cuts |= {min(max(end, 0.0), face_width) for interval, _ in spalls for end in interval}
     cuts = sorted(cuts)
     total = np.zeros(3)
     dishes = any(p.floor == "dish" for p in present)

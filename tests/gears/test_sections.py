@@ -8,7 +8,7 @@ from math import acos, pi, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
@@ -202,7 +202,9 @@ def test_largest_length_loss_is_a_tight_upper_bound(layout):
 @settings(max_examples=60, deadline=None)
 @given(pits, pits)
 def test_kinks_hold_every_crossing_of_two_outlines(one, two):
-    kinks = section_kinks(pit_rows([one, two]), WIDTH)
+    rows = pit_rows([one, two])
+    assume(len(rows) == 2)  # a pit inside a deeper one that it touches crosses nothing
+    kinks = section_kinks(rows, WIDTH)
     t = np.linspace(0, 2 * pi, 4001)
     x = one.height_m + one.semi_axis_profile_m * np.cos(t)
     w = one.face_m + one.semi_axis_face_m * np.sin(t)

@@ -1,0 +1,16 @@
+"""Fields that place damage on a flank and give its lengths, shared by all kinds of damage."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from siggen.config.number import Number, Within
+
+GearName: TypeAlias = Literal["pinion", "gear"]
+HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
+
+Length = Annotated[Number, Within(above=0)]
+Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",))]
+PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,))]
+
+READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
