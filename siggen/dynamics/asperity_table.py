@@ -120,33 +120,30 @@ def asperity_table_error(table: AsperityTable, mesh: LubricatedMesh, roughness_m
 
 
 @njit(cache=True)
-def table_place(table: AsperityTable, position_m: float, force_n: float) -> tuple[int, int, float, float]:
-    """Return the cell (position, load) and the weights of its upper ends, clamped to the table."""
+def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: float) -> tuple[float, float]:
+    """Return the asperity share La, 0 to 1, and the friction coefficient of the lubricated part; clamped to the table.
+
+    Both in one call, since finding the cell costs more than the values.
+    """
     positions, loads = table.fluid.shape
     along = min(max((position_m - table.start_m) * table.per_m, 0.0), positions - 1.0)
     held = table.start_m + along / table.per_m
-    load = force_n / (table.floor_n_per_m * relative_radius(held, table.line_m))
+    load = force_n * table.line_m / (table.floor_n_per_m * held * (table.line_m - held))
     up = min(np.log(max(load, 1.0)) * table.per_log, loads - 1.0)
     i, j = min(int(along), positions - 2), min(int(up), loads - 2)
-    return i, j, along - i, up - j
+    a, b = along - i, up - j
+    ratio, fluid = table.ratio, table.fluid
+    low = ratio[layer, i, j] * (1.0 - a) + ratio[layer, i + 1, j] * a
+    high = ratio[layer, i, j + 1] * (1.0 - a) + ratio[layer, i + 1, j + 1] * a
+    below = fluid[i, j] * (1.0 - a) + fluid[i + 1, j] * a
+    above = fluid[i, j + 1] * (1.0 - a) + fluid[i + 1, j + 1] * a
+    return min(low * (1.0 - b) + high * b, 1.0), below * (1.0 - b) + above * b
 
 
 @njit(cache=True)
 def asperity_share(table: AsperityTable, layer: int, position_m: float, force_n: float) -> float:
     """Return the asperity share La of a contact, 0 to 1."""
-    i, j, along, up = table_place(table, position_m, force_n)
-    low = table.ratio[layer, i, j] * (1.0 - along) + table.ratio[layer, i + 1, j] * along
-    high = table.ratio[layer, i, j + 1] * (1.0 - along) + table.ratio[layer, i + 1, j + 1] * along
-    return min(low * (1.0 - up) + high * up, 1.0)
-
-
-@njit(cache=True)
-def fluid_friction_at(table: AsperityTable, position_m: float, force_n: float) -> float:
-    """Return the friction coefficient of the lubricated part."""
-    i, j, along, up = table_place(table, position_m, force_n)
-    low = table.fluid[i, j] * (1.0 - along) + table.fluid[i + 1, j] * along
-    high = table.fluid[i, j + 1] * (1.0 - along) + table.fluid[i + 1, j + 1] * along
-    return low * (1.0 - up) + high * up
+    return mixed_contact(table, layer, position_m, force_n)[0]
 
 
 def _check(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from siggen.dynamics.asperity_table import AsperityTable, asperity_share, fluid_friction_at
+from siggen.dynamics.asperity_table import AsperityTable, mixed_contact
 
 BOUNDARY_FRICTION = 0.11
 FLUID_FRICTION = 0.02
@@ -74,8 +74,8 @@ def friction_mixed(share: float, boundary: float, fluid: float) -> float:
 @njit(cache=True)
 def friction_coefficient(law: FrictionLaw, layer: int, position_m: float, force_n: float) -> float:
     """Return the friction coefficient of a contact on the flank roughness `layer` of the table."""
-    share = asperity_share(law.table, layer, position_m, force_n)
-    return friction_mixed(share, law.boundary, fluid_friction_at(law.table, position_m, force_n))
+    share, fluid = mixed_contact(law.table, layer, position_m, force_n)
+    return friction_mixed(share, law.boundary, fluid)
 
 
 @njit(cache=True)

@@ -10,7 +10,7 @@ from siggen.dynamics.asperity_table import (
     asperity_share,
     asperity_table,
     asperity_table_error,
-    fluid_friction_at,
+    mixed_contact,
     ratios_at,
 )
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
@@ -54,8 +54,8 @@ def test_fluid_friction_may_depend_on_place_and_load() -> None:
     table = asperity_table(mesh(), [1e-6], lambda s, force: 1.0 * s + 0.01 * np.log(force), RANGE, 2e4)
     expected = PITCH_POINT + 0.01 * np.log(FORCE)
     # Linear in the position; in the load axis only up to the curvature of ln R_e along a cell, 1e-3 of 0.01.
-    assert fluid_friction_at(table, PITCH_POINT, FORCE) == pytest.approx(expected, abs=2e-5)
-    assert fluid_friction_at(TABLE, PITCH_POINT, FORCE) == 0.02
+    assert mixed_contact(table, 0, PITCH_POINT, FORCE)[1] == pytest.approx(expected, abs=2e-5)
+    assert mixed_contact(TABLE, 0, PITCH_POINT, FORCE)[1] == 0.02
 
 
 def test_ratios_exceed_one_only_before_the_share_is_cut_off() -> None:
