@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 
 from siggen.dynamics.contact_kinematics import sliding_speed
+from siggen.dynamics.friction import FrictionLaw, friction_coefficient
 from siggen.gears.geometry import GearPair
 
 
@@ -55,3 +56,17 @@ def mesh_power_loss(
     slide = np.abs(sliding_speed(position, pair.line_of_action_m, speed_rad_s, gear_speed, 0.0))
     force = torque_nm / pair.pinion.base_radius_m
     return float(coefficient * force * (share * slide).sum(axis=0).mean())
+
+
+def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, layer: int = 0, points: int = 200) -> float:
+    """Return the mean friction coefficient over one base pitch, weighted by the load, with equal sharing.
+
+    To be compared with `friction_coefficient.schlenk_mean_friction`.
+    """
+    force = torque_nm / pair.pinion.base_radius_m
+    total = 0.0
+    for start in pair.contact_start_m + pair.base_pitch_m * (np.arange(points) + 0.5) / points:
+        places = start + pair.base_pitch_m * np.arange(int(pair.contact_ratio) + 1)
+        places = places[places <= pair.contact_end_m]
+        total += np.mean([friction_coefficient(law, layer, place, force / places.size) for place in places])
+    return float(total / points)
