@@ -172,3 +172,22 @@ def test_impossible_options_are_refused_by_name(change: dict, name: str) -> None
         law(**change)
     with pytest.raises(ValueError, match="points"):
         slice_law(PAIR, (), STIFFNESS, SHARP, points=1)
+
+
+@pytest.mark.parametrize("length", [0.2e-3, 0.3e-3, 0.8e-3])
+def test_two_pairs_share_the_load_as_the_gap_of_a_pit_demands(length: float) -> None:
+    position, load = 5e-3, 1182.4
+    table = law(chord_pit(PAIR, length, position))
+    mate = position + PAIR.base_pitch_m
+    assert mate < PAIR.contact_end_m
+    first, second = (float(pair_stiffness(PAIR, s, STIFFNESS)[0]) for s in (position, mate))
+    gap = length**2 / (8.0 * relative_radius(position, PAIR.line_of_action_m))
+    low, high = 0.0, 1e-4
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        carried = slice_pair_force(table, 1, position, middle) + slice_pair_force(table, 0, mate, middle)
+        low, high = (middle, high) if carried < load else (low, middle)
+    share = slice_pair_force(table, 1, position, high) / load
+    expected = first / (first + second) * (1.0 - second * gap / load)
+    # The gap has its kink in a cell of 7 µm: 0.05 µm of some 5 µm of deflection.
+    assert share == pytest.approx(max(expected, 0.0), abs=0.01)
