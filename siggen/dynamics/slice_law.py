@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from siggen.dynamics.contact_kinematics import hertz_half_width, relative_radius
 from siggen.gears.compliance import StiffnessOptions, tooth_compliance
 from siggen.gears.damage import Damage, pits_of
-from siggen.gears.flank_chords import ContactChords, contact_chords, flank_chords
+from siggen.gears.flank_chords import ContactChords, contact_chords, flank_chords, has_extent
 from siggen.gears.geometry import GearPair
 from siggen.gears.slice_contact import grouped_sinks, sink_depths, slice_force, slice_springs
 from siggen.gears.stiffness import contact_compliance, rolls_at
@@ -73,7 +73,7 @@ def slice_law(
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit
+    damage : tuple of Pit or Spall
         Pits without extent in some direction are no pits.
     stiffness : StiffnessOptions
         Of the teeth's compliance.
@@ -87,7 +87,7 @@ def slice_law(
         If an option is impossible, a damaged tooth does not exist or a pit is impossible.
     """
     _check(options, points)
-    damage = tuple(pit for pit in damage if pit.depth_m and pit.semi_axis_face_m and pit.semi_axis_profile_m)
+    damage = tuple(pit for pit in damage if has_extent(pit))
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     kinds = pair_kinds(pair, damage)
     sinks = np.empty((len(kinds), points, options.groups))

@@ -1,10 +1,10 @@
 """Chords of the damage along the profile, on lines across the face: where a contact finds land, where it finds a pit.
 
 Derived. The face is cut into slices of equal width, each seen on its middle line. On a line the damage of a flank is
-the exact union of its pits (`siggen.gears.union`, with profile and face exchanged), as intervals of the arc R_b ψ²/2
-along the involute: the length in which the mating flank sees a pit, unlike the height x and unlike the path s, in which
-1 mm of arc near the base circle is several. At a contact the intervals of both flanks lie on one tangent, whose
-coordinate grows with the pinion's arc and falls with the gear's; where they touch they are one pit.
+the exact union of its outlines (the rows of `pit_rows`), as intervals of the arc R_b ψ²/2 along the involute: the
+length in which the mating flank sees a pit, unlike the height x and unlike the path s, in which 1 mm of arc near the
+base circle is several. At a contact the intervals of both flanks lie on one tangent, whose coordinate grows with the
+pinion's arc and falls with the gear's; where they touch they are one pit.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.gears import involute
-from siggen.gears.damage import Pit, pit_rows
+from siggen.gears.damage import Pit, Spall, pit_rows
 from siggen.gears.geometry import GearPair
 from siggen.gears.spur_gear import SpurGear
-from siggen.gears.union import active_pits, add_intervals
+from siggen.gears.union import square_depth
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,7 +34,7 @@ class FlankChords(NamedTuple):
     """Pits of one flank on the middle line of every slice (a named tuple, since compiled code takes no dataclass).
 
     `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `intervals` (slices,): how many;
-    `face_m` (slices,): the lines; `pits` (n, 6): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
+    `face_m` (slices,): the lines; `pits` (n, 13): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
     """
 
     low: FloatArray
@@ -58,13 +58,13 @@ class ContactChords(NamedTuple):
     depth_m: FloatArray
 
 
-def flank_chords(gear: SpurGear, pits: Iterable[Pit], face_width_m: float, slices: int) -> FlankChords:
+def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, slices: int) -> FlankChords:
     """Return the chords of one flank; pits without extent in any direction are no pits.
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit
+    pits : iterable of Pit or Spall
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
     slices : int
@@ -77,8 +77,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[Pit], face_width_m: float, slice
     """
     if slices < 1:
         raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
-    sizes = ("semi_axis_face_m", "semi_axis_profile_m", "depth_m")
-    rows = pit_rows(pit for pit in pits if all(getattr(pit, name) != 0.0 for name in sizes))
+    rows = pit_rows(pit for pit in pits if has_extent(pit))
     face = face_width_m * (np.arange(slices) + 0.5) / slices
     highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
     low, high, count = _line_unions(face, rows, highest)
@@ -110,6 +109,12 @@ def contact_chords(
     return out
 
 
+def has_extent(damage: Pit | Spall) -> bool:
+    """Whether a pit or spall has depth, height and width; one without is none at all (a limit case of the tests)."""
+    (low, high), (left, right) = damage.outline.height_range_m, damage.outline.face_range_m
+    return damage.depth_m != 0.0 and low != high and left != right
+
+
 @njit(cache=True)
 def semi_ellipse_share(offset: float) -> float:
     """Return the part of a semi-ellipse of half-width 1 that lies below `offset`: 0 at -1, 1/2 at 0, 1 at 1."""
@@ -122,20 +127,51 @@ def semi_ellipse_share(offset: float) -> float:
 
 @njit(cache=True)
 def _line_unions(face: FloatArray, pits: FloatArray, highest: float) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Return the merged intervals of height (slices, pits) on every line: the union with its two axes exchanged."""
+    """Return the merged intervals of height (slices, rows) on every line, clipped to 0 and `highest`."""
     room = pits.shape[0]
-    turned = np.empty_like(pits)
-    turned[:, 0], turned[:, 1], turned[:, 2], turned[:, 3] = pits[:, 1], pits[:, 0], pits[:, 3], pits[:, 2]
-    turned[:, 4], turned[:, 5] = pits[:, 4], pits[:, 5]
     low, high = np.zeros((face.size, room)), np.zeros((face.size, room))
     left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
     merged = np.zeros(face.size, np.int64)
     for j in range(face.size):
-        count = active_pits(face[j], turned, active)
-        filled = add_intervals(face[j], turned, active, count, highest, left, right, owner, 0)
+        filled = 0
+        for i in range(room):
+            first, last = _heights_on_line(face[j], pits, i)
+            first, last = max(first, 0.0), min(last, highest)
+            if last <= first:
+                continue
+            k = filled
+            while k > 0 and left[k - 1] > first:
+                left[k], right[k] = left[k - 1], right[k - 1]
+                k -= 1
+            left[k], right[k] = first, last
+            filled += 1
         merged[j] = _merge(left, right, filled, low[j], high[j])
     return low, high, merged
+
+
+@njit(cache=True)
+def _heights_on_line(face: float, pits: FloatArray, i: int) -> tuple[float, float]:
+    """Return the heights between which row i covers the line at `face`; an empty interval where it does not."""
+    if pits[i, 6] == 0.0:
+        v = (face - pits[i, 1]) / pits[i, 2]
+        reach = pits[i, 3] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
+        return pits[i, 0] - reach, pits[i, 0] + reach
+    # A trapezoid: from its lowest (0) to its highest point (1), where left side <= face <= right side, both straight.
+    first, last = 0.0, 1.0
+    for side in range(2):
+        sign = 1.0 if side == 0 else -1.0
+        at_low, at_high = sign * (face - pits[i, 9 + side]), sign * (face - pits[i, 11 + side])
+        if at_low < 0.0 and at_high < 0.0:
+            return 0.0, 0.0
+        if at_low < 0.0:
+            first = max(first, at_low / (at_low - at_high))
+        elif at_high < 0.0:
+            last = min(last, at_low / (at_low - at_high))
+    height = pits[i, 8] - pits[i, 7]
+    return (
+        pits[i, 7] if first == 0.0 else pits[i, 7] + first * height,
+        pits[i, 8] if last == 1.0 else pits[i, 7] + last * height,
+    )
 
 
 @njit(cache=True)
@@ -162,10 +198,9 @@ def _depth_at(height: float, face: float, pits: FloatArray) -> float:
     """Return the largest depth of the pits at a point of the flank, 0 on a land."""
     deepest = 0.0
     for i in range(pits.shape[0]):
-        u, v = (height - pits[i, 0]) / pits[i, 3], (face - pits[i, 1]) / pits[i, 2]
-        room = 1.0 - u * u - v * v
-        if room > 0.0:
-            deepest = max(deepest, pits[i, 4] if pits[i, 5] == 0.0 else pits[i, 4] * sqrt(room))
+        low, high = _heights_on_line(face, pits, i)
+        if low < height < high:
+            deepest = max(deepest, sqrt(square_depth(height, face, pits, i)))
     return deepest
 
 

@@ -21,7 +21,7 @@ from tests.gears.builders import layers, pair_18_47, pit
 from tests.gears.pit_shapes import arc_of, chord_pit
 
 PAIR = pair_18_47(module_m=3e-3, bores_m=(10e-3, 15e-3))
-STIFFNESS = StiffnessOptions()
+STIFFNESS = StiffnessOptions(beam="rack_trochoid")  # the numbers below belong to this tooth
 SHARP = SliceOptions(59e3, edge_radius_m=0.0)
 CENTRE = PAIR.pitch_point_m - 0.3e-3
 HEALTHY = slice_law(PAIR, (), STIFFNESS, SHARP)
