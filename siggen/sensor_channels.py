@@ -39,7 +39,7 @@ def _channel_settings(specimen: Specimen, rng: np.random.Generator) -> Iterator[
             u, noise = rng.random(), sensor.noise
             yield ChannelSetting(
                 name=f"{sensor.name}_{axis}",
-                motion=f"{sensor.place}/{axis}",
+                motion=f"{sensor.motion_place}/{axis}",
                 sensor=sensor,
                 gain=constant(gain),
                 noise_floor_m_s2=at(noise.floor_m_s2, u) if isinstance(noise, NoiseFloor) else None,

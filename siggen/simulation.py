@@ -56,7 +56,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         labels = damage_labels(config.states[state_id], pair, damage, options)
     except ValueError as error:
         raise SolverFailure("impossible_damage", str(error)) from error
-    return SpecimenState(pair, options, damage, tables, structure(specimen.dynamics, pair), labels)
+    return SpecimenState(pair, options, damage, tables, structure(specimen.dynamics, pair, specimen.sensors), labels)
 
 
 def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:

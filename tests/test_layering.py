@@ -29,6 +29,7 @@ FLOORS = {
     "siggen.record_labels": 5.35,
     "siggen.sensor_channels": 5.35,
     "siggen.stiffness_curves": 5.35,
+    "siggen.natural_modes": 5.35,
     "siggen.damage_table": 5.35,
     "siggen.dataset": 5.4,
     "siggen.simulation": 5.5,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,10 +46,21 @@ def save_stiffness_figure(curves: Sequence[StiffnessCurve], path: Path) -> None:
     UsageError
         If matplotlib is missing or the ending is none that it draws.
     """
+    save_figure(lambda: stiffness_figure(curves), path)
+
+
+def save_figure(drawn: Callable[[], Figure], path: Path) -> None:
+    """Draw a figure into a file.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib is missing or the ending is none that it draws.
+    """
     if path.suffix.lower() not in PICTURE_ENDINGS:
         raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed are {', '.join(PICTURE_ENDINGS)}")
     try:
-        figure = stiffness_figure(curves)
+        figure = drawn()
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
     figure.savefig(path, dpi=150)

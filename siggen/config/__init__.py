@@ -1,5 +1,6 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
+from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
@@ -18,6 +19,8 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 __all__ = [
     "BLOCK",
     "SCHEMA_VERSION",
+    "Bolts",
+    "Casing",
     "Choice",
     "ClusteredPits",
     "Config",

@@ -26,6 +26,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _twice_named,
         _growth,
         _tooth_indices,
+        _sensor_places,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -51,6 +52,25 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
             f"at the highest speed, {speed_hz:g} Hz with {teeth} teeth; or lower mesh_harmonics or the speed"
         )
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
+
+
+PLACES = {
+    "torsional": ("pinion_rim", "gear_rim"),
+    "6dof": ("pinion_bearing", "gear_bearing"),
+    "8dof": ("pinion_bearing", "gear_bearing"),
+    "casing": ("casing", "pinion_bearing", "gear_bearing"),
+}
+"""Places of a sensor that a model has."""
+
+
+def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "dynamics" not in sections:
+        return
+    model = sections["dynamics"].model
+    for index, sensor in sections.get("sensors", {}).items():
+        if sensor.place not in PLACES[model]:
+            allowed = f"allowed: one of {', '.join(PLACES[model])} (dynamics.model: {model})"
+            yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

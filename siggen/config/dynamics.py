@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from siggen.config.casing import Casing
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
 
@@ -35,8 +36,13 @@ class Coupling(Section):
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Literal["8dof", "6dof"] = Field(default="8dof", description="6dof leaves out motor and load")
-    integrator: Literal["product", "runge_kutta"] = Field(default="product", description="how the motion is integrated")
+    model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
+        default="8dof",
+        description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
+    )
+    integrator: Literal["product", "runge_kutta"] = Field(
+        default="product", description="how the motion is integrated; product needs the linear mesh law"
+    )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample"
     )
@@ -56,3 +62,5 @@ class Dynamics(Section):
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
     output_coupling: Coupling = Field(default=Coupling(), description="between gear and load")
+    # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
+    casing: Casing = Field(default=Casing(), description="used by the model casing alone")
