@@ -7,6 +7,7 @@ from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.gears import Gears, Wheel
+from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
@@ -27,11 +28,13 @@ __all__ = [
     "Coupling",
     "DamageModel",
     "Dynamics",
+    "Friction",
     "Gears",
     "LayeredPits",
     "ListedPit",
     "ListedPits",
     "LogUniform",
+    "Mesh",
     "NoiseFloor",
     "NoiseRatio",
     "Normal",

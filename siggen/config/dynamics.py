@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from siggen.config.casing import Casing
+from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
 
@@ -64,3 +65,5 @@ class Dynamics(Section):
     output_coupling: Coupling = Field(default=Coupling(), description="between gear and load")
     # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
     casing: Casing = Field(default=Casing(), description="used by the model casing alone")
+    mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
+    friction: Friction = Field(default=Friction(), description="how the teeth rub")
