@@ -1,0 +1,238 @@
+"""SliceLaw: normal force of pairs with pitted flanks over position and approach, compiled for the time loop.
+
+Derived from `siggen.gears.slice_contact`: at every position the face is replaced by its lands and a few groups that
+stand for what lies over pits, each with its mean sink; the force is then solved exactly for any approach, so nothing is
+interpolated over the approach and the law stays piecewise linear in it. Interpolated over the position are the sinks,
+the stiffness of the pair and the lengths. Rows are those of `siggen.gears.tables.mesh_tables`.
+
+The error against all slices, directly at the middle of all cells, is given by `slice_law_error`. With the defaults,
+18/47 teeth of module 3 mm and penetrations of 3, 5, 8 and 45 µm it is, of the healthy force, below 0.1 % for 16 round
+pits of 0.6 mm, below 0.5 % for a pit of 1.5 mm through the whole face and below 4 % where pits leave 4 % of the face.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.dynamics.contact_kinematics import hertz_half_width, relative_radius
+from siggen.gears.compliance import StiffnessOptions, tooth_compliance
+from siggen.gears.damage import Damage, pits_of
+from siggen.gears.flank_chords import ContactChords, contact_chords, flank_chords
+from siggen.gears.geometry import GearPair
+from siggen.gears.slice_contact import grouped_sinks, sink_depths, slice_force, slice_springs
+from siggen.gears.stiffness import contact_compliance, rolls_at
+from siggen.gears.tables import pair_kinds
+
+FloatArray = NDArray[np.float64]
+
+
+class SliceOptions(NamedTuple):
+    """How pits act on the contact.
+
+    `line_load_n_per_m`: load that sets the Hertz width which bridges narrow pits; `edge_radius_m`: of the pits' edges,
+    0 for sharp ones; `section_loss`: whether pits also weaken the tooth's sections (an upper bound of their effect, as
+    in potential-energy papers); `slices` across the face, narrower than a pit; `groups` that stand for them in the
+    table.
+    """
+
+    line_load_n_per_m: float
+    edge_radius_m: float = 0.1e-3
+    section_loss: bool = False
+    slices: int = 200
+    groups: int = 32
+
+
+class SliceLaw(NamedTuple):
+    """Tables by (row, position) on a uniform grid (a named tuple, since compiled code takes no dataclass).
+
+    `sink_m` (rows, positions, groups): of what lies over pits, ascending, see `grouped_sinks`; `stiffness_n_per_m`
+    (rows, positions): of a pair whose whole face is in contact; `land` (rows, positions): share of the face that is
+    land, averaged over the Hertz band; `on_damage` (rows, positions): share of the face on which the contact line lies
+    within the outline of a pit; `contact_n_per_m`: k_h; `face_width_m`; `start_m`, `per_m`: grid.
+    """
+
+    sink_m: FloatArray
+    stiffness_n_per_m: FloatArray
+    land: FloatArray
+    on_damage: FloatArray
+    contact_n_per_m: float
+    face_width_m: float
+    start_m: float
+    per_m: float
+
+
+def slice_law(
+    pair: GearPair, damage: Damage, stiffness: StiffnessOptions, options: SliceOptions, points: int = 2049
+) -> SliceLaw:
+    """Return the law of a pair with damage on any teeth.
+
+    Parameters
+    ----------
+    pair : GearPair
+    damage : tuple of Pit
+        Pits without extent in some direction are no pits.
+    stiffness : StiffnessOptions
+        Of the teeth's compliance.
+    options : SliceOptions
+    points : int
+        Positions from s_A to s_E, at least 2.
+
+    Raises
+    ------
+    ValueError
+        If an option is impossible, a damaged tooth does not exist or a pit is impossible.
+    """
+    _check(options, points)
+    damage = tuple(pit for pit in damage if pit.depth_m and pit.semi_axis_face_m and pit.semi_axis_profile_m)
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    kinds = pair_kinds(pair, damage)
+    sinks = np.empty((len(kinds), points, options.groups))
+    lands, damaged = np.empty((len(kinds), points)), np.empty((len(kinds), points))
+    for row, kind in enumerate(kinds):
+        chords = _chords(pair, damage, kind, options, position)
+        sinks[row] = grouped_sinks(chords.covered, _sinks(pair, chords, options, position), options.groups)
+        lands[row] = np.mean(1.0 - chords.covered, axis=1)
+        damaged[row] = np.mean(chords.edge_m > 0.0, axis=1)
+    law = SliceLaw(
+        sink_m=sinks,
+        stiffness_n_per_m=_stiffness(pair, damage, stiffness, kinds, position, options.section_loss),
+        land=lands,
+        on_damage=damaged,
+        contact_n_per_m=1.0 / float(contact_compliance(pair, position[:1])[0]),
+        face_width_m=pair.face_width_m,
+        start_m=pair.contact_start_m,
+        per_m=(points - 1) / (pair.contact_end_m - pair.contact_start_m),
+    )
+    for array in law[:4]:
+        array.setflags(write=False)
+    return law
+
+
+def slice_law_error(
+    pair: GearPair,
+    damage: Damage,
+    stiffness: StiffnessOptions,
+    options: SliceOptions,
+    law: SliceLaw,
+    penetration_m: FloatArray,
+) -> float:
+    """Return the largest error of the law's force at the middle of all cells, over the healthy force.
+
+    Compared with all slices of `siggen.gears.slice_contact`, at the penetrations (k,) [m].
+    """
+    kinds = pair_kinds(pair, damage)
+    middle = law.start_m + (np.arange(law.stiffness_n_per_m.shape[1] - 1) + 0.5) / law.per_m
+    pairs = _stiffness(pair, damage, stiffness, kinds, middle, options.section_loss)
+    worst = 0.0
+    for row, kind in enumerate(kinds):
+        chords = _chords(pair, damage, kind, options, middle)
+        sinks = _sinks(pair, chords, options, middle)
+        for i in np.flatnonzero(np.any(chords.covered > 0.0, axis=1)):
+            compliance = 1.0 / pairs[row, i] - 1.0 / law.contact_n_per_m
+            springs = slice_springs(chords.covered[i], sinks[i], law.contact_n_per_m, compliance)
+            for depth in penetration_m:
+                error = slice_pair_force(law, row, middle[i], depth) - slice_force(springs, depth)
+                worst = max(worst, abs(error) / (pairs[0, i] * depth))
+    return worst
+
+
+@njit(cache=True)
+def slice_place(law: SliceLaw, position_m: float) -> tuple[int, float]:
+    """Return the cell of a position and the weight of its upper end, clamped to the table."""
+    points = law.stiffness_n_per_m.shape[1]
+    place = min(max((position_m - law.start_m) * law.per_m, 0.0), points - 1.0)
+    index = min(int(place), points - 2)
+    return index, place - index
+
+
+@njit(cache=True)
+def slice_pair_force(law: SliceLaw, row: int, position_m: float, penetration_m: float) -> float:
+    """Return the normal force N [N] of a pair of kind `row` at position s and penetration d; 0 where nothing touches.
+
+    Where no slice sinks it is k d, the same operation as without slices.
+    """
+    if penetration_m <= 0.0:
+        return 0.0
+    index, share = slice_place(law, position_m)
+    pair = law.stiffness_n_per_m[row, index] * (1.0 - share) + law.stiffness_n_per_m[row, index + 1] * share
+    groups = law.sink_m.shape[2]
+    if law.sink_m[row, index, groups - 1] == 0.0 and law.sink_m[row, index + 1, groups - 1] == 0.0:
+        return pair * penetration_m
+    land = law.land[row, index] * (1.0 - share) + law.land[row, index + 1] * share
+    least = law.contact_n_per_m * (1.0 - land) / (groups * groups)
+    compliance = 1.0 / pair - 1.0 / law.contact_n_per_m
+    stiffness, preload = law.contact_n_per_m * land, 0.0
+    force = stiffness * penetration_m / (1.0 + compliance * stiffness)
+    for j in range(groups):
+        gap = law.sink_m[row, index, j] * (1.0 - share) + law.sink_m[row, index + 1, j] * share
+        if gap >= penetration_m - compliance * force:
+            break
+        stiffness += least * (2 * j + 1)
+        preload += least * (2 * j + 1) * gap
+        force = (stiffness * penetration_m - preload) / (1.0 + compliance * stiffness)
+    return force
+
+
+@njit(cache=True)
+def slice_contact_length(law: SliceLaw, row: int, position_m: float) -> float:
+    """Return the contact length on lands [m] at position s, for the line load of the lubricated contact."""
+    index, share = slice_place(law, position_m)
+    return law.face_width_m * (law.land[row, index] * (1.0 - share) + law.land[row, index + 1] * share)
+
+
+@njit(cache=True)
+def slice_on_damage(law: SliceLaw, row: int, position_m: float) -> float:
+    """Return the share of the face, 0 to 1, on which the contact line crosses pits: there the lands are rough too."""
+    index, share = slice_place(law, position_m)
+    return law.on_damage[row, index] * (1.0 - share) + law.on_damage[row, index + 1] * share
+
+
+def _chords(
+    pair: GearPair, damage: Damage, kind: tuple[int, int], options: SliceOptions, position: FloatArray
+) -> ContactChords:
+    pinion, gear = (
+        flank_chords(pair.member(which), pits_of(damage, which, tooth), pair.face_width_m, options.slices)
+        for which, tooth in zip(("pinion", "gear"), kind, strict=True)
+    )
+    modulus = pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
+    radius = relative_radius(position, pair.line_of_action_m)
+    half_width = hertz_half_width(options.line_load_n_per_m, radius, modulus)
+    return contact_chords(pair, pinion, gear, position, half_width)
+
+
+def _sinks(pair: GearPair, chords: ContactChords, options: SliceOptions, position: FloatArray) -> FloatArray:
+    radius = relative_radius(position, pair.line_of_action_m)[:, None]
+    return sink_depths(chords.edge_m, chords.depth_m, radius, options.edge_radius_m)
+
+
+def _stiffness(
+    pair: GearPair,
+    damage: Damage,
+    options: StiffnessOptions,
+    kinds: tuple[tuple[int, int], ...],
+    position: FloatArray,
+    section_loss: bool,
+) -> FloatArray:
+    """Return the stiffness (rows, positions) of pairs with the whole face in contact [N/m]."""
+    contact = contact_compliance(pair, position)
+    rolls = dict(zip(("pinion", "gear"), rolls_at(pair, position), strict=True))
+    tooth: dict[tuple[str, int], FloatArray] = {}
+    for column, which in enumerate(("pinion", "gear")):
+        for index in sorted({kind[column] for kind in kinds}):
+            pits = pits_of(damage, which, index) if section_loss else ()
+            tooth[which, index] = tooth_compliance(pair, which, rolls[which], options, pits).total
+    return np.stack([1.0 / (contact + tooth["pinion", i] + tooth["gear", j]) for i, j in kinds])
+
+
+def _check(options: SliceOptions, points: int) -> None:
+    if not (np.isfinite(options.line_load_n_per_m) and options.line_load_n_per_m > 0.0):
+        raise ValueError(f"line_load_n_per_m: received {options.line_load_n_per_m}; allowed are finite values above 0")
+    if not (np.isfinite(options.edge_radius_m) and options.edge_radius_m >= 0.0):
+        raise ValueError(f"edge_radius_m: received {options.edge_radius_m}; allowed are finite values from 0")
+    for name, value, least in (("slices", options.slices, 1), ("groups", options.groups, 1), ("points", points, 2)):
+        if value < least:
+            raise ValueError(f"{name}: received {value}; allowed are whole numbers from {least}")
