@@ -9,13 +9,14 @@ from siggen.dataset.specimen import OperatingPoint
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_law import Friction, PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.pair_motion import PairMotion
 from siggen.dynamics.response import Motion
 from siggen.dynamics.structure import Structure
 from siggen.gears.geometry import GearPair
 from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.tables import MeshTables
+from siggen.specimen_friction import specimen_friction
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,7 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
     rubbing = dynamics.friction.model != "off"
     return PairMotion(
         locked_load(mesh.structure) if rubbing else mesh.structure,
-        _law(dynamics, mesh),
+        _law(dynamics, mesh, point),
         torque_nm=point.torque_nm,
         speed_hz=point.speed_hz,
         reference_stiffness_n_per_m=mean_mesh_stiffness(mesh.tables),
@@ -58,12 +59,11 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
     )
 
 
-def _law(dynamics: Dynamics, mesh: SpecimenMesh) -> PairLaw:
-    friction, section = dynamics.friction, dynamics.mesh
+def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
+    section = dynamics.mesh
     film = SqueezeFilm(
         constant(section.oil_viscosity_pa_s), mesh.pair.face_width_m, 1e-6 * constant(section.film_floor_um)
     )
-    rubbing = Friction(constant(friction.coefficient), constant(friction.regular_speed_m_s))
     return pair_law(
         mesh.tables,
         mesh.missing,
@@ -71,6 +71,6 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh) -> PairLaw:
         damping_ratio=constant(dynamics.mesh_damping_ratio),
         equivalent_mesh_mass_kg=mesh.structure.equivalent_mesh_mass_kg,
         backlash_m=1e-6 * constant(dynamics.backlash_um),
-        friction=rubbing if friction.model == "constant" else None,
+        friction=specimen_friction(dynamics.friction, mesh.pair, point),
         film=film if section.squeeze_film == "on" else None,
     )

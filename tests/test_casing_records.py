@@ -7,6 +7,7 @@ import pytest
 
 from siggen.config import Config
 from siggen.dataset.record import Record
+from siggen.errors import ConfigError
 from siggen.loading import load_config
 from siggen.record_internals import internals_table
 from siggen.simulation import simulate, simulate_specimen
@@ -78,3 +79,18 @@ def test_friction_changes_the_vibration_and_keeps_the_speed(config: Config) -> N
     assert isinstance(rough, Record)
     assert rough.channels["lid_horizontal"].std() > 1.5 * smooth.channels["lid_horizontal"].std()
     assert rough.labels["mesh_hz"] == pytest.approx(smooth.labels["mesh_hz"], rel=1e-12)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("fluid", ["constant", "eyring"])
+def test_the_mean_friction_of_the_oil_is_that_of_lubricated_gears(fluid: str) -> None:
+    overrides = [*SHORT, f"dynamics.friction.fluid={fluid}", "dynamics.friction.roughness_um=0.4"]
+    table = internals_table(load_config("configs/paper_b.yaml", overrides), 1)
+    friction = sum(np.abs(table[f"pair_{slot}_friction_n"].to_numpy()) for slot in range(2))
+    # Load-weighted mean over the mesh; lubricated steel gears show 0.02 to 0.08.
+    assert 0.02 < friction.sum() / table["mesh_force_n"].to_numpy().sum() < 0.08
+
+
+def test_an_oil_model_beyond_its_roughness_is_refused() -> None:
+    overrides = ["dynamics.friction.fluid=xu_kahraman", "dynamics.friction.roughness_um=2.0"]
+    with pytest.raises(ConfigError, match=r"dynamics\.friction\.roughness_um"):
+        load_config("configs/paper_b.yaml", overrides)

@@ -23,7 +23,8 @@ FLOORS = {
     # The composition, in the order of the data; dataset lies between, since simulate makes its records.
     "siggen.specimen_physics": 5.0,
     "siggen.specimen_structure": 5.0,
-    "siggen.specimen_motion": 5.0,
+    "siggen.specimen_friction": 5.0,
+    "siggen.specimen_motion": 5.05,
     "siggen.state_damage": 5.1,
     "siggen.physical_problems": 5.2,
     "siggen.loading": 5.3,

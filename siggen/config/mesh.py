@@ -35,8 +35,27 @@ class Mesh(Section):
 class Friction(Section):
     """Friction between the flanks; needs the law pairs."""
 
-    model: Literal["off", "constant"] = Field(default="off", description="model of the coefficient of friction")
-    coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the constant model")
+    model: Literal["off", "constant", "mixed_ehl"] = Field(
+        default="off", description="mixed_ehl: asperities and oil film share the load by speed, load and roughness"
+    )
+    coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the model constant")
     regular_speed_m_s: Annotated[Number, Within(above=0)] = Field(
         default=0.02, description="sliding speed over which friction builds up around the pitch point"
     )
+    boundary_coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.11, description="of the asperities (mixed_ehl)"
+    )
+    fluid: Literal["constant", "eyring", "xu_kahraman", "benedict_kelley"] = Field(
+        default="constant", description="friction of the oil film (mixed_ehl); constant: 0.02"
+    )
+    oil: Literal[
+        "ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "ISO VG 150", "ISO VG 220", "ISO VG 320", "ISO VG 460",
+        "ISO VG 680",
+    ] = Field(default="ISO VG 220", description="mineral gear oil (mixed_ehl)")  # fmt: skip
+    oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
+        default=50.0, description="at the inlet of the contact"
+    )
+    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
+        default=0.4, description="rms roughness of either flank (mixed_ehl)"
+    )
+    hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")

@@ -6,7 +6,7 @@ Equations (reference: standard literature; load sharing and friction as paper B 
     drive flank, d_n > 0:          N_n = max(0, k_n d_n + c_n ẋ)
     back flank, x - e_p < -j:      N_n = min(0, k_n (x - e_p + j) + c_n ẋ)      e_p: place of the teeth alone
     c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch (Kasuba and Evans 1981: constant ratio)
-    F_n = μ |N_n| tanh(v_n/v_0)    on the drive flank, v_n = sliding speed of the pinion's flank on the gear's
+    F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
 
 Between flanks that approach without touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders,
 iso-viscous; derived). Positions are in base pitches, as in `mesh_force`; outside the path of contact the stiffness is
@@ -22,6 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from siggen.dynamics.friction import FrictionLaw, constant_friction, friction_force
 from siggen.dynamics.mesh_force import read_only
 
 if TYPE_CHECKING:
@@ -59,16 +60,8 @@ class PairLaw(NamedTuple):
     backlash_m: float
     film_n_s_per_m: float  # 12 π η L, 0 without a film
     film_floor_m: float
-    friction_coefficient: float
-    friction_speed_m_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Friction:
-    """A constant coefficient of friction that builds up over the sliding speed `regular_speed_m_s`."""
-
-    coefficient: float
-    regular_speed_m_s: float = 0.02
+    rubs: bool
+    friction: FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +81,7 @@ def pair_law(
     damping_ratio: float,
     equivalent_mesh_mass_kg: float,
     backlash_m: float,
-    friction: Friction | None = None,
+    friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
 ) -> PairLaw:
     """Return the law of these tables.
@@ -96,12 +89,10 @@ def pair_law(
     Raises
     ------
     ValueError
-        If damping, backlash, friction or film are negative or not finite, or the missing material does not cover the
+        If damping, backlash or film are negative or not finite, or the missing material does not cover the
         path of contact.
     """
     numbers = {"damping_ratio": damping_ratio, "backlash_m": backlash_m}
-    if friction is not None:
-        numbers |= {"friction coefficient": friction.coefficient}
     if film is not None:
         numbers |= {"film viscosity_pa_s": film.viscosity_pa_s}
     for name, value in numbers.items():
@@ -139,8 +130,8 @@ def pair_law(
         backlash_m=float(backlash_m),
         film_n_s_per_m=0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m,
         film_floor_m=1.0 if film is None else film.floor_m,
-        friction_coefficient=0.0 if friction is None else friction.coefficient,
-        friction_speed_m_s=1.0 if friction is None else friction.regular_speed_m_s,
+        rubs=friction is not None,
+        friction=constant_friction(0.0) if friction is None else friction,
     )
 
 
@@ -222,7 +213,8 @@ def pair_forces(
         force = row[STIFFNESS] * (row[PENETRATION] + damping * rate_m_s)
         if row[FLANK] > 0.0:
             row[NORMAL] = max(0.0, force)
-            row[FRICTION] = law.friction_coefficient * row[NORMAL] * np.tanh(row[SLIDING] / law.friction_speed_m_s)
+            if law.rubs:
+                row[FRICTION] = friction_force(law.friction, 0, row[POSITION], row[NORMAL], row[SLIDING])
         else:
             row[NORMAL] = min(0.0, force)
 

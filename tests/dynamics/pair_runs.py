@@ -6,8 +6,9 @@ from functools import cache
 
 import numpy as np
 
+from siggen.dynamics.friction import FrictionLaw
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_law import Friction, PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.pair_motion import PairMotion
 from siggen.dynamics.structure import Structure
 from siggen.gears.geometry import GearPair, SpurGear
@@ -65,7 +66,7 @@ def law(
     damping_ratio: float = 0.07,
     backlash_m: float = 80e-6,
     mass: float = 0.2124,
-    friction: Friction | None = None,
+    friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
 ) -> PairLaw:
     return pair_law(

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.pair_law import (
     COLUMNS,
     FLANK,
@@ -15,7 +16,6 @@ from siggen.dynamics.pair_law import (
     PENETRATION,
     POSITION,
     STIFFNESS,
-    Friction,
     PairLaw,
     SqueezeFilm,
     pair_forces,
@@ -142,7 +142,7 @@ def test_friction_turns_at_the_pitch_point_and_takes_power() -> None:
     omega = 2.0 * np.pi * 30.0
     gear_omega = omega * 18.0 / 47.0
     rolling = (-pair.line_of_action_m * gear_omega, omega + gear_omega)
-    chosen = law(friction=Friction(0.05))
+    chosen = law(friction=constant_friction(0.05))
     for angle in np.linspace(0.0, 1.0, 41):
         for row in loaded(chosen, 5e-6, 20.0 + angle, sliding=rolling):
             if row[NORMAL] > 0.0:
@@ -172,7 +172,9 @@ def test_tables_that_end_inside_the_path_of_contact_are_refused() -> None:
         law(short)
 
 
-@pytest.mark.parametrize("wrong", [{"damping_ratio": -0.1}, {"backlash_m": float("nan")}, {"friction": Friction(-0.1)}])
+@pytest.mark.parametrize(
+    "wrong", [{"damping_ratio": -0.1}, {"backlash_m": float("nan")}, {"film": SqueezeFilm(-0.1, 0.02, 1e-6)}]
+)
 def test_impossible_numbers_are_refused(wrong: dict) -> None:
     with pytest.raises(ValueError, match="allowed are finite values from 0"):
         law(**wrong)

@@ -8,10 +8,11 @@ from scipy.integrate import solve_ivp
 
 from siggen.dynamics.casing_structure import torsional
 from siggen.dynamics.drive import Drive
+from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_law import FLANK, NORMAL, SLIDING, Friction
+from siggen.dynamics.pair_law import FLANK, FRICTION, SLIDING
 from siggen.dynamics.pair_motion import PairMotion
 from siggen.dynamics.response import Response, response_of
 from siggen.dynamics.structure import eight_dof
@@ -122,7 +123,7 @@ def test_isotropic_supports_in_an_immovable_casing_leave_no_motion_across_the_li
 @pytest.mark.parametrize("coefficient", [0.0, 0.05])
 def test_power_is_balanced(coefficient: float) -> None:
     structure = locked_load(make_structure()) if coefficient else make_structure()
-    chosen = law(friction=Friction(coefficient))
+    chosen = law(friction=constant_friction(coefficient))
     run, pitches, states = whole_meshes(lambda step: motion(structure, chosen, step_s=step), 18, settle_s=3.0)
     names, n = structure.coordinates, len(structure.coordinates)
     inner = columns(run, states, pitches)
@@ -135,8 +136,7 @@ def test_power_is_balanced(coefficient: float) -> None:
     p_in = (TORQUE * (omega + velocity["theta_m"])).mean()
     p_out = (torque * (omega * 18.0 / 47.0 + velocity["theta_l"])).mean()
     pairs = run.pairs(states, pitches)
-    p_friction = (run.law.friction_coefficient * pairs[:, :, NORMAL] * np.tanh(pairs[:, :, SLIDING] / 0.02)
-                  * pairs[:, :, SLIDING]).sum(axis=1).mean()  # fmt: skip
+    p_friction = (pairs[:, :, FRICTION] * pairs[:, :, SLIDING]).sum(axis=1).mean()
     p_mesh = (inner["mesh_force_n"] * inner["approach_rate_m_s"]).mean()
     bare = make_structure().damping
     p_dampers = np.einsum("ti,ij,tj->t", states[:, n:], bare, states[:, n:]).mean()
@@ -152,7 +152,9 @@ def test_power_is_balanced(coefficient: float) -> None:
 
 def test_a_perfect_pair_of_gears_makes_only_mesh_harmonics() -> None:
     run, _, states = whole_meshes(
-        lambda step: motion(locked_load(make_structure()), law(friction=Friction(0.05)), step_s=step), 18, settle_s=4.0
+        lambda step: motion(locked_load(make_structure()), law(friction=constant_friction(0.05)), step_s=step),
+        18,
+        settle_s=4.0,
     )
     n = len(run.structure.coordinates)
     for name in ("y_c", "phi_c", "x_1"):
@@ -208,7 +210,7 @@ def test_without_missing_material_and_mesh_damping_it_is_the_linear_law() -> Non
 
 
 def test_agrees_with_an_adaptive_solver() -> None:
-    chosen, coarse, samples = law(friction=Friction(0.05)), 1.0 / 204800, 1200
+    chosen, coarse, samples = law(friction=constant_friction(0.05)), 1.0 / 204800, 1200
     times, errors = coarse * np.arange(samples + 1), []
     run = motion(make_structure(), chosen)
     solution = solve_ivp(
