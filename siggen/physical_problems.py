@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from siggen.config import (
     ClusteredPits,
     DamageModel,
+    Dynamics,
     Gears,
     LayeredPits,
     ListedPits,
@@ -27,6 +28,7 @@ from siggen.errors import Problem
 from siggen.gears.damage import Damage, Pit, Spall, damage_problems, flank_heights
 from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
 from siggen.spall_physics import spall_on_tooth
+from siggen.specimen_friction import roughness_problem
 from siggen.specimen_physics import gear_pair, pit_height_m
 
 PROBE_M = 1e-9
@@ -76,7 +78,16 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     for index, state in parsed.sections.get("states", {}).items():
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage")
+    problems += _friction_problems(parsed.sections.get("dynamics"))
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
+
+
+def _friction_problems(dynamics: Dynamics | None) -> list[Problem]:
+    allowed = "" if dynamics is None else roughness_problem(dynamics.friction)
+    if dynamics is None or not allowed:
+        return []
+    received = f"{dynamics.friction.roughness_um} with fluid: {dynamics.friction.fluid}"
+    return [Problem("dynamics.friction.roughness_um", received, f"allowed: what the model holds for: {allowed}")]
 
 
 def _without_material(gears: Gears) -> Gears:

@@ -30,7 +30,7 @@ def channel_settings(specimen: Specimen) -> Iterator[ChannelSetting]:
     for sensor in specimen.sensors:
         gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
         for axis, gain in zip(sensor.axes, gains, strict=True):
-            yield ChannelSetting(f"{sensor.name}_{axis}", f"{sensor.place}/{axis}", sensor, constant(gain))
+            yield ChannelSetting(f"{sensor.name}_{axis}", f"{sensor.motion_place}/{axis}", sensor, constant(gain))
 
 
 def measured_channels(

@@ -7,21 +7,22 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd, pi
 
-from siggen.config import Config, constant
+from siggen.config import Config
 from siggen.damage_table import damage_rows
 from siggen.dataset.plan import PlannedRecord, planned_record
 from siggen.dataset.record import Record, RecordFailure
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.dynamics.response import Response, simulate_response
-from siggen.dynamics.structure import Structure
+from siggen.dynamics.drive import Drive
+from siggen.dynamics.response import Response, response_of
 from siggen.errors import SolverFailure
 from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import StiffnessOptions
-from siggen.gears.tables import MeshTables, mesh_tables
+from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
+from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
 from siggen.state_damage import state_damage
@@ -36,8 +37,7 @@ class SpecimenState:
     pair: GearPair
     options: StiffnessOptions
     damage: Damage
-    tables: MeshTables
-    structure: Structure
+    mesh: SpecimenMesh
     labels: dict[str, object]
 
 
@@ -56,7 +56,9 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         labels = damage_labels(config.states[state_id], pair, damage, options)
     except ValueError as error:
         raise SolverFailure("impossible_damage", str(error)) from error
-    return SpecimenState(pair, options, damage, tables, structure(specimen.dynamics, pair), labels)
+    missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+    assembled = structure(specimen.dynamics, pair, specimen.sensors)
+    return SpecimenState(pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels)
 
 
 def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
@@ -77,19 +79,13 @@ def record_response(
         If the integration did not stay finite and bounded.
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    dynamics = specimen.dynamics
-    response = simulate_response(
-        state.structure,
-        state.tables,
-        torque_nm=point.torque_nm,
-        speed_hz=point.speed_hz,
-        start_angle_rad=start_angle_rad(config, state.pair, record),
-        mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
-        backlash_m=1e-6 * constant(dynamics.backlash_um),
+    steps = specimen.dynamics.steps_per_sample
+    response = response_of(
+        specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps)),
+        Drive(point.speed_hz, start_angle_rad(config, state.pair, record)),
         fs_hz=config.fs_hz,
         samples=config.samples,
-        steps_per_sample=dynamics.steps_per_sample,
-        integrator=dynamics.integrator,
+        steps_per_sample=steps,
         internals=internals,
     )
     if response.status != "ok":

@@ -1,11 +1,14 @@
-"""The gearbox of a drawn specimen as the dynamics sees it: inertias, bearings and couplings in SI."""
+"""The gearbox of a drawn specimen as the dynamics sees it: inertias, bearings, couplings and casing in SI."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi
 
+from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Rotor, constant
+from siggen.config import Dynamics, Rotor, Sensor, constant
+from siggen.dynamics.casing_structure import Bolts, Casing, Point, casing_structure, torsional
 from siggen.dynamics.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure import Rotor as RotorNumbers
 from siggen.gears.geometry import GearPair
@@ -13,16 +16,17 @@ from siggen.gears.spur_gear import SpurGear
 
 STEEL_DENSITY_KG_M3 = 7850.0
 
-ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof}
+ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
 
-def structure(dynamics: Dynamics, pair: GearPair) -> Structure:
+def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()) -> Structure:
     """Return the structure of a drawn `dynamics` section; a gear without given mass is a steel disc with its bore.
 
     Parameters
     ----------
     dynamics : Dynamics, without distributions
     pair : GearPair
+    sensors : Sensor, those on the casing become points of it
     """
     stage = SpurStage(
         working_pressure_angle_rad=pair.working_pressure_angle_rad,
@@ -33,6 +37,8 @@ def structure(dynamics: Dynamics, pair: GearPair) -> Structure:
         input_coupling=_coupling(dynamics.input_coupling),
         output_coupling=_coupling(dynamics.output_coupling),
     )
+    if dynamics.model == "casing":
+        return casing_structure(stage, _casing(dynamics.casing, pair, sensors))
     return ASSEMBLIES[dynamics.model](stage)
 
 
@@ -63,3 +69,23 @@ def _rotor(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
 
 def _coupling(section: CouplingSection) -> Coupling:
     return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))
+
+
+def _casing(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
+    bolts, pinion = section.bolts, section.pinion_position_mm
+    return Casing(
+        mass_kg=constant(section.mass_kg),
+        inertia_kg_m2=constant(section.inertia_kg_m2),
+        bolts=Bolts(
+            shear_stiffness_n_per_m=constant(bolts.shear_stiffness_n_per_m),
+            axial_stiffness_n_per_m=constant(bolts.axial_stiffness_n_per_m),
+            damping_ratio=constant(bolts.damping_ratio),
+            places_m=tuple(_metres(place) for place in bolts.positions_mm),
+        ),
+        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
+        sensor_places_m={s.name: _metres(s.position_mm) for s in sensors if s.position_mm is not None},
+    )
+
+
+def _metres(position_mm: tuple[float, float]) -> Point:
+    return 1e-3 * position_mm[0], 1e-3 * position_mm[1]

@@ -1,11 +1,13 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
+from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.gears import Gears, Wheel
+from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
@@ -19,18 +21,22 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 __all__ = [
     "BLOCK",
     "SCHEMA_VERSION",
+    "Bolts",
+    "Casing",
     "Choice",
     "ClusteredPits",
     "Config",
     "Coupling",
     "DamageModel",
     "Dynamics",
+    "Friction",
     "Gears",
     "LayeredPits",
     "ListedPit",
     "ListedPits",
     "ListedSpall",
     "LogUniform",
+    "Mesh",
     "NoiseFloor",
     "NoiseRatio",
     "Normal",

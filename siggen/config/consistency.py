@@ -27,6 +27,8 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _twice_named,
         _growth,
         _tooth_indices,
+        _sensor_places,
+        _mesh_law,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -52,6 +54,40 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
             f"at the highest speed, {speed_hz:g} Hz with {teeth} teeth; or lower mesh_harmonics or the speed"
         )
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
+
+
+PLACES = {
+    "torsional": ("pinion_rim", "gear_rim"),
+    "6dof": ("pinion_bearing", "gear_bearing"),
+    "8dof": ("pinion_bearing", "gear_bearing"),
+    "casing": ("casing", "pinion_bearing", "gear_bearing"),
+}
+"""Places of a sensor that a model has."""
+
+
+def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "dynamics" not in sections:
+        return
+    model = sections["dynamics"].model
+    for index, sensor in sections.get("sensors", {}).items():
+        if sensor.place not in PLACES[model]:
+            allowed = f"allowed: one of {', '.join(PLACES[model])} (dynamics.model: {model})"
+            yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
+
+
+def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "dynamics" not in sections:
+        return
+    dynamics = sections["dynamics"]
+    if dynamics.mesh.law == "pairs" and dynamics.integrator != "runge_kutta":
+        allowed = "allowed: runge_kutta (dynamics.mesh.law: pairs)"
+        yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
+    if dynamics.mesh.law == "linear" and dynamics.friction.model != "off":
+        allowed = "allowed: off, or dynamics.mesh.law: pairs"
+        yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)
+    if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
+        allowed = "allowed: off, or dynamics.mesh.law: pairs"
+        yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -6,6 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from siggen.config.casing import Casing
+from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
 
@@ -35,11 +37,14 @@ class Coupling(Section):
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Literal["8dof", "6dof"] = Field(default="8dof", description="6dof leaves out motor and load")
+    model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
+        default="8dof",
+        description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
+    )
     integrator: Literal["product", "runge_kutta"] = Field(
         default="product",
-        description="product integrates the tabulated stiffness exactly; runge_kutta is a plain reference, of "
-        "first order where teeth enter and leave contact (2 percent off at 8 steps per sample)",
+        description="product integrates the tabulated stiffness exactly, with the linear mesh law alone; runge_kutta "
+        "is plain, of first order where teeth enter and leave contact",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample"
@@ -60,3 +65,7 @@ class Dynamics(Section):
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
     output_coupling: Coupling = Field(default=Coupling(), description="between gear and load")
+    # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
+    casing: Casing = Field(default=Casing(), description="used by the model casing alone")
+    mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
+    friction: Friction = Field(default=Friction(), description="how the teeth rub")

@@ -43,15 +43,23 @@ Noise = Annotated[
 
 
 class Sensor(Section):
-    """An accelerometer with one or two axes."""
+    """An accelerometer with one or two axes.
+
+    Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a
+    casing; vertical along the pitch-line velocity of the pinion. Tangential is the motion of a gear's base circle.
+    """
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$"), SENSOR_NAME] = Field(
         description="part of the channel's name"
     )
-    place: Literal["pinion_bearing", "gear_bearing"] = Field(
-        default="pinion_bearing", description="where it is mounted"
+    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
+        default="pinion_bearing",
+        description="where it is mounted; casing needs the model casing, rims the torsional one",
     )
-    axes: Annotated[tuple[Literal["vertical", "horizontal"], ...], Field(min_length=1)] = Field(
+    position_mm: tuple[Real, Real] | None = Field(
+        default=None, description="horizontal and vertical distance from the casing's centre of gravity (place: casing)"
+    )
+    axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="directions it measures, one channel each"
     )
     gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
@@ -78,9 +86,21 @@ class Sensor(Section):
             problems.append(
                 Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
             )
+        if (self.position_mm is None) == (self.place == "casing"):
+            allowed = "allowed: a position [horizontal, vertical] with place: casing, and only there"
+            problems.append(Problem("position_mm", received_text(self.position_mm), allowed))
+        on_rim = self.place.endswith("_rim")
+        if any((axis == "tangential") != on_rim for axis in self.axes):
+            axes = "tangential" if on_rim else "vertical, horizontal"
+            problems.append(Problem("axes", ", ".join(self.axes), f"allowed: {axes} at place {self.place}"))
         if problems:
             raise refusal(problems)
         return self
+
+    @property
+    def motion_place(self) -> str:
+        """Name of the motion that it measures: its place, with its own name where it stands on the casing."""
+        return f"casing_{self.name}" if self.place == "casing" else self.place
 
     def drawn(self, uniform: Callable[[str], float]) -> Sensor:
         """Return the sensor of one specimen: one gain per axis, everything per record left as it is."""

@@ -51,26 +51,34 @@ def equations_of_motion(structure: Structure, law: MeshLaw, torque_nm: float, re
     """
     if not np.isfinite(torque_nm):
         raise ValueError(f"torque_nm: received {torque_nm}; allowed are finite torques")
+    return equations_about(structure, torque_nm, reference_stiffness, law.half_backlash_m, -law.half_backlash_m)
+
+
+def equations_about(
+    structure: Structure, torque_nm: float, reference_stiffness: float, drive_gap_m: float, back_gap_m: float
+) -> Equations:
+    """Return the equations for flanks that touch at the approach `drive_gap_m` or, on the other side, `back_gap_m`."""
     p = structure.mesh_vector
     loaded = structure.stiffness + reference_stiffness * p[:, None] * p[None, :]
     elastic = static_solution(structure.mass, loaded, structure.torque_vector * torque_nm)
     force = float(reference_stiffness * (p * elastic).sum())
     side = 1.0 if force >= 0.0 else -1.0
-    gap = static_solution(structure.mass, loaded, p * (reference_stiffness * side * law.half_backlash_m))
+    touching = drive_gap_m if side > 0.0 else back_gap_m
+    gap = static_solution(structure.mass, loaded, p * (reference_stiffness * touching))
     return Equations(
-        stiffness_by_mass=_solved(structure.mass, structure.stiffness),
-        damping_by_mass=_solved(structure.mass, structure.damping),
-        mesh_input=_solved(structure.mass, p),
+        stiffness_by_mass=inverse_times(structure.mass, structure.stiffness),
+        damping_by_mass=inverse_times(structure.mass, structure.damping),
+        mesh_input=inverse_times(structure.mass, p),
         mesh_vector=np.array(p),
         static_deflection=elastic + gap,
         reference_stiffness=reference_stiffness,
         static_force=force,
-        static_approach=force / reference_stiffness + side * law.half_backlash_m,
+        static_approach=force / reference_stiffness + touching,
         side=side,
     )
 
 
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+def inverse_times(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Return matrix⁻¹ · right in row order: one memory layout, hence one compilation of the kernels."""
     return np.ascontiguousarray(np.linalg.solve(matrix, right), dtype=np.float64)
 
@@ -140,3 +148,9 @@ def state_rate(equations: Equations, law: MeshLaw, state: FloatArray, pitches: f
         for j in range(n):
             total -= equations.stiffness_by_mass[i, j] * state[j] + equations.damping_by_mass[i, j] * state[n + j]
         rate[n + i] = total
+
+
+@njit(cache=True)
+def linear_rate(model: tuple[Equations, MeshLaw], state: FloatArray, pitches: float, rate: FloatArray) -> None:
+    """Write ż of `state_rate` for a model (equations, law); the form that integrators call."""
+    state_rate(model[0], model[1], state, pitches, rate)

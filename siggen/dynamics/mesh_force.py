@@ -48,13 +48,13 @@ def mesh_law(tables: MeshTables, damping_n_s_per_m: float, backlash_m: float) ->
     for name, value in (("damping_n_s_per_m", damping_n_s_per_m), ("backlash_m", backlash_m)):
         if not (np.isfinite(value) and value >= 0.0):
             raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
-    stiffness = _read_only(tables.pair_stiffness_n_per_m, np.float64)
+    stiffness = read_only(tables.pair_stiffness_n_per_m, np.float64)
     if not (np.isfinite(stiffness).all() and (stiffness > 0.0).all()):
         raise ValueError(f"pair stiffness: received minimum {stiffness.min()} N/m; allowed are finite values above 0")
     length = tables.end_m - tables.start_m
     return MeshLaw(
         stiffness=stiffness,
-        table_of_pair=_read_only(tables.table_of_pair, np.int32),
+        table_of_pair=read_only(tables.table_of_pair, np.int32),
         contact_ratio=float(length / tables.base_pitch_m),
         intervals_per_pitch=float((stiffness.shape[1] - 1) * tables.base_pitch_m / length),
         damping_n_s_per_m=float(damping_n_s_per_m),
@@ -69,7 +69,7 @@ def mean_mesh_stiffness(tables: MeshTables) -> float:
     return float((healthy.sum() - 0.5 * (healthy[0] + healthy[-1])) * step / tables.base_pitch_m)
 
 
-def _read_only(values: NDArray[Any], dtype: type) -> NDArray[Any]:
+def read_only(values: NDArray[Any], dtype: type) -> NDArray[Any]:
     """Return a contiguous read-only array: one type for all laws, hence one compilation of the kernels."""
     array: NDArray[Any] = np.ascontiguousarray(values, dtype=dtype)
     if array.flags.writeable:

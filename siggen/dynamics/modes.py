@@ -5,6 +5,8 @@ Equations: eigenvalues of the undamped pencil (K, M) and of the state matrix (re
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,15 +19,40 @@ EXCITED_SHARE = 1e-9
 """Modes whose residue in the bearing displacement is below this share of the largest are not excited by the mesh."""
 
 
-def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> FloatArray:
-    """Return the undamped natural frequencies (n,) [Hz], ascending, at a constant mesh stiffness; rigid ones are 0."""
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """Undamped modes, ascending; rigid ones have frequency 0.
+
+    `frequency_hz` (k,); `shapes` (k, n), mass-normalised, their largest entry positive; `mesh_share` (k,): share of the
+    strain energy that is in the mesh, 0 for rigid modes.
+    """
+
+    frequency_hz: FloatArray
+    shapes: FloatArray
+    mesh_share: FloatArray
+
+
+def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
+    """Return the modes of the structure with a constant mesh stiffness [N/m]."""
     p = structure.mesh_vector
     root = np.linalg.cholesky(structure.mass)
     stiffness = structure.stiffness + mesh_stiffness_n_per_m * p[:, None] * p[None, :]
     scaled = np.linalg.solve(root, np.linalg.solve(root, stiffness).T)
-    values = np.linalg.eigvalsh(0.5 * (scaled + scaled.T))
-    values[values < 1e-12 * values[-1]] = 0.0
-    return np.sqrt(values) / (2.0 * np.pi)
+    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    rigid = values < 1e-12 * values[-1]
+    values = np.where(rigid, 0.0, values)
+    shapes = np.linalg.solve(root.T, vectors).T
+    largest = shapes[np.arange(len(shapes)), np.argmax(np.abs(shapes), axis=1)]
+    shapes = shapes * np.sign(largest)[:, None]
+    # Mass-normalised, so the strain energy of a mode is half its eigenvalue.
+    mesh = mesh_stiffness_n_per_m * (shapes @ p) ** 2
+    share = np.where(rigid, 0.0, mesh / np.where(rigid, 1.0, values))
+    return Modes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
+
+
+def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> FloatArray:
+    """Return the undamped natural frequencies (n,) [Hz], ascending, at a constant mesh stiffness; rigid ones are 0."""
+    return natural_modes(structure, mesh_stiffness_n_per_m).frequency_hz
 
 
 def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:

@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, state_matrix
+from siggen.dynamics.equations import Equations, approach_of, linear_rate, state_matrix
 from siggen.dynamics.mesh_force import MeshLaw, row_stiffness, table_row
 from siggen.dynamics.runge_kutta import runge_kutta_step
 
@@ -245,7 +245,8 @@ def _substeps(
     advance = (pitches_1 - pitches_0) / SUBSTEPS
     for j in range(SUBSTEPS):
         first = pitches_0 + j * advance
-        runge_kutta_step(equations, law, step_s / SUBSTEPS, first, first + advance, state, state, scratch)
+        model = (equations, law)
+        runge_kutta_step(linear_rate, model, step_s / SUBSTEPS, first, first + advance, state, state, scratch)
 
 
 @njit(cache=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -13,11 +13,8 @@ from numpy.typing import NDArray
 
 from siggen.dynamics.decimation import Decimator, half_length, second_difference_taps, value_taps
 from siggen.dynamics.drive import Drive
-from siggen.dynamics.equations import Equations, approach_of, equations_of_motion, start_state
-from siggen.dynamics.mesh_force import MeshLaw, in_contact, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
-from siggen.dynamics.modes import slowest_decay_per_s
-from siggen.dynamics.product_integration import ProductIntegration
-from siggen.dynamics.runge_kutta import RungeKutta
+from siggen.dynamics.equations import Equations, approach_of
+from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.structure import Structure
 from siggen.errors import SolverFailure
 
@@ -27,23 +24,30 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 
-class Integrator(Protocol):
-    """What steps a state through time."""
+class Motion(Protocol):
+    """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,)."""
+
+    structure: Structure
+    equations: Equations
+    transient_s: float
+    teeth: int
+    base_pitch_m: float
+    largest_approach_m: float
+    internal_names: tuple[str, ...]
+
+    def start(self, pitches: float) -> FloatArray:
+        """Return the state at the start, at a pinion angle in base pitches."""
 
     def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
         """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
 
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
+        """Return at how many states no teeth touch."""
 
-INTEGRATORS: Mapping[str, Callable[[Equations, MeshLaw, float], Integrator]] = {
-    "product": ProductIntegration,
-    "runge_kutta": RungeKutta,
-}
+    def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
+        """Return the values named in `internal_names` (k, names)."""
 
-DECAY_TIMES = 5.0
-"""Length of the discarded transient in decay times of the slowest mode that the mesh excites; from the static start
-less than 1e-5 of the acceleration is left then."""
-TRANSIENT_CAP_S = 5.0
-"""Longest transient that is computed; reached by modes that decay slower than 1/s, undamped ones included."""
+
 APPROACH_LIMIT_PITCHES = 0.1
 """Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
 BLOCK_SAMPLES = 2048
@@ -78,24 +82,23 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """A model with its time grid: `steps_per_sample` integration steps per output sample, step 0 at time 0."""
+    """A motion with its time grid: `steps_per_sample` integration steps per output sample, step 0 at time 0."""
 
-    structure: Structure
-    law: MeshLaw
-    equations: Equations
+    motion: Motion
     drive: Drive
-    integrator: Integrator
     fs_hz: float
     steps_per_sample: int
-    transient_s: float
-    limit_m: float
+
+    @property
+    def limit_m(self) -> float:
+        return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
 
     def time_s(self, first: int, count: int) -> FloatArray:
         return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
 
     def pitches(self, first: int, count: int) -> FloatArray:
         """Return the pinion angle in base pitches at `count` steps from step `first`."""
-        return self.drive.angle_rad(self.time_s(first, count)) * (self.law.table_of_pair.shape[0] / (2.0 * np.pi))
+        return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
 
 
 def simulate_response(
@@ -113,10 +116,7 @@ def simulate_response(
     integrator: str = "product",
     internals: bool = False,
 ) -> Response:
-    """Return the stationary response of a gear stage at constant speed and motor torque.
-
-    Starts from the static equilibrium and discards DECAY_TIMES decay times of the slowest excited mode. Mesh damping is
-    c = 2 ζ √(K m_e) with the mean healthy mesh stiffness K, so that it is the same for every state of a gear pair.
+    """Return the stationary response under the linear mesh law at constant speed and motor torque.
 
     Parameters
     ----------
@@ -133,52 +133,63 @@ def simulate_response(
     ValueError
         If an argument is outside its allowed range.
     """
-    _check_grid(fs_hz, samples, steps_per_sample, mesh_damping_ratio, integrator)
-    stiffness = mean_mesh_stiffness(tables)
-    damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
-    law = mesh_law(tables, damping, backlash_m)
-    equations = equations_of_motion(structure, law, torque_nm, stiffness)
-    run = _Run(
-        structure=structure,
-        law=law,
-        equations=equations,
-        drive=Drive(speed_hz, start_angle_rad),
-        integrator=INTEGRATORS[integrator](equations, law, 1.0 / (fs_hz * steps_per_sample)),
-        fs_hz=fs_hz,
-        steps_per_sample=steps_per_sample,
-        transient_s=transient_s(structure, equations, damping),
-        limit_m=0.5 * backlash_m + APPROACH_LIMIT_PITCHES * tables.base_pitch_m,
+    check_grid(fs_hz, samples, steps_per_sample)
+    motion = LinearMotion(
+        structure,
+        tables,
+        torque_nm=torque_nm,
+        mesh_damping_ratio=mesh_damping_ratio,
+        backlash_m=backlash_m,
+        step_s=1.0 / (fs_hz * steps_per_sample),
+        integrator=integrator,
     )
+    drive = Drive(speed_hz, start_angle_rad)
+    return response_of(
+        motion, drive, fs_hz=fs_hz, samples=samples, steps_per_sample=steps_per_sample, internals=internals
+    )
+
+
+def response_of(
+    motion: Motion, drive: Drive, *, fs_hz: float, samples: int, steps_per_sample: int, internals: bool = False
+) -> Response:
+    """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
+
+    Starts from the static equilibrium and discards the transient that the motion states.
+
+    Raises
+    ------
+    ValueError
+        If rate or counts are not positive.
+    """
+    check_grid(fs_hz, samples, steps_per_sample)
+    run = _Run(motion, drive, fs_hz, steps_per_sample)
     try:
         return _simulate(run, samples, internals)
     except SolverFailure as failure:
         return _failed(run, failure)
 
 
-def _check_grid(fs_hz: float, samples: int, steps_per_sample: int, damping_ratio: float, integrator: str) -> None:
+def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
+    """Refuse rates and counts that are no time grid.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not positive.
+    """
     if not (np.isfinite(fs_hz) and fs_hz > 0.0):
         raise ValueError(f"fs_hz: received {fs_hz}; allowed are finite rates above 0")
     if samples < 1 or steps_per_sample < 1:
         raise ValueError(
             f"samples, steps_per_sample: received {samples}, {steps_per_sample}; allowed are counts from 1"
         )
-    if not (np.isfinite(damping_ratio) and damping_ratio >= 0.0):
-        raise ValueError(f"mesh_damping_ratio: received {damping_ratio}; allowed are finite values from 0")
-    if integrator not in INTEGRATORS:
-        raise ValueError(f"integrator: received {integrator!r}; allowed are {', '.join(INTEGRATORS)}")
-
-
-def transient_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
-    """Return the time [s] that is simulated and discarded before sample 0."""
-    decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)
-    return min(TRANSIENT_CAP_S, DECAY_TIMES / decay) if decay > 0.0 else TRANSIENT_CAP_S
 
 
 def _simulate(run: _Run, samples: int, internals: bool) -> Response:
     """Step through transient and record block by block; keep only the filtered outputs and what was asked for."""
     half = half_length(run.steps_per_sample)
-    settle = math.ceil(run.transient_s * run.fs_hz * run.steps_per_sample)
-    state = start_state(run.structure, run.law, run.equations, run.pitches(-half - settle, 1)[0])
+    settle = math.ceil(run.motion.transient_s * run.fs_hz * run.steps_per_sample)
+    state = run.motion.start(run.pitches(-half - settle, 1)[0])
     for _ in _blocks(run, state, -half - settle, -half):
         pass
     accelerations, forces = _decimators(run, samples)
@@ -187,8 +198,8 @@ def _simulate(run: _Run, samples: int, internals: bool) -> Response:
     for first, states in _blocks(run, state, -half, (samples - 1) * run.steps_per_sample + half + 1):
         accelerations.take(states)
         forces.take(states)
-        recorded = states[max(0, -first) : max(0, samples * run.steps_per_sample - first)]
-        lost += _steps_in_gap(run.equations, run.law, recorded)
+        recorded = slice(max(0, -first), max(0, samples * run.steps_per_sample - first))
+        lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
         if internals:
             inner.append(_inner_values(run, first, states, samples))
     share = lost / (samples * run.steps_per_sample)
@@ -208,8 +219,8 @@ def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tup
     for first in range(start, stop, block):
         count = min(block, stop - first)
         trajectory[0] = state
-        run.integrator.advance(run.pitches(first, count + 1), trajectory[: count + 1])
-        beyond = _first_beyond(run.equations, trajectory[: count + 1], run.limit_m)
+        run.motion.advance(run.pitches(first, count + 1), trajectory[: count + 1])
+        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
@@ -217,7 +228,7 @@ def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tup
 
 
 def _divergence(run: _Run, step: int, state: FloatArray) -> SolverFailure:
-    approach, _ = approach_of(run.equations, state)
+    approach, _ = approach_of(run.motion.equations, state)
     time = step / (run.fs_hz * run.steps_per_sample)
     return SolverFailure(
         "diverged",
@@ -236,45 +247,22 @@ def _first_beyond(equations: Equations, states: FloatArray, limit_m: float) -> i
     return -1
 
 
-@njit(cache=True)
-def _steps_in_gap(equations: Equations, law: MeshLaw, states: FloatArray) -> int:
-    count = 0
-    for i in range(states.shape[0]):
-        approach, _ = approach_of(equations, states[i])
-        if not in_contact(law, approach):
-            count += 1
-    return count
-
-
-INTERNALS = ("mesh_force_n", "mesh_stiffness_n_per_m", "approach_m", "approach_rate_m_s")
-
-
 def _inner_values(run: _Run, first: int, states: FloatArray, samples: int) -> FloatArray:
-    """Return the internals (k, 4) at those steps of a block that are output samples."""
+    """Return the internals (k, names) at those steps of a block that are output samples."""
     steps = np.arange(first, first + len(states))
     chosen = (steps >= 0) & (steps % run.steps_per_sample == 0) & (steps < samples * run.steps_per_sample)
     pitches = run.pitches(first, len(states))
-    return _evaluate_inner(run.equations, run.law, states[chosen], pitches[chosen])
-
-
-@njit(cache=True)
-def _evaluate_inner(equations: Equations, law: MeshLaw, states: FloatArray, pitches: FloatArray) -> FloatArray:
-    result = np.empty((states.shape[0], 4))
-    for i in range(states.shape[0]):
-        approach, rate = approach_of(equations, states[i])
-        result[i, 0] = mesh_force(law, approach, rate, pitches[i])
-        result[i, 1] = mesh_stiffness(law, pitches[i])
-        result[i, 2] = approach
-        result[i, 3] = rate
-    return result
+    return run.motion.internals(states[chosen], pitches[chosen])
 
 
 def _decimators(run: _Run, samples: int) -> tuple[Decimator, Decimator]:
     """Return what filters accelerations (from displacements) and bearing forces (about their static values)."""
-    structure, steps = run.structure, run.steps_per_sample
+    structure, steps = run.motion.structure, run.steps_per_sample
     still = np.zeros(len(structure.coordinates))
     motions = np.array([np.concatenate([motion, still]) for motion in structure.motions.values()])
-    forces = np.array([np.concatenate(pair) for pair in structure.bearing_forces.values()])
+    forces = np.array([np.concatenate(pair) for pair in structure.bearing_forces.values()]).reshape(
+        -1, motions.shape[1]
+    )
     second_rate = second_difference_taps(steps) * (run.fs_hz * steps) ** 2
     return Decimator(motions, second_rate, steps, samples), Decimator(forces, value_taps(steps), steps, samples)
 
@@ -283,11 +271,11 @@ def _finished(
     run: _Run, accelerations: FloatArray, forces: FloatArray, inner: list[FloatArray], contact_loss_share: float
 ) -> Response:
     """Name the columns of accelerations and forces (n, channels) and of the internals."""
-    static = run.equations.static_deflection
-    bearings = run.structure.bearing_forces
+    static = run.motion.equations.static_deflection
+    bearings = run.motion.structure.bearing_forces
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=_named(run.structure.motions, accelerations.T),
+        acceleration_m_s2=_named(run.motion.structure.motions, accelerations.T),
         bearing_force_n=_named(
             bearings,
             [column + (pair[0] * static).sum() for column, pair in zip(forces.T, bearings.values(), strict=True)],
@@ -297,7 +285,7 @@ def _finished(
         contact_loss_share=contact_loss_share,
         status="ok",
         reason="",
-        internals=_named(INTERNALS, np.concatenate(inner).T) if inner else {},
+        internals=_named(run.motion.internal_names, np.concatenate(inner).T) if inner else {},
     )
 
 
@@ -310,8 +298,8 @@ def _failed(run: _Run, failure: SolverFailure) -> Response:
     empty = _frozen(np.empty(0))
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=dict.fromkeys(run.structure.motions, empty),
-        bearing_force_n=dict.fromkeys(run.structure.bearing_forces, empty),
+        acceleration_m_s2=dict.fromkeys(run.motion.structure.motions, empty),
+        bearing_force_n=dict.fromkeys(run.motion.structure.bearing_forces, empty),
         angle_rad=empty,
         tacho_s=empty,
         contact_loss_share=0.0,

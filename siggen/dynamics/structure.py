@@ -35,6 +35,8 @@ class Structure:
     coordinates : names of the n degrees of freedom
     mass, damping, stiffness : (n, n)
     mesh_vector : (n,) p, approach along the line of action = pᵀ q; a positive mesh force acts as -p
+    sliding_vectors : (2, n) r_0, r_1: sliding speed of the flanks at s along the line of action = (r_0 + s r_1)ᵀ q̇ plus
+        that of the rigid rotation; a friction force F acts as -(r_0 + s r_1) F
     torque_vector : (n,) generalised force per unit motor torque, the balancing load torque included
     equivalent_mesh_mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²)
     motions : place/axis -> (n,), displacement at that place = vector · q
@@ -46,6 +48,7 @@ class Structure:
     damping: FloatArray
     stiffness: FloatArray
     mesh_vector: FloatArray
+    sliding_vectors: FloatArray
     torque_vector: FloatArray
     equivalent_mesh_mass_kg: float
     motions: Mapping[str, FloatArray]
@@ -92,6 +95,23 @@ class SpurStage:
     input_coupling: Coupling
     output_coupling: Coupling
 
+    @property
+    def ratio(self) -> float:
+        """Torque at the load per torque at the motor, z_2/z_1."""
+        return self.gear.base_radius_m / self.pinion.base_radius_m
+
+    @property
+    def line_of_action_m(self) -> float:
+        """Distance T of the base tangent points [m]."""
+        radii = self.pinion.base_radius_m + self.gear.base_radius_m
+        return float(radii * np.tan(self.working_pressure_angle_rad))
+
+    @property
+    def equivalent_mesh_mass_kg(self) -> float:
+        """J_1 J_2 / (J_1 R_b2² + J_2 R_b1²) [kg]."""
+        pinion, gear = self.pinion, self.gear
+        return 1.0 / (pinion.base_radius_m**2 / pinion.inertia_kg_m2 + gear.base_radius_m**2 / gear.inertia_kg_m2)
+
 
 def vector(coordinates: Sequence[str], entries: Mapping[str, float]) -> FloatArray:
     """Return the (n,) vector with the named entries and zeros elsewhere, read-only.
@@ -127,11 +147,7 @@ def eight_dof(stage: SpurStage) -> Structure:
     Source: standard literature (8-DOF spur gear model), see the module.
     """
     inertias = {"theta_m": stage.motor_inertia_kg_m2, **_gear_inertias(stage), "theta_l": stage.load_inertia_kg_m2}
-    shafts = (
-        Element({"theta_m": 1.0, "theta_1": -1.0}, *_numbers(stage.input_coupling)),
-        Element({"theta_2": 1.0, "theta_l": -1.0}, *_numbers(stage.output_coupling)),
-    )
-    return _spur_structure(stage, inertias, shafts, driven_at="theta_m", loaded_at="theta_l")
+    return _spur_structure(stage, inertias, shafts(stage), driven_at="theta_m", loaded_at="theta_l")
 
 
 def six_dof(stage: SpurStage) -> Structure:
@@ -152,6 +168,14 @@ def _gear_inertias(stage: SpurStage) -> dict[str, float]:
         "y_2": gear.mass_kg,
         "theta_2": gear.inertia_kg_m2,
     }
+
+
+def shafts(stage: SpurStage) -> tuple[Element, Element]:
+    """Return the couplings between motor and pinion and between gear and load."""
+    return (
+        Element({"theta_m": 1.0, "theta_1": -1.0}, *_numbers(stage.input_coupling)),
+        Element({"theta_2": 1.0, "theta_l": -1.0}, *_numbers(stage.output_coupling)),
+    )
 
 
 def _numbers(coupling: Coupling) -> tuple[float, float]:
@@ -177,25 +201,25 @@ def _supports(stage: SpurStage) -> dict[str, Element]:
 
 
 def _spur_structure(
-    stage: SpurStage, inertias: Mapping[str, float], shafts: Sequence[Element], *, driven_at: str, loaded_at: str
+    stage: SpurStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
 ) -> Structure:
     """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias`."""
     coordinates = tuple(inertias)
     supports = _supports(stage)
-    stiffness, damping = assemble(coordinates, (*supports.values(), *shafts))
+    stiffness, damping = assemble(coordinates, (*supports.values(), *couplings))
     mass = np.diag(list(inertias.values()))
     for matrix in (mass, damping, stiffness):
         matrix.setflags(write=False)
     directions = {place: vector(coordinates, element.direction) for place, element in supports.items()}
-    ratio = stage.gear.base_radius_m / stage.pinion.base_radius_m
     return Structure(
         coordinates=coordinates,
         mass=mass,
         damping=damping,
         stiffness=stiffness,
         mesh_vector=vector(coordinates, _line_of_action(stage)),
-        torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -ratio}),
-        equivalent_mesh_mass_kg=_equivalent_mesh_mass(stage),
+        sliding_vectors=sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
+        torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -stage.ratio}),
+        equivalent_mesh_mass_kg=stage.equivalent_mesh_mass_kg,
         motions=directions,
         bearing_forces={
             place: (directions[place] * element.stiffness, directions[place] * element.damping)
@@ -217,6 +241,15 @@ def _line_of_action(stage: SpurStage) -> dict[str, float]:
     }
 
 
-def _equivalent_mesh_mass(stage: SpurStage) -> float:
-    pinion, gear = stage.pinion, stage.gear
-    return 1.0 / (pinion.base_radius_m**2 / pinion.inertia_kg_m2 + gear.base_radius_m**2 / gear.inertia_kg_m2)
+def _across_line_of_action(stage: SpurStage) -> dict[str, float]:
+    """Return the sliding of the pinion's flank against the gear's by motion of the gears, across the line of action."""
+    sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
+    return {"x_1": -cosine, "y_1": sine, "x_2": cosine, "y_2": -sine}
+
+
+def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mapping[str, float]) -> FloatArray:
+    """Return r_0, r_1 (2, n): arms s on the pinion, T - s on the gear; `across` is the translation of the gears."""
+    still = vector(coordinates, {**across, "theta_2": -stage.line_of_action_m})
+    result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])
+    result.setflags(write=False)
+    return result

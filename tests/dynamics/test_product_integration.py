@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.equations import approach_of
+from siggen.dynamics.linear_motion import RungeKutta
 from siggen.dynamics.product_integration import SHIFTED_LEGENDRE, ProductIntegration, scheme
-from siggen.dynamics.runge_kutta import RungeKutta
 from siggen.dynamics.structure import Structure
 from siggen.gears.tables import MeshTables
 from tests.dynamics.conftest import arched_row, make_tables

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.dynamics.runge_kutta import RungeKutta
+from siggen.dynamics.linear_motion import RungeKutta
 from siggen.dynamics.structure import Structure
 from siggen.gears.tables import MeshTables
 from tests.dynamics.conftest import make_tables

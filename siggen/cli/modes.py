@@ -1,0 +1,65 @@
+"""`siggen modes`: natural frequencies of one specimen and what they consist of, as a table and a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from siggen.natural_modes import SpecimenModes
+
+
+def modes(
+    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Override a key, such as dynamics.model=casing.")
+    ] = None,
+) -> None:
+    """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation.
+
+    Example: siggen modes configs/paper_b.yaml --out modes.csv --png modes.png
+    """
+    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.loading import load_config
+
+    if out is not None:
+        check_table_file(out)
+    from siggen.natural_modes import specimen_modes
+
+    found = specimen_modes(load_config(config, overrides or ()), specimen)
+    from rich.console import Console
+
+    Console().print(_printed(found))
+    if out is not None:
+        write_table_file(found.table, out)
+        typer.echo(str(out))
+    if png is not None:
+        from siggen.cli.modes_figure import save_modes_figure
+
+        save_modes_figure(found, png)
+        typer.echo(str(png))
+
+
+def _printed(found: SpecimenModes) -> Table:
+    """Return frequency, share of the mesh and the two degrees of freedom that hold most of the kinetic energy."""
+    from rich.table import Table
+
+    from siggen.natural_modes import kinetic_shares
+
+    table = Table(title=f"natural modes at a mesh stiffness of {found.mesh_stiffness_n_per_m:.3g} N/m")
+    for name in ("mode", "frequency [Hz]", "mesh strain energy [%]"):
+        table.add_column(name, justify="right")
+    table.add_column("moves most (share of kinetic energy)")
+    shares = kinetic_shares(found)
+    for i, frequency in enumerate(found.modes.frequency_hz):
+        first, second = sorted(range(len(found.coordinates)), key=lambda j, i=i: -shares[i, j])[:2]  # type: ignore[misc]
+        moving = ", ".join(f"{found.coordinates[j]} {100 * shares[i, j]:.0f} %" for j in (first, second))
+        table.add_row(str(i), f"{frequency:.1f}", f"{100 * found.modes.mesh_share[i]:.1f}", moving)
+    return table

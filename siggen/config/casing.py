@@ -1,0 +1,51 @@
+"""Section `dynamics.casing`: a rigid casing on bolts, and where the shafts run in it.
+
+Positions are [horizontal, vertical] from the casing's centre of gravity; horizontal counts from gear to pinion.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from siggen.config.number import Number, Within
+from siggen.config.problems import refusal
+from siggen.config.section import Real, Section
+from siggen.errors import Problem
+
+Position = tuple[Real, Real]
+
+
+class Bolts(Section):
+    """The bolts between casing and ground, all alike."""
+
+    shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description="horizontal, each")
+    axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description="vertical, each")
+    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.04, description="of a bolt that carries its share of the casing's mass"
+    )
+    positions_mm: Annotated[tuple[Position, ...], Field(min_length=2)] = Field(
+        default=((90.0, 0.0), (90.0, 0.0), (-90.0, 0.0), (-90.0, 0.0)), description="[horizontal, vertical] of each"
+    )
+
+    @model_validator(mode="after")
+    def _support(self) -> Bolts:
+        if len(set(self.positions_mm)) < 2:
+            received = f"all bolts at {list(self.positions_mm[0])}"
+            allowed = "allowed: at least two different places; about a single one the casing would turn freely"
+            raise refusal([Problem("positions_mm", received, allowed)])
+        return self
+
+
+class Casing(Section):
+    """A rigid body that carries the bearings: two translations and rocking."""
+
+    mass_kg: Annotated[Number, Within(above=0)] = Field(default=20.0, description="without the gears and shafts")
+    inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=0.25, description="about its centre of gravity")
+    pinion_position_mm: Position | None = Field(
+        default=None,
+        description="axis of the pinion, the gear's lies horizontally beside it; null: shafts on either side of the "
+        "centre of gravity",
+    )
+    bolts: Bolts = Field(default=Bolts(), description="between casing and ground")

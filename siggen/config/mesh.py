@@ -1,0 +1,61 @@
+"""Sections `dynamics.mesh` and `dynamics.friction`: how the teeth push and rub."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from siggen.config.number import Number, Within
+from siggen.config.section import Section
+
+
+class Mesh(Section):
+    """The law of the mesh force; everything but `law` is used by the law pairs alone."""
+
+    law: Literal["linear", "pairs"] = Field(
+        default="linear", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
+    )
+    tip_relief_um: Annotated[Number, Within(least=0)] = Field(
+        default=8.0, description="parabolic relief at the tips of both gears"
+    )
+    tip_relief_length: Annotated[Number, Within(above=0, most=1)] = Field(
+        default=0.25, description="length of the relief along the line of action, in base pitches"
+    )
+    corner_contact: Literal["on", "off"] = Field(
+        default="on", description="whether deflected teeth meet with their tip corners outside the path of contact"
+    )
+    squeeze_film: Literal["off", "on"] = Field(
+        default="off", description="whether oil damps flanks that approach without touching"
+    )
+    oil_viscosity_pa_s: Annotated[Number, Within(above=0)] = Field(default=0.112, description="of the squeezed film")
+    film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
+
+
+class Friction(Section):
+    """Friction between the flanks; needs the law pairs."""
+
+    model: Literal["off", "constant", "mixed_ehl"] = Field(
+        default="off", description="mixed_ehl: asperities and oil film share the load by speed, load and roughness"
+    )
+    coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the model constant")
+    regular_speed_m_s: Annotated[Number, Within(above=0)] = Field(
+        default=0.02, description="sliding speed over which friction builds up around the pitch point"
+    )
+    boundary_coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.11, description="of the asperities (mixed_ehl)"
+    )
+    fluid: Literal["constant", "eyring", "xu_kahraman", "benedict_kelley"] = Field(
+        default="constant", description="friction of the oil film (mixed_ehl); constant: 0.02"
+    )
+    oil: Literal[
+        "ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "ISO VG 150", "ISO VG 220", "ISO VG 320", "ISO VG 460",
+        "ISO VG 680",
+    ] = Field(default="ISO VG 220", description="mineral gear oil (mixed_ehl)")  # fmt: skip
+    oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
+        default=50.0, description="at the inlet of the contact"
+    )
+    roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
+        default=0.4, description="rms roughness of either flank (mixed_ehl)"
+    )
+    hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")

@@ -1,0 +1,125 @@
+"""LinearMotion: a structure under the linear mesh law, as what `response` steps through time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.dynamics.equations import Equations, approach_of, equations_of_motion, linear_rate, start_state
+from siggen.dynamics.mesh_force import MeshLaw, in_contact, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
+from siggen.dynamics.product_integration import ProductIntegration
+from siggen.dynamics.runge_kutta import runge_kutta_step
+from siggen.dynamics.structure import Structure
+from siggen.dynamics.transient import transient_s
+from siggen.gears.tables import MeshTables
+
+FloatArray = NDArray[np.float64]
+
+
+class Integrator(Protocol):
+    """What steps a state through time."""
+
+    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
+        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+
+
+class RungeKutta:
+    """Advances the state with one classical Runge-Kutta step per time step, as reference."""
+
+    def __init__(self, equations: Equations, law: MeshLaw, step_s: float) -> None:
+        self._equations = equations
+        self._law = law
+        self._step_s = step_s
+
+    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
+        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+        _advance(self._equations, self._law, self._step_s, pitches, trajectory)
+
+
+@njit(cache=True)
+def _advance(equations: Equations, law: MeshLaw, step_s: float, pitches: FloatArray, trajectory: FloatArray) -> None:
+    scratch = np.empty((3, trajectory.shape[1]))
+    model = (equations, law)
+    for i in range(pitches.size - 1):
+        start, end = trajectory[i], trajectory[i + 1]
+        runge_kutta_step(linear_rate, model, step_s, pitches[i], pitches[i + 1], start, end, scratch)
+
+
+INTEGRATORS: Mapping[str, Callable[[Equations, MeshLaw, float], Integrator]] = {
+    "product": ProductIntegration,
+    "runge_kutta": RungeKutta,
+}
+
+
+class LinearMotion:
+    """Mesh damping is c = 2 ζ √(K m_e) with the mean healthy mesh stiffness K: the same for every state of a pair."""
+
+    internal_names: tuple[str, ...] = ("mesh_force_n", "mesh_stiffness_n_per_m", "approach_m", "approach_rate_m_s")
+
+    def __init__(
+        self,
+        structure: Structure,
+        tables: MeshTables,
+        *,
+        torque_nm: float,
+        mesh_damping_ratio: float,
+        backlash_m: float,
+        step_s: float,
+        integrator: str = "product",
+    ) -> None:
+        if not (np.isfinite(mesh_damping_ratio) and mesh_damping_ratio >= 0.0):
+            raise ValueError(f"mesh_damping_ratio: received {mesh_damping_ratio}; allowed are finite values from 0")
+        if integrator not in INTEGRATORS:
+            raise ValueError(f"integrator: received {integrator!r}; allowed are {', '.join(INTEGRATORS)}")
+        stiffness = mean_mesh_stiffness(tables)
+        damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
+        self.structure = structure
+        self._law = mesh_law(tables, damping, backlash_m)
+        self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness)
+        self.transient_s = transient_s(structure, self.equations, damping)
+        self.teeth = self._law.table_of_pair.shape[0]
+        self.largest_approach_m = 0.5 * backlash_m
+        self.base_pitch_m = tables.base_pitch_m
+        self._integrator = INTEGRATORS[integrator](self.equations, self._law, step_s)
+
+    def start(self, pitches: float) -> FloatArray:
+        """Return the static state (2n,) at a pinion angle in base pitches."""
+        return start_state(self.structure, self._law, self.equations, pitches)
+
+    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
+        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+        self._integrator.advance(pitches, trajectory)
+
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:  # noqa: ARG002 - as every motion
+        """Return at how many states no teeth touch: the approach is inside the backlash."""
+        return _steps_in_gap(self.equations, self._law, states)
+
+    def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
+        """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
+        return _evaluate_inner(self.equations, self._law, states, pitches)
+
+
+@njit(cache=True)
+def _steps_in_gap(equations: Equations, law: MeshLaw, states: FloatArray) -> int:
+    count = 0
+    for i in range(states.shape[0]):
+        approach, _ = approach_of(equations, states[i])
+        if not in_contact(law, approach):
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def _evaluate_inner(equations: Equations, law: MeshLaw, states: FloatArray, pitches: FloatArray) -> FloatArray:
+    result = np.empty((states.shape[0], 4))
+    for i in range(states.shape[0]):
+        approach, rate = approach_of(equations, states[i])
+        result[i, 0] = mesh_force(law, approach, rate, pitches[i])
+        result[i, 1] = mesh_stiffness(law, pitches[i])
+        result[i, 2] = approach
+        result[i, 3] = rate
+    return result

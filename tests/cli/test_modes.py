@@ -1,0 +1,39 @@
+"""`siggen modes` as a user calls it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.csv
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+
+runner = CliRunner()
+
+
+@pytest.mark.parametrize(("model", "count"), [("torsional", 4), ("6dof", 6), ("8dof", 8), ("casing", 11)])
+def test_every_model_has_exactly_one_mode_of_free_rotation(tmp_path: Path, model: str, count: int) -> None:
+    place = {"torsional": "pinion_rim", "casing": "pinion_bearing"}.get(model, "pinion_bearing")
+    axes = "[tangential]" if model == "torsional" else "[vertical]"
+    result = runner.invoke(
+        app,
+        [
+            "modes", "configs/paper_a.yaml", "--out", str(tmp_path / "modes.csv"), "--png", str(tmp_path / "modes.png"),
+            "--set", f"dynamics.model={model}", "--set", f"sensors.0.place={place}", "--set", f"sensors.0.axes={axes}",
+        ],
+        catch_exceptions=False,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    table = pyarrow.csv.read_csv(tmp_path / "modes.csv")
+    frequencies = table["frequency_hz"].to_numpy()
+    assert len(frequencies) == count
+    assert (frequencies == 0.0).sum() == 1
+    assert (np.diff(frequencies) >= 0.0).all()
+    shares = table["mesh_share"].to_numpy()
+    assert shares[0] == 0.0
+    assert ((shares >= 0.0) & (shares <= 1.0 + 1e-12)).all()
+    assert shares[-1] > 0.5  # the fastest mode is that of the teeth
+    assert (tmp_path / "modes.png").stat().st_size > 10_000
