@@ -17,8 +17,10 @@ from siggen.config import Config, constant
 from siggen.dataset.plan import PlannedRecord, planned_record
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.dynamics.equations import equations_of_motion
+from siggen.dynamics.linear_motion import INTEGRATORS
 from siggen.dynamics.mesh_force import mean_mesh_stiffness, mesh_law
-from siggen.dynamics.response import INTEGRATORS, simulate_response, transient_s
+from siggen.dynamics.response import simulate_response
+from siggen.dynamics.transient import transient_s
 from siggen.simulation import SpecimenState, specimen_state, start_angle_rad
 
 SEVERE = 3
@@ -45,8 +47,8 @@ class _Case:
         """Return the acceleration of the pinion bearing (n,)."""
         dynamics = self.specimen.dynamics
         response = simulate_response(
-            self.state.structure,
-            self.state.tables,
+            self.state.mesh.structure,
+            self.state.mesh.tables,
             torque_nm=self.point.torque_nm,
             speed_hz=self.point.speed_hz,
             start_angle_rad=start_angle_rad(self.config, self.state.pair, self.planned),
@@ -61,11 +63,11 @@ class _Case:
 
     def transient_s(self) -> float:
         """Return the time that is integrated before the signal [s]."""
-        dynamics, structure = self.specimen.dynamics, self.state.structure
-        stiffness = mean_mesh_stiffness(self.state.tables)
+        dynamics, structure = self.specimen.dynamics, self.state.mesh.structure
+        stiffness = mean_mesh_stiffness(self.state.mesh.tables)
         ratio = constant(dynamics.mesh_damping_ratio)
         damping = 2.0 * ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
-        law = mesh_law(self.state.tables, damping, 1e-6 * constant(dynamics.backlash_um))
+        law = mesh_law(self.state.mesh.tables, damping, 1e-6 * constant(dynamics.backlash_um))
         return transient_s(structure, equations_of_motion(structure, law, self.point.torque_nm, stiffness), damping)
 
 

@@ -19,8 +19,8 @@ def machine_lines() -> list[str]:
     packages = " ".join(f"{name} {facts[name]}" for name in ("siggen", "numpy", "scipy", "numba", "pyarrow"))
     load = load_average()
     lines = [
-        f"{_cpu_model()}, {default_workers()} of {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
-        f"python {facts['python']} {packages}",
+        f"{_cpu_model()}, {default_workers()} of {os.cpu_count()} cores, one numeric thread per process",
+        f"{facts['system']}, python {facts['python']}, {packages}",
         f"load average at start: {load:.2f}",
     ]
     if load > QUIET_LOAD:

@@ -25,12 +25,12 @@ from siggen.gears.pitted_beams import section_losses
 from siggen.gears.spur_gear import SpurGear
 from siggen.gears.stiffness import pairs_in_contact
 from siggen.gears.tables import pair_kinds
-from siggen.gears.union import active_pits, add_intervals, cut_room, depth_moments, lengths_covered
+from siggen.gears.union import active_pits, add_intervals, depth_moments, lengths_covered, stretch_room
 
 FloatArray = NDArray[np.float64]
 
 RELATIVE_TOLERANCE = 1e-8
-"""The only one: quad's own absolute tolerance, 1.5e-8, is larger than a compliance in m/N, and it would stop at once."""
+"""The only one: quad's own absolute tolerance, 1.5e-8, exceeds a compliance in m/N, and quad would stop at once."""
 
 
 def mesh_stiffness_by_quad(pair: GearPair, angle_rad: float, damage: Damage = ()) -> float:
@@ -134,7 +134,7 @@ def _quad(function: Callable[[float], float], low: float, high: float) -> float:
 def _section(
     roll: float, base_radius: float, half_angle: float, pits: FloatArray, width: float
 ) -> tuple[float, float, float]:
-    """Return height, area and second moment of the section at a roll angle of a tooth with pits (n, 6)."""
+    """Return height, area and second moment of the section at a roll angle of a tooth with pits (n, 13)."""
     x = involute.height(roll, base_radius, half_angle)
     h = involute.half_thickness(roll, base_radius, half_angle)
     area, inertia = 2.0 * h * width, 2.0 / 3.0 * h**3 * width
@@ -145,6 +145,6 @@ def _section(
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
     count = active_pits(x, pits, active)
     filled = add_intervals(x, pits, active, count, width, left, right, owner, 0)
-    depth_moments(x, pits, left, right, owner, filled, np.empty(cut_room(room)), moments)
+    depth_moments(x, pits, left, right, owner, filled, stretch_room(room), moments)
     area_loss, inertia_loss = section_losses(h, width, moments)
     return x, area - area_loss, inertia - inertia_loss

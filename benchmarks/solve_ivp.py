@@ -53,7 +53,7 @@ class SolveIvp:
 
 
 def solve_ivp_integrators(*methods: Method) -> Mapping[str, Callable[[Equations, MeshLaw, float], SolveIvp]]:
-    """Return integrators by the name of scipy's method, as in `siggen.dynamics.response.INTEGRATORS`."""
+    """Return integrators by the name of scipy's method, as in `siggen.dynamics.linear_motion.INTEGRATORS`."""
 
     def maker(method: Method) -> Callable[[Equations, MeshLaw, float], SolveIvp]:
         return lambda equations, law, step_s: SolveIvp(method, equations, law, step_s)

@@ -39,12 +39,20 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 def run_facts(workers: int, *overrides: str) -> dict:
-    """Generate the quickstart with overrides in a process of its own and return the content of run.json."""
+    """Generate the quickstart with overrides in a process of its own and return the content of run.json.
+
+    Raises
+    ------
+    RuntimeError
+        If the generation fails; holds what it said.
+    """
     command = [str(Path(sys.executable).with_name("siggen")), "generate", str(QUICKSTART), "--workers", str(workers)]
     for override in overrides:
         command += ["--set", override]
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([*command, "--out", folder], check=True, capture_output=True)
+        done = subprocess.run([*command, "--out", folder], check=False, capture_output=True, text=True)
+        if done.returncode:
+            raise RuntimeError(f"siggen generate ended with {done.returncode}: {done.stderr.strip()}")
         return json.loads((Path(folder) / "run.json").read_text())
 
 
@@ -80,8 +88,13 @@ def _children_cpu_s() -> float:
 
 
 def _import_memory_bytes() -> int:
-    """Return the peak memory of a process that imports what a worker imports."""
+    """Return the peak memory of a process that imports what a worker imports.
+
+    A small process starts it: what the starting process holds counts as the peak of the started one.
+    """
     code = (
-        "import siggen.simulation; from siggen.dataset.environment import peak_memory_bytes as p; print(p()['parent'])"
+        "import subprocess, sys; from siggen.dataset.environment import peak_memory_bytes;"
+        "subprocess.run([sys.executable, '-c', 'import siggen.simulation'], check=True);"
+        "print(peak_memory_bytes()['largest_worker'])"
     )
     return int(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)

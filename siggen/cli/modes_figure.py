@@ -20,7 +20,7 @@ def modes_figure(found: SpecimenModes) -> Figure:
     figure = Figure(figsize=(9.0, 0.4 * count + 1.8), layout="constrained")
     shapes, mesh = figure.subplots(1, 2, sharey=True, width_ratios=(4, 1))
     image = shapes.imshow(100.0 * kinetic_shares(found), aspect="auto", cmap="Blues", vmin=0.0, vmax=100.0)
-    shapes.set_xticks(range(count), found.coordinates)
+    shapes.set_xticks(range(count), found.coordinates, rotation=45)
     shapes.set_yticks(range(count), [f"{f:.1f} Hz" for f in found.modes.frequency_hz])
     shapes.set_title("share of kinetic energy [%]")
     figure.colorbar(image, ax=shapes, location="left")

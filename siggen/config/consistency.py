@@ -26,6 +26,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _band,
         _twice_named,
         _growth,
+        _fault_names,
         _tooth_indices,
         _sensor_places,
         _mesh_law,
@@ -131,6 +132,22 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
                 continue
         if milder is not None and milder in states:
             yield from _growth_problems(states[milder], state, f"states.{index}")
+
+
+def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """A label says what is on the flank: spalling needs a spall here or before, and a spall is spalling."""
+    states: Mapping[int, State] = sections.get("states", {})
+    for index, state in states.items():
+        with_spalls = [i for i in states if i <= index and _has_spalls(states[i].damage)]
+        if state.fault == "spalling" and not with_spalls:
+            allowed = "allowed: pitting; spalling needs kind: spall, or spalls in kind: list, here or in a milder state"
+            yield Problem(f"states.{index}.fault", "spalling, with pits alone", allowed)
+        if state.fault == "pitting" and isinstance(state.damage, Spalls):
+            yield Problem(f"states.{index}.fault", "pitting, with a spall", "allowed: spalling")
+
+
+def _has_spalls(damage: object) -> bool:
+    return isinstance(damage, Spalls) or (isinstance(damage, ListedPits) and bool(damage.spalls))
 
 
 def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
