@@ -135,7 +135,7 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
 
 
 def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield labels that do not say what is on the flank: spalling needs a spall here or before, and a spall is spalling."""
+    """Yield labels that do not say what is on the flank: spalling needs a spall, here or before, and vice versa."""
     states: Mapping[int, State] = sections.get("states", {})
     for index, state in states.items():
         with_spalls = [i for i in states if i <= index and _has_spalls(states[i].damage)]
