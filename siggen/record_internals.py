@@ -51,7 +51,12 @@ def internals_table(config: Config, record_id: int) -> pa.Table:
 
 
 def _transmission_error(approach_m: np.ndarray, specimen: Specimen) -> np.ndarray:
-    """Return the dynamic transmission error on the line of action: the approach beyond the half backlash it closed."""
+    """Return the dynamic transmission error on the line of action: the approach beyond the backlash that it closed.
+
+    The linear mesh law counts the approach from the middle of the backlash, tooth pairs from the touching drive flank.
+    """
+    if specimen.dynamics.mesh.law == "pairs":
+        return approach_m
     half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
     return approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m)
 

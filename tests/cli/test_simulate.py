@@ -43,3 +43,14 @@ def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Pat
 def test_a_record_that_the_set_does_not_have_is_refused_with_the_range(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="has 8 records, 0 to 7"):
         run("configs/quickstart.yaml", "--record", 8, "--out", tmp_path / "record.parquet")
+
+
+@pytest.mark.parametrize("name", ["quickstart", "paper_b"])
+def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_path: Path, name: str) -> None:
+    run(f"configs/{name}.yaml", "--record", 0, "--out", tmp_path / "record.parquet")
+    table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
+    force, stiffness = (table[c].to_numpy().mean() for c in ("mesh_force_n", "mesh_stiffness_n_per_m"))
+    error = table["transmission_error_m"].to_numpy().mean()
+    assert error > 1e-6  # some 30 N m press 1 kN on 2e8 to 4e8 N/m
+    # The mean of F/K is not the quotient of the means, as K swings by 30 % about its own; tip relief adds a little.
+    assert error == pytest.approx(force / stiffness, rel=0.3)
