@@ -109,6 +109,7 @@ def draw(cases: Cases, path: Path) -> None:
 
 
 def main() -> None:
+    """Draw all figures of the gallery and print its table."""
     FIGURES.mkdir(exist_ok=True)
     for group, cases in GROUPS.items():
         draw(cases, FIGURES / f"gallery_{group}.png")

@@ -54,6 +54,7 @@ def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
 
 
 def main() -> None:
+    """Print the table of docs/iso_6336.md."""
     print("| z1/z2 | ε | c'th | c' | cγα of c'th | cγα | " + " | ".join(MODELS) + " |")
     print("|---" * (6 + len(MODELS)) + "|")
     ratios = {name: [] for name in MODELS}

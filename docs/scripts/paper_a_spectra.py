@@ -29,6 +29,7 @@ def energies(lines: np.ndarray) -> dict[str, float]:
 
 
 def main() -> None:
+    """Simulate the four states, print the energies and draw the spectra."""
     config = load_config("configs/paper_a.yaml")
     records = simulate_specimen(config, range(config.records_per_specimen))
     channel = "bearing_vertical"

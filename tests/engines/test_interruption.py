@@ -33,7 +33,7 @@ def test_the_first_signal_raises_and_later_ones_do_not_disturb_the_cleanup(numbe
 
 def test_without_a_signal_nothing_happens() -> None:
     with Interruption() as interruption:
-        interruption.check()
+        assert interruption.check() is None
 
 
 def test_other_threads_leave_signals_alone() -> None:
