@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd, pi
@@ -50,15 +51,23 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         If what was drawn cannot be built (named in the reason).
     """
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    try:
+    with _limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         tables = mesh_tables(pair, damage, options, points=specimen.stiffness.table_points)
         labels = damage_labels(config.states[state_id], pair, damage, options)
-    except ValueError as error:
-        raise SolverFailure("impossible_damage", str(error)) from error
-    missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
-    assembled = structure(specimen.dynamics, pair, specimen.sensors)
+    with _limits_of("outside_model"):
+        missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+        assembled = structure(specimen.dynamics, pair, specimen.sensors)
     return SpecimenState(pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels)
+
+
+@contextmanager
+def _limits_of(status: str) -> Iterator[None]:
+    """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
+    try:
+        yield
+    except ValueError as error:
+        raise SolverFailure(status, str(error)) from error
 
 
 def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
@@ -76,18 +85,20 @@ def record_response(
     Raises
     ------
     SolverFailure
-        If the integration did not stay finite and bounded.
+        If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
-    response = response_of(
-        specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps)),
-        Drive(point.speed_hz, start_angle_rad(config, state.pair, record)),
-        fs_hz=config.fs_hz,
-        samples=config.samples,
-        steps_per_sample=steps,
-        internals=internals,
-    )
+    with _limits_of("outside_model"):
+        response = response_of(
+            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps)),
+            Drive(point.speed_hz, start_angle_rad(config, state.pair, record)),
+            fs_hz=config.fs_hz,
+            samples=config.samples,
+            steps_per_sample=steps,
+            internals=internals,
+            bearing_forces=internals,
+        )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
@@ -115,8 +126,6 @@ def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Recor
             yield _simulated(config, specimen, state_of(record.state_id), record)
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
-        except ValueError as error:  # what was drawn is beyond a model's limits; the message names them
-            yield RecordFailure(record.record_id, "outside_model", str(error))
 
 
 def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:

@@ -93,3 +93,19 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
         assert isinstance(failure, RecordFailure)
         assert failure.status == "impossible_damage"
         assert "contact length" in failure.reason
+
+
+def test_supports_too_stiff_for_the_model_are_a_failure_of_the_records_with_the_reason() -> None:
+    stiff = [f"dynamics.pinion.bearing_stiffness_{axis}_n_per_m=1.0e+15" for axis in "xy"]
+    results = simulate_specimen(load_config("configs/quickstart.yaml", [*SMALL, *stiff]), [0, 2])
+    assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
+    assert all(r.reason for r in results if isinstance(r, RecordFailure))
+
+
+def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr("siggen.simulation.measured_channels", broken)
+    with pytest.raises(ValueError, match="broadcast"):
+        simulate_specimen(config, [0])
