@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from itertools import pairwise
 from math import sqrt
 
 import pytest
@@ -33,7 +34,7 @@ def edition_1995(module_mm: float, diameter_mm: float, width_mm: float) -> dict[
     """Return class 5 of the first edition [µm], by formulas of its own with the geometric means of its ranges."""
 
     def mean(value: float, ends: tuple[float, ...]) -> float:
-        low, high = next((a, b) for a, b in zip(ends, ends[1:], strict=False) if a < value <= b)
+        low, high = next((a, b) for a, b in pairwise(ends) if a < value <= b)
         return sqrt(low * high)
 
     m = mean(module_mm, (0.5, 2.0, 3.5, 6.0, 10.0))
