@@ -27,6 +27,7 @@ from siggen.config.damage import PitSize
 from siggen.errors import Problem
 from siggen.gears.damage import Damage, Pit, Spall, damage_problems, flank_heights
 from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
+from siggen.gears.iso_1328 import outside_iso_1328
 from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_friction import roughness_problem
 from siggen.specimen_physics import gear_pair, pit_height_m
@@ -78,8 +79,18 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     for index, state in parsed.sections.get("states", {}).items():
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage")
+    if parsed.sections.get("manufacture") is not None:
+        problems += _tolerance_problems(sound)
     problems += _friction_problems(parsed.sections.get("dynamics"))
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
+
+
+def _tolerance_problems(pairs: list[GearPair]) -> Iterator[Problem]:
+    for pair in pairs:
+        for which in ("pinion", "gear"):
+            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which):
+                received = f"tolerances for a {which} with {problem.name} {problem.received}"
+                yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 
 def _friction_problems(dynamics: Dynamics | None) -> list[Problem]:

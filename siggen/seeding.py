@@ -21,6 +21,7 @@ class Stage(IntEnum):
     DAMAGE = 7
     START = 8
     NOISE = 9
+    MANUFACTURE = 10
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -33,6 +34,7 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.DAMAGE: 2,
     Stage.START: 4,
     Stage.NOISE: 4,
+    Stage.MANUFACTURE: 2,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -23,6 +23,7 @@ from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
+from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
@@ -56,9 +57,13 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         tables = mesh_tables(pair, damage, options, points=specimen.stiffness.table_points)
         labels = damage_labels(config.states[state_id], pair, damage, options)
     with _limits_of("outside_model"):
+        errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+        missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
-    return SpecimenState(pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels)
+    return SpecimenState(
+        pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels | error_labels(config, errors)
+    )
 
 
 @contextmanager

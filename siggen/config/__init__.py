@@ -7,6 +7,7 @@ from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.gears import Gears, Wheel
+from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
@@ -36,6 +37,7 @@ __all__ = [
     "ListedPits",
     "ListedSpall",
     "LogUniform",
+    "Manufacture",
     "Mesh",
     "NoiseFloor",
     "NoiseRatio",

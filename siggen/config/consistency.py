@@ -30,6 +30,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _tooth_indices,
         _sensor_places,
         _mesh_law,
+        _manufacture,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -89,6 +90,18 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
+
+
+def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if sections.get("manufacture") is None or "dynamics" not in sections:
+        return
+    if sections["dynamics"].mesh.law == "linear":
+        allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
+        yield Problem("manufacture", "errors of single teeth", allowed)
+    # Slices across the face come with the mesh law; until they do, a misalignment would be a label without an effect.
+    lead = sections["manufacture"].lead_misalignment_um
+    if lead != 0.0:
+        yield Problem("manufacture.lead_misalignment_um", str(lead), "allowed: 0, the mesh law has no slices yet")
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -131,7 +131,7 @@ States:
 
 def _limits(config: Config) -> str:
     """Say what follows from the gears being perfect, as long as the configuration has no manufacturing errors."""
-    perfect_gears = "" if getattr(config, "manufacturing", None) else PERFECT_GEARS
+    perfect_gears = "" if config.manufacture else PERFECT_GEARS
     return f"""## What it can teach, and what it cannot
 
 {perfect_gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.

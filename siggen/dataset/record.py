@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
+from siggen.dataset.column import DECIBEL, HERTZ, MILLIMETRE, Column
+from siggen.dataset.manufacture_columns import manufacture_columns
 from siggen.errors import DatasetError
 
 if TYPE_CHECKING:
@@ -19,22 +21,6 @@ SCHEMA_VERSION = "1"
 """Version of the columns and of the files around them; readers refuse versions they do not know."""
 
 ACCELERATION_UNIT = "m/s^2"
-MILLIMETRE, HERTZ, DECIBEL = "mm", "Hz", "dB"
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """Name, Arrow type, unit and meaning of one column."""
-
-    name: str
-    type: pa.DataType
-    unit: str
-    meaning: str
-
-    def field(self) -> pa.Field:
-        """Return the Arrow field; no column of a set holds nulls."""
-        metadata = {"unit": self.unit, "meaning": self.meaning}
-        return pa.field(self.name, self.type, nullable=False, metadata={k: v for k, v in metadata.items() if v})
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,9 +174,9 @@ def channel_label_columns(channel: str) -> tuple[Column, ...]:
 
 
 def label_columns(config: Config) -> tuple[Column, ...]:
-    """Return what `Record.labels` holds: labels, operating conditions, and the labels of every channel."""
+    """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
-    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *per_channel)
+    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *manufacture_columns(config), *per_channel)
 
 
 def label_names(config: Config) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from math import hypot, sqrt
 
+from siggen.gears.geometry import GeometryProblem
 from siggen.gears.spur_gear import SpurGear
 
 CLASSES = range(1, 12)
@@ -64,7 +65,7 @@ def flank_tolerances(gear: SpurGear, face_width_m: float, accuracy_class: int) -
     if accuracy_class not in CLASSES:
         raise ValueError(f"flank tolerance class: received {accuracy_class}; allowed: 1 to 11, whole")
     if problems := outside_iso_1328(gear, face_width_m):
-        raise ValueError("; ".join(problems))
+        raise ValueError("; ".join(map(str, problems)))
     module, diameter, width = 1e3 * gear.module_m, 2e3 * gear.pitch_radius_m, 1e3 * face_width_m
     slope, form = 0.4 * module + 0.001 * diameter + 4.0, 0.55 * module + 5.0
     helix_slope = 0.05 * sqrt(diameter) + 0.35 * sqrt(width) + 4.0
@@ -84,8 +85,8 @@ def flank_tolerances(gear: SpurGear, face_width_m: float, accuracy_class: int) -
     return of_class_5.times(1e-6 * sqrt(2.0) ** (accuracy_class - 5))
 
 
-def outside_iso_1328(gear: SpurGear, face_width_m: float) -> tuple[str, ...]:
-    """Return in words what of a gear lies outside the range of the standard; empty for one within it."""
+def outside_iso_1328(gear: SpurGear, face_width_m: float, where: str = "gear") -> tuple[GeometryProblem, ...]:
+    """Return what of a gear, named by `where`, lies outside the range of the standard; empty for one within it."""
     found = {
         "teeth": (float(gear.teeth), ""),
         "module": (1e3 * gear.module_m, " mm"),
@@ -94,7 +95,7 @@ def outside_iso_1328(gear: SpurGear, face_width_m: float) -> tuple[str, ...]:
     }
     # A billionth of room: 4.0 mm read from a file and turned into metres and back must stay 4 mm.
     return tuple(
-        f"{name}: received {value:.6g}{unit}; allowed by ISO 1328-1: {low:g} to {high:g}{unit}"
+        GeometryProblem(name, where, f"{value:.6g}{unit}", f"allowed by ISO 1328-1: {low:g} to {high:g}{unit}")
         for name, (value, unit) in found.items()
         for low, high in (LIMITS[name],)
         if not low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9)

@@ -1,0 +1,64 @@
+"""Section `manufacture`: how far the teeth of both gears are from perfect."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from siggen.config.distributions import Choice, Uniform
+from siggen.config.number import Number, Within
+from siggen.config.problems import refusal
+from siggen.config.section import Section
+from siggen.errors import Problem
+
+
+class Manufacture(Section):
+    """Deviations of every tooth of both gears within ISO 1328-1:2013; needs the mesh law pairs."""
+
+    accuracy_class: Annotated[Number, Within(least=1, most=11)] = Field(
+        description="flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or kind: choice of some"
+    )
+    accuracy_class_gear: Annotated[Number | None, Within(least=1, most=11, words=(None,))] = Field(
+        default=None, description="class of the driven gear; null: drawn like the pinion's, for itself"
+    )
+    # Real gears use 30 to 70 % of their tolerance. Running in takes the peaks first, and gears at their full tolerance
+    # lose contact at light loads even while they are healthy: the lower part stands for gears that have run in.
+    tolerance_share: Annotated[Number, Within(least=0, most=1)] = Field(
+        default=Uniform(low=0.3, high=0.5), description="deviations over what the class allows, for each gear"
+    )
+    runout_share: Annotated[Number, Within(least=0, most=1)] = Field(
+        default=Uniform(low=0.3, high=0.8),
+        description="runout over what class and tolerance_share allow; the first harmonic of the pitch deviations",
+    )
+    profile_waves: Annotated[Number, Within(above=0, most=10)] = Field(
+        default=Uniform(low=2.5, high=3.5), description="cycles of the profile's form over the flank, for each tooth"
+    )
+    lead_misalignment_um: Annotated[Number | str, Within(least=0, words=("iso_1328",))] = Field(
+        default=0.0,
+        description="by how much the flanks are apart at one end of the face, either end; iso_1328: what the helix "
+        "slopes of both gears make together, each drawn within tolerance_share of its class",
+    )
+    draw: Literal["specimen", "state"] = Field(
+        default="specimen",
+        description="specimen: one gear pair in all states, as on a rig before and after damage; state: another pair "
+        "of the same drawing for each state, as in a field of machines",
+    )
+
+    @model_validator(mode="after")
+    def _whole_classes(self) -> Manufacture:
+        problems = []
+        for key in ("accuracy_class", "accuracy_class_gear"):
+            number = getattr(self, key)
+            values = number.values if isinstance(number, Choice) else (number,)
+            if any((isinstance(v, float) and not v.is_integer()) or not isinstance(v, float | None) for v in values):
+                allowed = "allowed: a whole number from 1 to 11, or kind: choice of whole numbers"
+                problems.append(Problem(key, str(number), allowed))
+        if problems:
+            raise refusal(problems)
+        return self
+
+    @property
+    def gear_class(self) -> Number:
+        """Class of the driven gear, as given or as for the pinion."""
+        return self.accuracy_class if self.accuracy_class_gear is None else self.accuracy_class_gear
