@@ -113,4 +113,5 @@ def _lead_misalignment_m(section: Manufacture, gears: tuple[MadeGear, MadeGear],
         slopes = (made.tolerance_share * made.tolerances.helix_slope_m for made in gears)
         return sum(end * slope for end, slope in zip(ends, slopes, strict=True))
     size = 1e-6 * at(section.lead_misalignment_um, float(draws("lead_misalignment_um").random()))  # type: ignore[arg-type]
-    return size if draws("lead_end").random() < 0.5 else -size
+    # The zero makes 0.0 of -0.0.
+    return (size if draws("lead_end").random() < 0.5 else -size) + 0.0

@@ -1,7 +1,8 @@
 """ErrorShapes: how the errors of one gear run over its teeth and flanks, before they are scaled to a tolerance.
 
-Derived, in the form usual for simulated gears. Cumulative pitch: a second harmonic over the teeth and a random part;
-the first harmonic is the eccentricity, which goes on within a tooth and is therefore kept apart. Profile: a slope,
+Derived, in the form usual for simulated gears. Cumulative pitch: two harmonics over the teeth, of
+machines that index teeth one by one, and a random part; eccentricity goes on within a tooth and is kept apart. What
+both make together is held to the limits, so no harmonic of a real gear counts twice. Profile: a slope,
 since cutters and settings are wrong alike for all teeth, with a scatter of 10 % between them; a wave of a few cycles
 with a phase of its own on every tooth; noise down to L/30 of the length L of the flank, where the profile filter of the
 standard ends what is measured. Waves are freed of their straight line, as the standard does before it calls the rest
@@ -26,6 +27,10 @@ NOISE_POINTS = 61
 """Two per shortest wavelength that is measured, a thirtieth of the flank."""
 NOISE_SHARE = 0.05
 """Standard deviation of the noise over the amplitude of the wave: 0.1 to 0.4 µm beside waves of 3 to 8 µm."""
+HARMONICS = ((1, 1.0), (2, 0.5))
+"""Orders of the indexing errors over a revolution, with the largest amplitude of each."""
+RANDOM_PLACE = 0.25
+"""Standard deviation of the random places beside them: single and cumulative pitch then come near their limits."""
 TOOTH_SCATTER = 0.1
 """Relative standard deviation of slopes and waves between the teeth of a gear."""
 
@@ -64,10 +69,11 @@ def error_shapes(waves: FloatArray, draws: Draws) -> ErrorShapes:
 
 
 def _pitch(teeth: int, rng: np.random.Generator) -> FloatArray:
-    weight, phase = rng.random(), 2.0 * np.pi * rng.random()
     angle = 2.0 * np.pi * np.arange(teeth) / teeth
-    # Independent places of the teeth have differences √2 as large: half the weight of a full second harmonic.
-    shape = weight * np.cos(2.0 * angle + phase) + 0.5 * rng.standard_normal(teeth)
+    shape = np.zeros(teeth)
+    for order, weight in HARMONICS:
+        shape += weight * rng.random() * np.cos(order * angle + 2.0 * np.pi * rng.random())
+    shape += RANDOM_PLACE * rng.standard_normal(teeth)
     return shape - shape.mean()
 
 

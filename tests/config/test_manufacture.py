@@ -1,4 +1,4 @@
-"""Section `manufacture`: what is accepted, what is refused and where, and that it changes nothing where it is absent."""
+"""Section `manufacture`: what is accepted, what is refused and where; without it nothing changes."""
 
 from __future__ import annotations
 
