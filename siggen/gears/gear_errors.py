@@ -112,7 +112,7 @@ def deviations(pair: GearPair, which: str, errors: GearErrors) -> FlankDeviation
     cosine = float(np.cos(pair.member(which).pressure_angle_rad))
     middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
     cumulative = errors.pitch_m + eccentric_m(pair, which, errors, np.array([middle]))[:, 0] / cosine
-    profiles = eccentric_profiles_m(pair, which, errors) + _lines(errors.slope_m) + errors.form_m
+    profiles = profiles_m(pair, which, errors)
     return FlankDeviations(
         cumulative_pitch_m=cumulative,
         pitch_m=_steps(cumulative),
@@ -121,6 +121,11 @@ def deviations(pair: GearPair, which: str, errors: GearErrors) -> FlankDeviation
         profile_m=np.ptp(profiles, axis=1),
         runout_m=2.0 * errors.eccentricity_m,
     )
+
+
+def profiles_m(pair: GearPair, which: str, errors: GearErrors) -> FloatArray:
+    """Return what every tooth misses (z, FLANK_POINTS) from the root end to the tip, up to its place [m]."""
+    return eccentric_profiles_m(pair, which, errors) + _lines(errors.slope_m) + errors.form_m
 
 
 def eccentric_m(pair: GearPair, which: str, errors: GearErrors, position_m: FloatArray) -> FloatArray:

@@ -1,0 +1,41 @@
+"""`siggen errors`: the manufacturing errors of one specimen, tooth by tooth, as a table and a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def errors(
+    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")],
+    png: Annotated[Path | None, typer.Option("--png", help="Picture of pitch and profiles to draw as well.")] = None,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    state: Annotated[
+        str | None, typer.Option("--state", help="Which state, where states have gears of their own.")
+    ] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Override a key, such as manufacture.accuracy_class=6.")
+    ] = None,
+) -> None:
+    """Write pitch and profile deviations of every tooth, as a machine would measure them about the shaft's axis.
+
+    Deviations are positive where material is missing. Example: siggen errors set.yaml --out e.csv --png e.png
+    """
+    from siggen.cli.picture_file import check_picture_file
+    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.loading import load_config
+    from siggen.tooth_deviations import deviation_table, gear_charts
+
+    check_table_file(out)
+    if png is not None:
+        check_picture_file(png)
+    charts = gear_charts(load_config(config, overrides or ()), specimen, state)
+    write_table_file(deviation_table(charts), out)
+    if png is not None:
+        from siggen.cli.error_figure import save_error_figure
+
+        save_error_figure(charts, png)
+    typer.echo(str(out))
