@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-MANUFACTURE_KEY = "manufacturing"
+MANUFACTURE_KEY = "manufacture"
 
 
 def is_error_free(config: Mapping[str, Any]) -> bool:

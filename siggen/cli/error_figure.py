@@ -39,6 +39,8 @@ def save_error_figure(charts: Sequence[GearChart], path: Path) -> None:
 
 
 def _draw_pitch(axis: Axes, chart: GearChart) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     cumulative = 1e6 * chart.made.found.cumulative_pitch_m
     middle = 0.5 * float(cumulative.max() + cumulative.min())
     _band(axis, middle, 1e6 * chart.made.tolerances.cumulative_pitch_m, chart, "$F_p$")
@@ -52,6 +54,7 @@ def _draw_pitch(axis: Axes, chart: GearChart) -> None:
         fontsize=9,
     )
     axis.set_xlabel("tooth")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
     axis.set_ylabel("cumulative pitch [µm]")
     axis.legend(loc="upper right", fontsize=8)
 

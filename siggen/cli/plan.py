@@ -70,6 +70,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
         "stiffness_notes": list(model_notes(config)),
+        "manufacture": _manufacture(config),
     }
 
 
@@ -79,6 +80,15 @@ def _mesh_range_hz(config: Config) -> tuple[float, float]:
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
     teeth = config.gears.pinion.teeth
     return teeth * min(low for low, _ in speeds), teeth * max(high for _, high in speeds)
+
+
+def _manufacture(config: Config) -> str:
+    """Return what is planned for the errors of the teeth, in words."""
+    section = config.manufacture
+    if section is None:
+        return "perfect gears"
+    owner = {"specimen": "the same in all states of a gearbox", "state": "drawn anew for each state"}[section.draw]
+    return f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}; {owner}"
 
 
 def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, Any]]:
@@ -115,6 +125,7 @@ def _overview(summary: dict[str, Any]) -> Table:
         "hours of signal": f"{summary['signal_hours']:.3g}",
         "mesh frequency": f"{low_hz:g} Hz" if low_hz == high_hz else f"{low_hz:g} to {high_hz:g} Hz",
         "class balance": ", ".join(f"{name} {share:.0%}" for name, share in summary["severity_share"].items()),
+        "errors of the teeth": summary["manufacture"],
         "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "
         f"{summary['specimens_per_full_shard']} gearboxes in a full one",
         "size on disk": f"about {_megabytes(summary['estimated_bytes_on_disk'])}",

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from siggen.config.distributions import Choice, Uniform
-from siggen.config.number import Number, Within
+from siggen.config.number import Number, Within, bounds
 from siggen.config.problems import refusal
 from siggen.config.section import Section
 from siggen.errors import Problem
@@ -59,6 +59,18 @@ class Manufacture(Section):
         return self
 
     @property
+    def classes_text(self) -> str:
+        """The classes in words, such as "6", "5, 6 or 7" or "6, gear 7"."""
+        gear = self.accuracy_class_gear
+        pinion = _class_text(self.accuracy_class)
+        return pinion if gear is None else f"{pinion}, gear {_class_text(gear)}"
+
+    @property
     def gear_class(self) -> Number:
         """Class of the driven gear, as given or as for the pinion."""
         return self.accuracy_class if self.accuracy_class_gear is None else self.accuracy_class_gear
+
+
+def _class_text(number: Number) -> str:
+    values = [f"{value:g}" for value in (number.values if isinstance(number, Choice) else bounds(number)[:1])]
+    return " or ".join(part for part in (", ".join(values[:-1]), values[-1]) if part)

@@ -36,6 +36,17 @@ PERFECT_GEARS = """* **The gears have no manufacturing errors.** A healthy gearb
 """
 
 
+TOLERANCES = """* **Gears have manufacturing errors** within flank tolerance class {classes} of ISO 1328-1
+  (share used: {share}), every tooth its own: healthy records have sidebands too. {owner}
+"""
+OWNERS = {
+    "specimen": "All states of a specimen have the same gears, as on a rig before and after damage, so a difference "
+    "between\n  its states is the damage.",
+    "state": "Every state of a specimen has gears of its own from the same drawing, so no difference between states is "
+    "the\n  damage alone.",
+}
+
+
 def card(config: Config, sidecars: Sequence[Sidecar]) -> str:
     """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
     splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
@@ -130,13 +141,20 @@ States:
 
 
 def _limits(config: Config) -> str:
-    """Say what follows from the gears being perfect, as long as the configuration has no manufacturing errors."""
-    perfect_gears = "" if config.manufacture else PERFECT_GEARS
+    """Say what follows from the gears being perfect, or how far they are from it."""
+    gears = _tolerances(config)
     return f"""## What it can teach, and what it cannot
 
-{perfect_gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.
+{gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.
 * A model that is trained here has to be tested on measurements before it is trusted on them.
 """
+
+
+def _tolerances(config: Config) -> str:
+    section = config.manufacture
+    if section is None:
+        return PERFECT_GEARS
+    return TOLERANCES.format(classes=section.classes_text, share=section.tolerance_share, owner=OWNERS[section.draw])
 
 
 def _failures(sidecars: Sequence[Sidecar]) -> str:

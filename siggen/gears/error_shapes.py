@@ -28,8 +28,8 @@ NOISE_POINTS = 61
 NOISE_SHARE = 0.05
 """Standard deviation of the noise over the amplitude of the wave: 0.1 to 0.4 µm beside waves of 3 to 8 µm."""
 HARMONICS = ((1, 1.0), (2, 0.5))
-"""Orders of the indexing errors over a revolution, with the largest amplitude of each."""
-RANDOM_PLACE = 0.25
+"""Orders of the indexing errors over a revolution, with the largest amplitude of each; the least is 30 % of it."""
+RANDOM_PLACE = 0.15
 """Standard deviation of the random places beside them: single and cumulative pitch then come near their limits."""
 TOOTH_SCATTER = 0.1
 """Relative standard deviation of slopes and waves between the teeth of a gear."""
@@ -72,7 +72,7 @@ def _pitch(teeth: int, rng: np.random.Generator) -> FloatArray:
     angle = 2.0 * np.pi * np.arange(teeth) / teeth
     shape = np.zeros(teeth)
     for order, weight in HARMONICS:
-        shape += weight * rng.random() * np.cos(order * angle + 2.0 * np.pi * rng.random())
+        shape += weight * rng.uniform(0.3, 1.0) * np.cos(order * angle + 2.0 * np.pi * rng.random())
     shape += RANDOM_PLACE * rng.standard_normal(teeth)
     return shape - shape.mean()
 

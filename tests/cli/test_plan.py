@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -67,6 +68,14 @@ def test_the_table_shows_identity_splits_and_size(path):
     text = run("plan", path)
     for part in (config().identity, "train 60, validation 20, test 20", "540 Hz", "healthy 50%", "18.4 MB", "slight"):
         assert part in text
+
+
+def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
+    assert plan_summary(config())["manufacture"] == "perfect gears"
+    override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_gear: 7, draw: state}")
+    text = run("plan", Path("configs/paper_b.yaml"), *override)
+    assert "ISO 1328-1 class 6, gear 7; share of its tolerances: uniform from 0.3 to 0.5" in text
+    assert "drawn anew for" in text
 
 
 def test_gears_outside_a_models_range_are_named_with_the_limits(path):

@@ -57,6 +57,7 @@ def test_classes_may_be_a_choice_and_differ_between_the_gears() -> None:
     assert parsed is not None
     assert parsed.manufacture is not None
     assert parsed.manufacture.gear_class == 8.0
+    assert parsed.manufacture.classes_text == "5, 6 or 7, gear 8"
     assert "whole numbers" in problem(accuracy_class={"kind": "choice", "values": [5, 6.5]})
 
 

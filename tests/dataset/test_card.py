@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from siggen.config import Choice, Manufacture
+from siggen.dataset.card import _limits
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
 
@@ -53,6 +55,15 @@ def test_the_card_says_that_error_free_gears_separate_trivially(folder: Path) ->
     text = (folder / "README.md").read_text()
     assert "no manufacturing errors" in text
     assert "separate trivially" in text
+
+
+def test_the_card_says_which_class_the_gears_were_made_to_and_who_shares_them() -> None:
+    classes = Choice(values=(5.0, 6.0, 7.0))
+    config = fake_config(specimens=1).model_copy(update={"manufacture": Manufacture(accuracy_class=classes)})
+    text = _limits(config)
+    assert "no manufacturing errors" not in text
+    assert "class 5, 6 or 7 of ISO 1328-1\n  (share used: uniform from 0.3 to 0.5)" in text
+    assert "a difference between\n  its states is the damage" in text
 
 
 def test_failed_records_are_on_the_card(tmp_path: Path) -> None:

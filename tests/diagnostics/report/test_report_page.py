@@ -35,7 +35,7 @@ def test_first_sentence_says_that_error_free_gears_separate_trivially(folder: Pa
 
 def test_meaning_changes_once_gears_have_errors() -> None:
     assert "no manufacturing errors" in meaning_of_scores({})
-    assert "no manufacturing errors" not in meaning_of_scores({"manufacturing": {"quality": 6}})
+    assert "no manufacturing errors" not in meaning_of_scores({"manufacture": {"accuracy_class": 6}})
 
 
 def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
