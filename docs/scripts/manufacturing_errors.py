@@ -54,9 +54,8 @@ def main() -> None:
             cells = [f"{median[i]:.0f} ({low[i]:.0f} to {high[i]:.0f})" for i in (0, 1)]
             lost = f"{np.count_nonzero(found[:, 5])} of {SPECIMENS} | {high[5]:.2%}"
             name = "1.0" if share else "0.3-0.5"
-            print(
-                f"| {accuracy_class}, {name} | {' | '.join(cells)} | {median[2]:.1f} | {low[3]:.0f} to {high[4]:.0f} | {lost} |"
-            )
+            force = f"{low[3]:.0f} to {high[4]:.0f}"
+            print(f"| {accuracy_class}, {name} | {' | '.join(cells)} | {median[2]:.1f} | {force} | {lost} |")
 
 
 if __name__ == "__main__":
