@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.interpolate import BSpline
 
 from siggen.dynamics.drive import Drive
 from siggen.dynamics.slow_variation import SlowVariation, slow_variation
@@ -117,6 +118,16 @@ def test_slow_speed_has_the_rms_and_the_corner_asked_for(corner_hz: float) -> No
     assert np.abs(ratio / ratio.mean() - 1.0).max() < 0.2
 
 
+def test_slow_variation_is_the_spline_of_its_coefficients() -> None:
+    chosen, time = process(), np.linspace(-6.0, 12.0, 3001)
+    knots = chosen.start_s + chosen.step_s * np.arange(-3.0, chosen.before.size + 4.0)
+    spline = BSpline(knots, chosen.coefficients, 3)
+    np.testing.assert_allclose(chosen.value(time), spline(time), atol=1e-12)
+    np.testing.assert_allclose(chosen.slope(time), spline.derivative()(time), atol=1e-10)
+    integral = spline.antiderivative()
+    np.testing.assert_allclose(chosen.integral(time), integral(time) - integral(0.0), atol=1e-12)
+
+
 def test_slow_variation_keeps_its_past_when_the_record_grows_longer() -> None:
     time = np.linspace(-6.0, 5.0, 500)
     np.testing.assert_array_equal(process(end_s=6.0).value(time), process(end_s=60.0).value(time))
@@ -138,5 +149,7 @@ def test_impossible_numbers_are_refused() -> None:
         process(corner_hz=0.0)
     with pytest.raises(ValueError, match="start_angle_rad"):
         VaryingDrive(SpeedRamp(10.0, 20.0, 1.0), float("nan"))
+    with pytest.raises(ValueError, match=r"time_s: received 0.0 to 99.0"):
+        process().value(np.array([0.0, 99.0]))
     with pytest.raises(ValueError, match="start_s"):
         slow_variation(np.random.default_rng(0), 1.0, 1.0, 2.0)
