@@ -30,6 +30,7 @@ from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
 from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_friction import roughness_problem
 from siggen.specimen_physics import gear_pair, pit_height_m
+from siggen.variation_problems import variation_problems
 
 PROBE_M = 1e-9
 """Size of a pit that is checked for its place alone."""
@@ -79,6 +80,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage")
     problems += _friction_problems(parsed.sections.get("dynamics"))
+    problems += variation_problems(parsed.sections, sound)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

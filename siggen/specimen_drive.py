@@ -54,7 +54,7 @@ def record_drive(
     Raises
     ------
     ValueError
-        If the speed might reach zero, the mean torque at the mesh reverses, or a force has no bearing to act at.
+        If the speed might reach zero, or a force has no bearing to act at.
     """
     forces = force_sources(config, specimen, pair, structure, point, record)
     if not config.variation.active:
@@ -63,7 +63,6 @@ def record_drive(
     variation = drawn_variation(config, record)
     rotation = _rotation(config, variation.speed, point, record, start_angle_rad)
     torque = TorqueVariation(structure, point.torque_nm, _torque_settings(config, variation.torque, record))
-    _require_forward(torque, rotation, config)
     sources: tuple[Source, ...] = (SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz), torque, *forces)
     return RecordDrive(rotation, Excitation(sources), torque, 0)
 
@@ -97,9 +96,6 @@ def _rotation(
 ) -> VaryingDrive:
     uniform = named_uniforms(config.seed, Stage.DRIVE, *record_owner(record))
     carrying_hz = point.speed_hz * (1.0 - constant(speed.slip) * point.torque_nm / constant(speed.rated_torque_nm))
-    if carrying_hz <= 0.0:
-        allowed = "allowed are torques at which the motor still turns; lower variation.speed.slip or the torque"
-        raise ValueError(f"variation.speed.slip: received a speed of {carrying_hz:.4g} Hz at {point}; {allowed}")
     ramp = SpeedRamp(
         constant(speed.start_ratio) * carrying_hz, constant(speed.end_ratio) * carrying_hz, config.duration_s
     )
@@ -126,20 +122,3 @@ def _torque_settings(config: Config, torque: TorqueSection, record: PlannedRecor
         constant(torque.line_hz),
         2.0 * pi * uniform("variation.torque.line_ripple.phase"),
     )
-
-
-def _require_forward(torque: TorqueVariation, rotation: Rotation, config: Config) -> None:
-    """Refuse a course whose mean torque at the mesh runs from gear to pinion.
-
-    Raises
-    ------
-    ValueError
-        If it does: then the other flanks would carry.
-    """
-    ends = rotation.speed_rad_s(np.array([0.0, config.duration_s]))
-    mean_nm = torque.mean_mesh_torque_nm(float(ends[1] - ends[0]) / config.duration_s)
-    if mean_nm <= 0.0:
-        raise ValueError(
-            f"variation.speed: received a run-down in which the gear drives the pinion, {mean_nm:.4g} N m at the mesh "
-            "in the mean; allowed are mean torques above 0: raise the torque, duration_s or variation.speed.end_ratio"
-        )

@@ -57,8 +57,6 @@ class TorqueVariation:
         self.vectors = np.stack(
             [structure.torque_vector, without_drift(structure, load), without_drift(structure, motor)]
         )
-        driven = np.where([n in TURNING_WITH_GEAR for n in structure.coordinates], rotation, 0.0)
-        self._driven_inertia_kg_m2 = float(driven @ structure.mass @ driven)
         self._gear_turn = abs(rotation[structure.coordinates.index(load)])
         self._torque_nm = torque_nm
         self._settings = settings
@@ -73,10 +71,6 @@ class TorqueVariation:
     def motor_torque_nm(self, turning: Turning) -> FloatArray:
         """Return the whole torque (k,) that the motor delivers, the mean and what speeds the train up included."""
         return self._torque_nm + self._slow_nm(turning) + self._motor_nm(turning)
-
-    def mean_mesh_torque_nm(self, acceleration_rad_s2: float) -> float:
-        """Return the torque at the pinion's mesh at the mean torque: it also speeds up gear and load."""
-        return self._torque_nm + self._driven_inertia_kg_m2 * acceleration_rad_s2
 
     def _slow_nm(self, turning: Turning) -> FloatArray:
         s = self._settings

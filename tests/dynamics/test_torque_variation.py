@@ -202,7 +202,6 @@ def test_a_steady_run_up_twists_the_shafts_by_the_torque_that_it_takes(
     # What passes the mesh is the torque of the load and what speeds up gear and load.
     ratio = 18 / 47
     mesh_torque = 60.0 + (0.005153 + 1.125e-2) * ratio**2 * acceleration
-    assert source.mean_mesh_torque_nm(acceleration) == pytest.approx(mesh_torque, rel=1e-12)
     force = response.internals["mesh_force_n"]
     np.testing.assert_allclose(force[10000:], mesh_torque / structure.mesh_vector[3], rtol=1e-5)
     assert source.reduced_inertia_kg_m2 == pytest.approx(
