@@ -30,8 +30,8 @@ class SolveIvp:
     def __init__(self, method: Method, equations: Equations, law: MeshLaw, step_s: float) -> None:
         self._method, self._equations, self._law, self._step_s = method, equations, law, step_s
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:  # noqa: ARG002
+        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, at constant speed and without inputs."""
         time_s = self._step_s * np.arange(pitches.size)
         speed = (pitches[-1] - pitches[0]) / time_s[-1]
 

@@ -31,6 +31,7 @@ from siggen.gears.iso_1328 import outside_iso_1328
 from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_friction import roughness_problem
 from siggen.specimen_physics import gear_pair, pit_height_m
+from siggen.variation_problems import variation_problems
 
 PROBE_M = 1e-9
 """Size of a pit that is checked for its place alone."""
@@ -82,6 +83,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     if parsed.sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
     problems += _friction_problems(parsed.sections.get("dynamics"))
+    problems += variation_problems(parsed.sections, sound)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

@@ -22,6 +22,8 @@ class Stage(IntEnum):
     START = 8
     NOISE = 9
     MANUFACTURE = 10
+    DRIVE = 12
+    BEARING_TONES = 14
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -35,6 +37,8 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.START: 4,
     Stage.NOISE: 4,
     Stage.MANUFACTURE: 2,
+    Stage.DRIVE: 4,
+    Stage.BEARING_TONES: 1,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

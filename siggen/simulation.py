@@ -13,7 +13,6 @@ from siggen.damage_table import damage_rows
 from siggen.dataset.plan import PlannedRecord, planned_record
 from siggen.dataset.record import Record, RecordFailure
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.dynamics.drive import Drive
 from siggen.dynamics.response import Response, response_of
 from siggen.errors import SolverFailure
 from siggen.gears.damage import Damage
@@ -24,6 +23,7 @@ from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
 from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen_drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
@@ -95,18 +95,26 @@ def record_response(
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
     with _limits_of("outside_model"):
+        driven = _driven(config, specimen, state, record)
         response = response_of(
-            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps)),
-            Drive(point.speed_hz, start_angle_rad(config, state.pair, record)),
+            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
+            driven.rotation,
             fs_hz=config.fs_hz,
             samples=config.samples,
             steps_per_sample=steps,
             internals=internals,
             bearing_forces=internals,
+            excitation=driven.excitation,
         )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
+
+
+def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    angle_rad = start_angle_rad(config, state.pair, record)
+    return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
 
 
 def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned: PlannedRecord) -> Record:
@@ -115,6 +123,7 @@ def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned
     labels = {
         **state.labels,
         **operating_labels(state.pair, point, response),
+        **variation_labels(config, _driven(config, specimen, state, planned)),
         "start_angle_rad": float(response.angle_rad[0]),
         "contact_loss_share": response.contact_loss_share,
         "status": response.status,

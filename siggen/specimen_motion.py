@@ -16,6 +16,7 @@ from siggen.dynamics.structure import Structure
 from siggen.gears.geometry import GearPair
 from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.tables import MeshTables
+from siggen.specimen_drive import RecordDrive
 from siggen.specimen_friction import specimen_friction
 
 
@@ -36,8 +37,15 @@ def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMat
     return missing_material(pair, relief, corner_contact=mesh.corner_contact == "on", points=points)
 
 
-def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, step_s: float) -> Motion:
-    """Return the motion, made for steps of `step_s` seconds; with friction the load holds the mean speed."""
+def specimen_motion(
+    dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, step_s: float, driven: RecordDrive | None = None
+) -> Motion:
+    """Return the motion, made for steps of `step_s` seconds; with friction the load holds the mean speed.
+
+    What is `driven` by more than a constant torque takes its inputs; None: constant speed and torque.
+    """
+    excitation = None if driven is None else driven.excitation
+    vectors = None if excitation is None else excitation.vectors
     if dynamics.mesh.law == "linear":
         return LinearMotion(
             mesh.structure,
@@ -47,6 +55,7 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
             backlash_m=1e-6 * constant(dynamics.backlash_um),
             step_s=step_s,
             integrator=dynamics.integrator,
+            input_vectors=vectors,
         )
     rubbing = dynamics.friction.model != "off"
     return PairMotion(
@@ -56,6 +65,8 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
         speed_hz=point.speed_hz,
         reference_stiffness_n_per_m=mean_mesh_stiffness(mesh.tables),
         step_s=step_s,
+        input_vectors=vectors,
+        speed_input=-1 if driven is None else driven.speed_input,
     )
 
 

@@ -65,6 +65,8 @@ def test_integers_of_stages_are_part_of_every_identity():
         "START": 8,
         "NOISE": 9,
         "MANUFACTURE": 10,
+        "DRIVE": 12,
+        "BEARING_TONES": 14,
     }
 
 

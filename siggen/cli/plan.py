@@ -46,6 +46,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen_physics import model_notes
+    from siggen.variation_notes import variation_notes
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
@@ -71,6 +72,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "estimated_bytes_on_disk": estimated_bytes(config),
         "stiffness_notes": list(model_notes(config)),
         "manufacture": _manufacture(config),
+        "variation": list(variation_notes(config)),
     }
 
 
@@ -78,8 +80,8 @@ def _mesh_range_hz(config: Config) -> tuple[float, float]:
     from siggen.config import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
-    teeth = config.gears.pinion.teeth
-    return teeth * min(low for low, _ in speeds), teeth * max(high for _, high in speeds)
+    teeth, (slowest, fastest) = config.gears.pinion.teeth, config.variation.speed_ratios
+    return teeth * min(low for low, _ in speeds) * slowest, teeth * max(high for _, high in speeds) * fastest
 
 
 def _manufacture(config: Config) -> str:
@@ -131,6 +133,8 @@ def _overview(summary: dict[str, Any]) -> Table:
         "size on disk": f"about {_megabytes(summary['estimated_bytes_on_disk'])}",
         "size of signals": _megabytes(summary["raw_bytes"]),
     }
+    if summary["variation"]:
+        rows["variation"] = "; ".join(summary["variation"])
     for name, text in rows.items():
         table.add_row(name, text)
     return table

@@ -6,6 +6,7 @@ from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, Listed
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
+from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
@@ -17,11 +18,13 @@ from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
+from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
 from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
     "SCHEMA_VERSION",
+    "BearingTones",
     "Bolts",
     "Casing",
     "Choice",
@@ -49,10 +52,14 @@ __all__ = [
     "Sensor",
     "SpallSize",
     "Spalls",
+    "SpeedVariation",
     "Splits",
     "State",
     "Stiffness",
+    "TorqueVariation",
+    "Unbalance",
     "Uniform",
+    "Variation",
     "Wheel",
     "apply_overrides",
     "at",

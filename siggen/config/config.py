@@ -18,6 +18,7 @@ from siggen.config.section import Real, Section, Whole
 from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
+from siggen.config.variation import Variation
 from siggen.config.wording import Said
 from siggen.errors import Problem
 
@@ -69,6 +70,7 @@ class Config(Section):
     states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
     sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
+    variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
 
     @property
     def samples(self) -> int:

@@ -31,6 +31,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _sensor_places,
         _mesh_law,
         _manufacture,
+        _forces_at_bearings,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -49,6 +50,8 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         return
     teeth, harmonics = sections["gears"].pinion.teeth, sections["mesh_harmonics"]
     speed_hz = max(bounds(point.speed_hz)[1] for point in sections["operating_points"])
+    if "variation" in sections:
+        speed_hz *= sections["variation"].speed_ratios[1]
     needed_hz = SAMPLES_PER_PERIOD * (harmonics * teeth + SIDEBANDS) * speed_hz
     if sections["fs_hz"] < needed_hz:
         allowed = (
@@ -102,6 +105,19 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     lead = sections["manufacture"].lead_misalignment_um
     if lead != 0.0:
         yield Problem("manufacture.lead_misalignment_um", str(lead), "allowed: 0, the mesh law has no slices yet")
+
+
+def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "dynamics" not in sections or sections["dynamics"].model != "torsional":
+        return
+    dynamics = sections["dynamics"]
+    for path, number in (
+        ("unbalance.grade_mm_s", dynamics.unbalance.grade_mm_s),
+        ("bearing_tones.level", dynamics.bearing_tones.level),
+    ):
+        if bounds(number)[1] > 0.0:
+            allowed = "allowed: 0, or a model with bearings: 6dof, 8dof, casing (dynamics.model: torsional)"
+            yield Problem(f"dynamics.{path}", str(number), allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from siggen.config.casing import Casing
+from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
@@ -69,3 +70,5 @@ class Dynamics(Section):
     casing: Casing = Field(default=Casing(), description="used by the model casing alone")
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
+    unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
+    bearing_tones: BearingTones = Field(default=BearingTones(), description="forces of rolling bearings")

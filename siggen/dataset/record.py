@@ -106,6 +106,14 @@ OPERATING_COLUMNS = (
     Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency"),
     Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample"),
 )
+VARIATION_COLUMNS = (
+    Column(
+        "speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed; its mean is pinion_shaft_hz"
+    ),
+    Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
+    Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
+)
+"""Columns of sets in which speed or torque varies within a record."""
 TACHO_COLUMN = Column(
     "tacho_s", _list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample"
 )
@@ -176,7 +184,8 @@ def channel_label_columns(channel: str) -> tuple[Column, ...]:
 def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
-    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *manufacture_columns(config), *per_channel)
+    varying = VARIATION_COLUMNS if config.variation.active else ()
+    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *varying, *manufacture_columns(config), *per_channel)
 
 
 def label_names(config: Config) -> tuple[str, ...]:

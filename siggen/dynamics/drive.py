@@ -3,11 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+
+
+class Rotation(Protocol):
+    """The prescribed rotation of the pinion; speed and acceleration are the exact derivatives of the angle."""
+
+    def angle_rad(self, time_s: FloatArray) -> FloatArray:
+        """Return the integrated pinion angle (k,) [rad] at the times (k,) [s]; time 0 is the first sample."""
+
+    def speed_rad_s(self, time_s: FloatArray) -> FloatArray:
+        """Return the speed (k,) [rad/s]."""
+
+    def acceleration_rad_s2(self, time_s: FloatArray) -> FloatArray:
+        """Return the angular acceleration (k,) [rad/s²]."""
+
+    def tacho_s(self, duration_s: float) -> FloatArray:
+        """Return the times (k,) [s] in [0, duration) at which the pinion angle is a whole number of revolutions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +43,14 @@ class Drive:
     def angle_rad(self, time_s: FloatArray) -> FloatArray:
         """Return the integrated pinion angle (k,) [rad] at the times (k,) [s]; time 0 is the first sample."""
         return self.start_angle_rad + 2.0 * np.pi * self.speed_hz * time_s
+
+    def speed_rad_s(self, time_s: FloatArray) -> FloatArray:
+        """Return the speed (k,) [rad/s]."""
+        return np.full_like(time_s, 2.0 * np.pi * self.speed_hz)
+
+    def acceleration_rad_s2(self, time_s: FloatArray) -> FloatArray:
+        """Return zeros (k,) [rad/s²]."""
+        return np.zeros_like(time_s)
 
     def tacho_s(self, duration_s: float) -> FloatArray:
         """Return the times (k,) [s] in [0, duration) at which the pinion angle is a whole number of revolutions."""

@@ -1,6 +1,7 @@
 """Equations of motion about the static equilibrium at the mean mesh stiffness, in the form the integrators take.
 
-With q = q_s + w and K_0 q_s + p F_s = f (derived):  M ẅ + C_0 ẇ + K_0 w = -p (F - F_s),  F = mesh force at δ_s + pᵀw.
+With q = q_s + w and K_0 q_s + p F_s = f (derived):  M ẅ + C_0 ẇ + K_0 w = -p (F - F_s) + Σ_k v_k u_k(t),
+F = mesh force at δ_s + pᵀw; inputs u_k act beside the constant torque, along constant vectors v_k.
 The state is z = [w, ẇ]. Small deviations instead of the static twist of the shafts keep double precision over long
 records.
 """
@@ -27,7 +28,8 @@ class Equations(NamedTuple):
 
     `stiffness_by_mass`, `damping_by_mass` (n, n): M⁻¹K_0, M⁻¹C_0; `mesh_input` (n,): M⁻¹p; `mesh_vector` (n,): p;
     `static_deflection` (n,): q_s; `reference_stiffness`: mean mesh stiffness that q_s belongs to;
-    `static_force`: F_s; `static_approach`: δ_s; `side`: +1 if the mean torque loads the drive flank, else -1.
+    `static_force`: F_s; `static_approach`: δ_s; `side`: +1 if the mean torque loads the drive flank, else -1;
+    `external_input` (m, n): M⁻¹ v_k.
     """
 
     stiffness_by_mass: FloatArray
@@ -39,9 +41,16 @@ class Equations(NamedTuple):
     static_force: float
     static_approach: float
     side: float
+    external_input: FloatArray
 
 
-def equations_of_motion(structure: Structure, law: MeshLaw, torque_nm: float, reference_stiffness: float) -> Equations:
+def equations_of_motion(
+    structure: Structure,
+    law: MeshLaw,
+    torque_nm: float,
+    reference_stiffness: float,
+    input_vectors: FloatArray | None = None,
+) -> Equations:
     """Return the equations for a constant motor torque [N m], about the static state at `reference_stiffness` [N/m].
 
     Raises
@@ -51,13 +60,22 @@ def equations_of_motion(structure: Structure, law: MeshLaw, torque_nm: float, re
     """
     if not np.isfinite(torque_nm):
         raise ValueError(f"torque_nm: received {torque_nm}; allowed are finite torques")
-    return equations_about(structure, torque_nm, reference_stiffness, law.half_backlash_m, -law.half_backlash_m)
+    half = law.half_backlash_m
+    return equations_about(structure, torque_nm, reference_stiffness, half, -half, input_vectors)
 
 
 def equations_about(
-    structure: Structure, torque_nm: float, reference_stiffness: float, drive_gap_m: float, back_gap_m: float
+    structure: Structure,
+    torque_nm: float,
+    reference_stiffness: float,
+    drive_gap_m: float,
+    back_gap_m: float,
+    input_vectors: FloatArray | None = None,
 ) -> Equations:
-    """Return the equations for flanks that touch at the approach `drive_gap_m` or, on the other side, `back_gap_m`."""
+    """Return the equations for flanks that touch at the approach `drive_gap_m` or, on the other side, `back_gap_m`.
+
+    `input_vectors` (m, n) are the generalised forces per unit of the inputs; None: no inputs.
+    """
     p = structure.mesh_vector
     loaded = structure.stiffness + reference_stiffness * p[:, None] * p[None, :]
     elastic = static_solution(structure.mass, loaded, structure.torque_vector * torque_nm)
@@ -65,6 +83,7 @@ def equations_about(
     side = 1.0 if force >= 0.0 else -1.0
     touching = drive_gap_m if side > 0.0 else back_gap_m
     gap = static_solution(structure.mass, loaded, p * (reference_stiffness * touching))
+    vectors = np.empty((0, p.size)) if input_vectors is None else input_vectors
     return Equations(
         stiffness_by_mass=inverse_times(structure.mass, structure.stiffness),
         damping_by_mass=inverse_times(structure.mass, structure.damping),
@@ -75,6 +94,7 @@ def equations_about(
         static_force=force,
         static_approach=force / reference_stiffness + touching,
         side=side,
+        external_input=np.ascontiguousarray(inverse_times(structure.mass, vectors.T).T),
     )
 
 
@@ -134,6 +154,20 @@ def approach_of(equations: Equations, state: FloatArray) -> tuple[float, float]:
         approach += equations.mesh_vector[i] * state[i]
         rate += equations.mesh_vector[i] * state[n + i]
     return approach, rate
+
+
+def no_inputs(pitches: FloatArray) -> FloatArray:
+    """Return the inputs (steps + 1, 0) of a motion that has none, at the pinion angles `pitches` (steps + 1,)."""
+    return np.empty((pitches.size, 0))
+
+
+@njit(cache=True)
+def external_push(equations: Equations, inputs: FloatArray, push: FloatArray) -> None:
+    """Write the accelerations (n,) that inputs (m,) cause into `push`; without inputs it has no entries."""
+    push[:] = 0.0
+    for k in range(inputs.size):
+        for i in range(push.size):
+            push[i] += inputs[k] * equations.external_input[k, i]
 
 
 @njit(cache=True)

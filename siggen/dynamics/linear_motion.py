@@ -9,8 +9,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, equations_of_motion, linear_rate, start_state
-from siggen.dynamics.mesh_force import MeshLaw, in_contact, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
+from siggen.dynamics.equations import (
+    Equations,
+    approach_of,
+    equations_of_motion,
+    external_push,
+    linear_rate,
+    start_state,
+)
+from siggen.dynamics.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
 from siggen.dynamics.product_integration import ProductIntegration
 from siggen.dynamics.runge_kutta import runge_kutta_step
 from siggen.dynamics.structure import Structure
@@ -23,8 +30,8 @@ FloatArray = NDArray[np.float64]
 class Integrator(Protocol):
     """What steps a state through time."""
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
 
 
 class RungeKutta:
@@ -35,18 +42,30 @@ class RungeKutta:
         self._law = law
         self._step_s = step_s
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
-        _advance(self._equations, self._law, self._step_s, pitches, trajectory)
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+        _advance(self._equations, self._law, self._step_s, pitches, inputs, trajectory)
 
 
 @njit(cache=True)
-def _advance(equations: Equations, law: MeshLaw, step_s: float, pitches: FloatArray, trajectory: FloatArray) -> None:
+def _advance(
+    equations: Equations,
+    law: MeshLaw,
+    step_s: float,
+    pitches: FloatArray,
+    inputs: FloatArray,
+    trajectory: FloatArray,
+) -> None:
     scratch = np.empty((3, trajectory.shape[1]))
+    pushes = np.empty((2, trajectory.shape[1] // 2 if inputs.shape[1] > 0 else 0))
     model = (equations, law)
     for i in range(pitches.size - 1):
         start, end = trajectory[i], trajectory[i + 1]
-        runge_kutta_step(linear_rate, model, step_s, pitches[i], pitches[i + 1], start, end, scratch)
+        external_push(equations, inputs[i], pushes[0])
+        external_push(equations, inputs[i + 1], pushes[1])
+        runge_kutta_step(
+            linear_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
+        )
 
 
 INTEGRATORS: Mapping[str, Callable[[Equations, MeshLaw, float], Integrator]] = {
@@ -70,6 +89,7 @@ class LinearMotion:
         backlash_m: float,
         step_s: float,
         integrator: str = "product",
+        input_vectors: FloatArray | None = None,
     ) -> None:
         if not (np.isfinite(mesh_damping_ratio) and mesh_damping_ratio >= 0.0):
             raise ValueError(f"mesh_damping_ratio: received {mesh_damping_ratio}; allowed are finite values from 0")
@@ -79,7 +99,7 @@ class LinearMotion:
         damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.equivalent_mesh_mass_kg))
         self.structure = structure
         self._law = mesh_law(tables, damping, backlash_m)
-        self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness)
+        self.equations = equations_of_motion(structure, self._law, torque_nm, stiffness, input_vectors)
         self.transient_s = transient_s(structure, self.equations, damping)
         self.teeth = self._law.table_of_pair.shape[0]
         self.largest_approach_m = 0.5 * backlash_m
@@ -90,25 +110,32 @@ class LinearMotion:
         """Return the static state (2n,) at a pinion angle in base pitches."""
         return start_state(self.structure, self._law, self.equations, pitches)
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
-        self._integrator.advance(pitches, trajectory)
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+        self._integrator.advance(pitches, inputs, trajectory)
 
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:  # noqa: ARG002 - as every motion
         """Return at how many states no teeth touch: the approach is inside the backlash."""
-        return _steps_in_gap(self.equations, self._law, states)
+        return _steps_in_gap(self.equations, self._law.half_backlash_m, states)
 
-    def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
+    def internals(
+        self,
+        states: FloatArray,
+        pitches: FloatArray,
+        inputs: FloatArray | None = None,  # noqa: ARG002 - as every motion
+    ) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         return _evaluate_inner(self.equations, self._law, states, pitches)
 
 
 @njit(cache=True)
-def _steps_in_gap(equations: Equations, law: MeshLaw, states: FloatArray) -> int:
+def _steps_in_gap(equations: Equations, half_backlash_m: float, states: FloatArray) -> int:
+    if half_backlash_m == 0.0:
+        return 0
     count = 0
     for i in range(states.shape[0]):
         approach, _ = approach_of(equations, states[i])
-        if not in_contact(law, approach):
+        if not abs(approach) > half_backlash_m:
             count += 1
     return count
 

@@ -2,6 +2,8 @@
 
 Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F, about the static state at
 the mean mesh stiffness; p and r are the mesh and sliding vectors of the structure. The phase of the mesh is prescribed.
+External inputs act as in `equations`. Where the speed varies, one input is its relative deviation Ω/Ω_0 - 1, by which
+the sliding of the rigid rotation changes; it is constant over a step.
 """
 
 from __future__ import annotations
@@ -12,7 +14,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, equations_about, inverse_times, static_solution
+from siggen.dynamics.equations import (
+    Equations,
+    approach_of,
+    equations_about,
+    external_push,
+    inverse_times,
+    static_solution,
+)
 from siggen.dynamics.pair_law import (
     COLUMNS,
     FLANK,
@@ -60,7 +69,11 @@ class PairEquations(NamedTuple):
 
 
 class PairMotion:
-    """Steps with the classical Runge-Kutta method; works with any structure."""
+    """Steps with the classical Runge-Kutta method; works with any structure.
+
+    `input_vectors` (m, n) are those of `equations_about`; `speed_input` is the number of the input that is Ω/Ω_0 - 1,
+    or -1 where the speed is constant.
+    """
 
     def __init__(
         self,
@@ -71,10 +84,14 @@ class PairMotion:
         speed_hz: float,
         reference_stiffness_n_per_m: float,
         step_s: float,
+        input_vectors: FloatArray | None = None,
+        speed_input: int = -1,
     ) -> None:
         self.structure = structure
         self.law = law
-        self.equations = equations_about(structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m)
+        self.equations = equations_about(
+            structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
+        )
         self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
         damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
         self.transient_s = transient_s(structure, self.equations, damping)
@@ -84,6 +101,7 @@ class PairMotion:
         self.internal_names = _names(structure, pair_slots(law))
         self._pairs = np.zeros((pair_slots(law), COLUMNS))
         self._step_s = step_s
+        self._speed_input = speed_input
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
@@ -95,9 +113,10 @@ class PairMotion:
         deviation = static_solution(self.structure.mass, loaded, moved)
         return np.concatenate([deviation, np.zeros_like(deviation)])
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
-        _advance(self.pair_equations, self.law, self._pairs, self._step_s, pitches, trajectory)
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+        column = self._speed_input
+        _advance(self.pair_equations, self.law, self._pairs, self._step_s, column, pitches, inputs, trajectory)
 
     def rate(self, state: FloatArray, pitches: float) -> FloatArray:
         """Return ż (2n,) of a state, for other solvers."""
@@ -109,16 +128,17 @@ class PairMotion:
         """Return at how many states no pair carries."""
         return _steps_apart(self.pair_equations, self.law, self._pairs, states, pitches)
 
-    def pairs(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
-        """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`."""
+    def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
+        """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`; without inputs at Ω_0."""
         result = np.empty((len(states), *self._pairs.shape))
-        _all_pairs(self.pair_equations, self.law, states, pitches, result)
+        haste = np.zeros(len(states)) if inputs is None or self._speed_input < 0 else inputs[:, self._speed_input]
+        _all_pairs(self.pair_equations, self.law, states, pitches, np.ascontiguousarray(haste), result)
         return result
 
-    def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
+    def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         n = self.equations.mesh_vector.size
-        pairs = self.pairs(states, pitches)
+        pairs = self.pairs(states, pitches, inputs)
         normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, POSITION))
         total = normal.sum(axis=1)
         stiffness = np.where(pairs[:, :, FLANK] != 0.0, pairs[:, :, STIFFNESS], 0.0).sum(axis=1)
@@ -153,6 +173,19 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
     rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
     inputs = np.ascontiguousarray(inverse_times(structure.mass, structure.sliding_vectors.T).T)
     return PairEquations(equations, np.array(structure.sliding_vectors), inputs, float(rigid[0]), float(rigid[1]))
+
+
+@njit(cache=True)
+def _hastened(equations: PairEquations, haste: float) -> PairEquations:
+    """Return the equations at the speed Ω_0 (1 + haste)."""
+    ratio = 1.0 + haste
+    return PairEquations(
+        equations.linear,
+        equations.sliding_vectors,
+        equations.sliding_input,
+        equations.rigid_sliding_0 * ratio,
+        equations.rigid_sliding_1 * ratio,
+    )
 
 
 @njit(cache=True)
@@ -200,14 +233,23 @@ def _advance(
     law: PairLaw,
     pairs: FloatArray,
     step_s: float,
+    speed_input: int,
     pitches: FloatArray,
+    inputs: FloatArray,
     trajectory: FloatArray,
 ) -> None:
     scratch = np.empty((3, trajectory.shape[1]))
+    pushes = np.empty((2, trajectory.shape[1] // 2 if inputs.shape[1] > 0 else 0))
     model = (equations, law, pairs)
     for i in range(pitches.size - 1):
         start, end = trajectory[i], trajectory[i + 1]
-        runge_kutta_step(pair_rate, model, step_s, pitches[i], pitches[i + 1], start, end, scratch)
+        external_push(equations.linear, inputs[i], pushes[0])
+        external_push(equations.linear, inputs[i + 1], pushes[1])
+        if speed_input >= 0:
+            model = (_hastened(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
+        runge_kutta_step(
+            pair_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
+        )
 
 
 @njit(cache=True)
@@ -227,7 +269,12 @@ def _steps_apart(
 
 @njit(cache=True)
 def _all_pairs(
-    equations: PairEquations, law: PairLaw, states: FloatArray, pitches: FloatArray, result: FloatArray
+    equations: PairEquations,
+    law: PairLaw,
+    states: FloatArray,
+    pitches: FloatArray,
+    haste: FloatArray,
+    result: FloatArray,
 ) -> None:
     for i in range(states.shape[0]):
-        _load_pairs(equations, law, result[i], states[i], pitches[i])
+        _load_pairs(_hastened(equations, haste[i]), law, result[i], states[i], pitches[i])

@@ -10,6 +10,7 @@ penetration of the loaded flank and Δk = K - k_ref. On a step of length h, τ =
 3. u is replaced by the cubic with the same moments: z_1 = Φ z_0 - Σ_l w_l m_l,
    w_l = (2l + 1) ∫ e^{A (h - s)} B P_l(s/h) ds over [0, h].
 4. x_1 and h ẋ_1 enter m_l linearly: two equations with two unknowns.
+5. External inputs are linear over the step; their response is that of the constant part, exactly.
 
 Where contact is lost or may be lost within a step, the step is made of Runge-Kutta substeps with the same force.
 """
@@ -22,7 +23,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, linear_rate, state_matrix
+from siggen.dynamics.equations import Equations, approach_of, external_push, linear_rate, state_matrix
 from siggen.dynamics.mesh_force import MeshLaw, row_stiffness, table_row
 from siggen.dynamics.runge_kutta import runge_kutta_step
 
@@ -49,6 +50,7 @@ class Scheme(NamedTuple):
     nodes: FloatArray  # (NODES,) on [0, 1]
     weights: FloatArray  # (NODES,)
     products: FloatArray  # (NODES, 4, 4) weight P_l H_b at the nodes
+    input_response: FloatArray  # (2, m, columns) to the inputs at the start and at the end of the step
 
 
 class ProductIntegration:
@@ -59,9 +61,9 @@ class ProductIntegration:
         self._law = law
         self._scheme = scheme(equations, law, step_s)
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
-        _advance(self._equations, self._law, self._scheme, pitches, trajectory)
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+        _advance(self._equations, self._law, self._scheme, pitches, inputs, trajectory)
 
 
 def scheme(equations: Equations, law: MeshLaw, step_s: float) -> Scheme:
@@ -78,6 +80,9 @@ def scheme(equations: Equations, law: MeshLaw, step_s: float) -> Scheme:
         nodes=nodes,
         weights=weights,
         products=products,
+        input_response=np.array(
+            [_with_approach(one, equations.mesh_vector, step_s) for one in _input_responses(equations, law, step_s)]
+        ),
     )
 
 
@@ -102,8 +107,7 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
     n = equations.mesh_vector.size
     scale = np.concatenate([np.ones(n), np.full(n, step_s)])
     augmented = np.zeros((2 * n + 4, 2 * n + 4))
-    matrix = state_matrix(equations, equations.reference_stiffness, law.damping_n_s_per_m)
-    augmented[: 2 * n, : 2 * n] = step_s * matrix * scale[:, None] / scale[None, :]
+    augmented[: 2 * n, : 2 * n] = _scaled_matrix(equations, law, step_s)
     augmented[n : 2 * n, 2 * n] = step_s**2 * equations.mesh_input
     for j in range(3):
         augmented[2 * n + j, 2 * n + j + 1] = 1.0
@@ -112,6 +116,31 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
     monomial = exponential[: 2 * n, 2 * n :] * np.array([1.0, 1.0, 2.0, 6.0]) / scale[:, None]
     weights = (2.0 * np.arange(4) + 1.0)[:, None] * SHIFTED_LEGENDRE
     return transition, weights @ monomial.T
+
+
+def _scaled_matrix(equations: Equations, law: MeshLaw, step_s: float) -> FloatArray:
+    """Return h A (2n, 2n) of the constant part with velocities scaled by h."""
+    n = equations.mesh_vector.size
+    scale = np.concatenate([np.ones(n), np.full(n, step_s)])
+    matrix = state_matrix(equations, equations.reference_stiffness, law.damping_n_s_per_m)
+    return step_s * matrix * scale[:, None] / scale[None, :]
+
+
+def _input_responses(equations: Equations, law: MeshLaw, step_s: float) -> tuple[FloatArray, FloatArray]:
+    """Return what a unit of each input at the start, falling to 0, and at the end, rising from 0, adds (m, 2n) to z_1.
+
+    From one exponential of [[A, V, 0], [0, 0, 1], [0, 0, 0]] h: the responses to 1 and to τ.
+    """
+    from scipy.linalg import expm
+
+    count, n = equations.external_input.shape
+    augmented = np.zeros((2 * n + 2 * count, 2 * n + 2 * count))
+    augmented[: 2 * n, : 2 * n] = _scaled_matrix(equations, law, step_s)
+    augmented[n : 2 * n, 2 * n : 2 * n + count] = step_s**2 * equations.external_input.T
+    augmented[2 * n : 2 * n + count, 2 * n + count :] = np.eye(count)
+    exponential = expm(augmented)[: 2 * n, 2 * n :] / np.concatenate([np.ones(n), np.full(n, step_s)])[:, None]
+    constant, rising = exponential[:, :count].T, exponential[:, count:].T
+    return constant - rising, rising
 
 
 SHIFTED_LEGENDRE = np.array(
@@ -238,20 +267,43 @@ def _substeps(
     step_s: float,
     pitches_0: float,
     pitches_1: float,
+    pushes: FloatArray,
     state: FloatArray,
     scratch: FloatArray,
 ) -> None:
-    """Advance `state` (2n,) over one step by SUBSTEPS Runge-Kutta steps."""
+    """Advance `state` (2n,) over one step by SUBSTEPS Runge-Kutta steps; `pushes` (4, n): at its ends, and space."""
     advance = (pitches_1 - pitches_0) / SUBSTEPS
     for j in range(SUBSTEPS):
         first = pitches_0 + j * advance
         model = (equations, law)
-        runge_kutta_step(linear_rate, model, step_s / SUBSTEPS, first, first + advance, state, state, scratch)
+        low, high = pushes[2], pushes[3]
+        for i in range(low.size):
+            rise = (pushes[1, i] - pushes[0, i]) / SUBSTEPS
+            low[i], high[i] = pushes[0, i] + j * rise, pushes[0, i] + (j + 1) * rise
+        runge_kutta_step(
+            linear_rate, model, step_s / SUBSTEPS, first, first + advance, low, high, state, state, scratch
+        )
 
 
 @njit(cache=True)
-def _advance(equations: Equations, law: MeshLaw, scheme: Scheme, pitches: FloatArray, trajectory: FloatArray) -> None:
+def _add_inputs(scheme: Scheme, start: FloatArray, end: FloatArray, state: FloatArray) -> None:
+    """Add to the motion after one step (columns,) what inputs (m,), linear over the step, contribute."""
+    for k in range(start.size):
+        for i in range(state.size):
+            state[i] += scheme.input_response[0, k, i] * start[k] + scheme.input_response[1, k, i] * end[k]
+
+
+@njit(cache=True)
+def _advance(
+    equations: Equations,
+    law: MeshLaw,
+    scheme: Scheme,
+    pitches: FloatArray,
+    inputs: FloatArray,
+    trajectory: FloatArray,
+) -> None:
     size = trajectory.shape[1]
+    pushes = np.empty((4, size // 2 if inputs.shape[1] > 0 else 0))
     moments, nodal, scratch = np.empty((4, 4)), np.empty(NODES), np.empty((3, size))
     after = np.empty(scheme.transition.shape[1])
     rest = equations.static_force / equations.reference_stiffness
@@ -261,10 +313,14 @@ def _advance(equations: Equations, law: MeshLaw, scheme: Scheme, pitches: FloatA
         x_0, v_0 = approach - shift, scheme.step_s * rate
         _stiffness_moments(law, scheme, equations.reference_stiffness, pitches[i], pitches[i + 1], nodal, moments)
         _free_motion(scheme, trajectory[i], after)
+        if inputs.shape[1] > 0:
+            _add_inputs(scheme, inputs[i], inputs[i + 1], after)
         _end_of_step(scheme, moments, size, rest, x_0, v_0, after)
         trajectory[i + 1] = after[:size]
         x_1, v_1 = rest + after[size], after[size + 1]
         lowest = min(equations.side * x_0, equations.side * x_1) - HERMITE_DIP * (abs(v_0) + abs(v_1))
         if law.half_backlash_m > 0.0 and lowest <= 0.0:
             trajectory[i + 1] = trajectory[i]
-            _substeps(equations, law, scheme.step_s, pitches[i], pitches[i + 1], trajectory[i + 1], scratch)
+            external_push(equations, inputs[i], pushes[0])
+            external_push(equations, inputs[i + 1], pushes[1])
+            _substeps(equations, law, scheme.step_s, pitches[i], pitches[i + 1], pushes, trajectory[i + 1], scratch)

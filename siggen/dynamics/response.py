@@ -12,8 +12,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.dynamics.decimation import Decimator, half_length, second_difference_taps, value_taps
-from siggen.dynamics.drive import Drive
-from siggen.dynamics.equations import Equations, approach_of
+from siggen.dynamics.drive import Drive, Rotation
+from siggen.dynamics.equations import Equations, approach_of, no_inputs
+from siggen.dynamics.excitation import Excitation
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.structure import Structure
 from siggen.errors import SolverFailure
@@ -38,13 +39,13 @@ class Motion(Protocol):
     def start(self, pitches: float) -> FloatArray:
         """Return the state at the start, at a pinion angle in base pitches."""
 
-    def advance(self, pitches: FloatArray, trajectory: FloatArray) -> None:
-        """Fill rows 1.. of `trajectory` (steps + 1, 2n) from row 0, with the pinion angles `pitches` (steps + 1,)."""
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
 
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
         """Return at how many states no teeth touch."""
 
-    def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
+    def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the values named in `internal_names` (k, names)."""
 
 
@@ -86,9 +87,10 @@ class _Run:
     """A motion with its time grid: `steps_per_sample` integration steps per output sample, step 0 at time 0."""
 
     motion: Motion
-    drive: Drive
+    drive: Rotation
     fs_hz: float
     steps_per_sample: int
+    excitation: Excitation | None = None
 
     @property
     def limit_m(self) -> float:
@@ -100,6 +102,12 @@ class _Run:
     def pitches(self, first: int, count: int) -> FloatArray:
         """Return the pinion angle in base pitches at `count` steps from step `first`."""
         return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+
+    def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
+        """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
+        if self.excitation is None:
+            return no_inputs(pitches)
+        return self.excitation.inputs(self.time_s(first, pitches.size), self.drive)
 
 
 def simulate_response(
@@ -152,18 +160,20 @@ def simulate_response(
 
 def response_of(
     motion: Motion,
-    drive: Drive,
+    drive: Rotation,
     *,
     fs_hz: float,
     samples: int,
     steps_per_sample: int,
     internals: bool = False,
     bearing_forces: bool = True,
+    excitation: Excitation | None = None,
 ) -> Response:
     """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
 
     Starts from the static equilibrium and discards the transient that the motion states. Filtering bearing forces costs
-    about a fifth of a response; without `bearing_forces` there are none.
+    about a fifth of a response; without `bearing_forces` there are none. The motion must hold the vectors of
+    `excitation`.
 
     Raises
     ------
@@ -171,7 +181,7 @@ def response_of(
         If rate or counts are not positive.
     """
     check_grid(fs_hz, samples, steps_per_sample)
-    run = _Run(motion, drive, fs_hz, steps_per_sample)
+    run = _Run(motion, drive, fs_hz, steps_per_sample, excitation)
     try:
         return _simulate(run, samples, internals, bearing_forces)
     except SolverFailure as failure:
@@ -230,7 +240,8 @@ def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tup
     for first in range(start, stop, block):
         count = min(block, stop - first)
         trajectory[0] = state
-        run.motion.advance(run.pitches(first, count + 1), trajectory[: count + 1])
+        pitches = run.pitches(first, count + 1)
+        run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
         beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
@@ -263,7 +274,7 @@ def _inner_values(run: _Run, first: int, states: FloatArray, samples: int) -> Fl
     steps = np.arange(first, first + len(states))
     chosen = (steps >= 0) & (steps % run.steps_per_sample == 0) & (steps < samples * run.steps_per_sample)
     pitches = run.pitches(first, len(states))
-    return run.motion.internals(states[chosen], pitches[chosen])
+    return run.motion.internals(states[chosen], pitches[chosen], run.inputs(first, pitches)[chosen])
 
 
 def _acceleration_decimator(run: _Run, samples: int) -> Decimator:

@@ -92,3 +92,21 @@ def test_a_large_set_is_planned_quickly(path):
     summary = json.loads(run("plan", path, "--set", "specimens=500000", "--json"))
     assert summary["records"] == 1_000_000
     assert summary["shards_of_split"]["train"] == -(-300_000 // summary["specimens_per_full_shard"])
+
+
+def test_the_plan_says_what_varies_within_a_record(path):
+    varying = [
+        "variation.speed.start_ratio=0.5",
+        "variation.speed.random_rms=0.003",
+        "dynamics.unbalance.grade_mm_s=6.3",
+    ]
+    overrides = [word for one in varying for word in ("--set", one)]
+    summary = json.loads(run("plan", path, *overrides, "--json"))
+    assert summary["variation"] == [
+        "speed runs from 0.5 to 1 times nominal over a record",
+        "slow random speed of 0.3 % rms up to 0.5 Hz",
+        "unbalance of grade G6.3 at 50 Hz",
+    ]
+    assert summary["mesh_hz"] == pytest.approx([540 * 0.5 * 0.988, 540 * 1.012])
+    assert "unbalance of grade G6.3" in run("plan", path, *overrides)
+    assert json.loads(run("plan", path, "--json"))["variation"] == []

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from siggen.dynamics.equations import Equations, equations_of_motion, start_state, state_rate
+from siggen.dynamics.equations import Equations, equations_of_motion, no_inputs, start_state, state_rate
 from siggen.dynamics.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_law
 from siggen.dynamics.structure import Structure
 from siggen.gears.tables import MeshTables
@@ -33,7 +33,7 @@ def trajectory(
     states = np.empty((steps + 1, start.size))
     states[0] = start
     pitches = FIRST_PITCHES + MESH_HZ * step_s * np.arange(steps + 1)
-    integrator(equations, law, step_s).advance(pitches, states)
+    integrator(equations, law, step_s).advance(pitches, no_inputs(pitches), states)
     return states
 
 

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from siggen.dynamics.equations import no_inputs
 from siggen.dynamics.friction import FrictionLaw
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
@@ -102,10 +103,10 @@ def settled(run: PairMotion, speed_hz: float, step_s: float, steps: int, settle_
     pitches = MESHES * speed_hz * step_s * np.arange(before + steps + 1) + 0.3
     states = np.empty((before + 1, 2 * len(run.structure.coordinates)))
     states[0] = run.start(pitches[0])
-    run.advance(pitches[: before + 1], states)
+    run.advance(pitches[: before + 1], no_inputs(pitches[: before + 1]), states)
     kept = np.empty((steps + 1, states.shape[1]))
     kept[0] = states[-1]
-    run.advance(pitches[before:], kept)
+    run.advance(pitches[before:], no_inputs(pitches[before:]), kept)
     return pitches[before:], kept
 
 

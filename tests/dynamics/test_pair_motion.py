@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from siggen.dynamics.casing_structure import torsional
 from siggen.dynamics.drive import Drive
+from siggen.dynamics.equations import no_inputs
 from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
@@ -200,7 +201,7 @@ def test_without_missing_material_and_mesh_damping_it_is_the_linear_law() -> Non
     for run in (pairs, linear):
         states = np.empty((4001, 16))
         states[0] = run.start(pitches[0])
-        run.advance(pitches, states)
+        run.advance(pitches, no_inputs(pitches), states)
         trajectories.append(states)
     first, second = trajectories
     # Rounding of forces of 1e3 N over 4000 steps; both laws jump at the same angles. Free rotation is left out.
@@ -221,7 +222,8 @@ def test_agrees_with_an_adaptive_solver() -> None:
         run = motion(make_structure(), chosen, step_s=coarse / divided)
         states = np.empty((samples * divided + 1, 22))
         states[0] = run.start(0.3)
-        run.advance(0.3 + 540.0 * coarse / divided * np.arange(samples * divided + 1), states)
+        pitches = 0.3 + 540.0 * coarse / divided * np.arange(samples * divided + 1)
+        run.advance(pitches, no_inputs(pitches), states)
         difference = states[::divided, 11:] - solution.y[11:].T
         errors.append(np.sqrt((difference**2).mean(axis=0) / (solution.y[11:] ** 2).mean(axis=1)).max())
     # The damper's share of the force steps where a pair touches, so the error falls with the first power of the step.

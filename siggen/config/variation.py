@@ -1,0 +1,77 @@
+"""Section `variation`: how speed and torque vary within a record, relative to those of the operating point."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from siggen.config.number import Number, Within, bounds
+from siggen.config.section import Section
+
+RARE = 4.0
+"""Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""
+
+SLOW_CORNER = "frequency above which the random part falls off"
+
+
+class SpeedVariation(Section):
+    """Rotation of the pinion; numbers are drawn per specimen and operating point, random courses per record."""
+
+    start_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(
+        default=1.0, description="speed at the first sample over that of the operating point"
+    )
+    end_ratio: Annotated[Number, Within(least=0.01, most=10)] = Field(
+        default=1.0, description="the same at the last; the speed runs linearly between (run-up, run-down)"
+    )
+    random_rms: Annotated[Number, Within(least=0, most=0.05)] = Field(
+        default=0.0, description="slow random part, relative; 0.001 to 0.005 is usual"
+    )
+    corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
+    ripple_once: Annotated[Number, Within(least=0, most=0.05)] = Field(
+        default=0.0, description="amplitude once per revolution, relative; 0.0002 to 0.001 is usual"
+    )
+    ripple_twice: Annotated[Number, Within(least=0, most=0.05)] = Field(
+        default=0.0, description="the same twice per revolution"
+    )
+    slip: Annotated[Number, Within(least=0, most=0.2)] = Field(
+        default=0.0,
+        description="share of the speed that the motor loses at its rated torque, in proportion to the torque",
+    )
+    rated_torque_nm: Annotated[Number, Within(above=0)] = Field(default=60.0, description="of the motor, for the slip")
+
+
+class TorqueVariation(Section):
+    """Torque about that of the operating point; motor and load balance on the mean."""
+
+    random_rms: Annotated[Number, Within(least=0, most=0.1)] = Field(
+        default=0.0, description="slow random part, relative; 0.01 to 0.05 is usual"
+    )
+    corner_hz: Annotated[Number, Within(least=0.01, most=5)] = Field(default=0.5, description=SLOW_CORNER)
+    load_once: Annotated[Number, Within(least=0, most=2)] = Field(
+        default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"
+    )
+    line_ripple: Annotated[Number, Within(least=0, most=2)] = Field(
+        default=0.0, description="amplitude of the motor torque at twice the line frequency, relative"
+    )
+    line_hz: Annotated[Number, Within(above=0, most=400)] = Field(default=50.0, description="frequency of the line")
+
+
+class Variation(Section):
+    """What varies within a record; nothing by default."""
+
+    speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the pinion")
+    torque: TorqueVariation = Field(default=TorqueVariation(), description="torque of motor and load")
+
+    @property
+    def active(self) -> bool:
+        """Whether the section says anything; then records have the labels of the variation."""
+        return self != Variation()
+
+    @property
+    def speed_ratios(self) -> tuple[float, float]:
+        """Lowest and highest speed within a record over that of the operating point."""
+        s = self.speed
+        spread = RARE * bounds(s.random_rms)[1] + bounds(s.ripple_once)[1] + bounds(s.ripple_twice)[1]
+        lowest = min(bounds(s.start_ratio)[0], bounds(s.end_ratio)[0]) * (1.0 - spread) * (1.0 - bounds(s.slip)[1])
+        return lowest, max(bounds(s.start_ratio)[1], bounds(s.end_ratio)[1]) * (1.0 + spread)

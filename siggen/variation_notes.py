@@ -1,0 +1,64 @@
+"""What varies within the records of a set, in sentences for its plan, and what the model leaves out of that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from siggen.config import Config, Number, bounds
+
+
+def variation_notes(config: Config) -> tuple[str, ...]:
+    """Return what varies and which forces the shafts bring; nothing for constant speed and torque alone."""
+    return (*_speed(config), *_torque(config), *_forces(config), *_limits(config))
+
+
+def _speed(config: Config) -> Iterator[str]:
+    speed = config.variation.speed
+    if (speed.start_ratio, speed.end_ratio) != (1.0, 1.0):
+        yield f"speed runs from {_span(speed.start_ratio)} to {_span(speed.end_ratio)} times nominal over a record"
+    if _some(speed.random_rms):
+        yield f"slow random speed of {_percent(speed.random_rms)} rms up to {_span(speed.corner_hz)} Hz"
+    for number, often in ((speed.ripple_once, "once"), (speed.ripple_twice, "twice")):
+        if _some(number):
+            yield f"speed ripple of {_percent(number)} {often} per revolution"
+    if _some(speed.slip):
+        yield f"motor slip of {_percent(speed.slip)} at {_span(speed.rated_torque_nm)} N m"
+
+
+def _torque(config: Config) -> Iterator[str]:
+    torque = config.variation.torque
+    if _some(torque.random_rms):
+        yield f"slow random torque of {_percent(torque.random_rms)} rms up to {_span(torque.corner_hz)} Hz"
+    if _some(torque.load_once):
+        yield f"load torque pulsates by {_percent(torque.load_once)} once per revolution of its shaft"
+    if _some(torque.line_ripple):
+        yield f"motor torque pulsates by {_percent(torque.line_ripple)} at twice {_span(torque.line_hz)} Hz"
+
+
+def _forces(config: Config) -> Iterator[str]:
+    unbalance, tones = config.dynamics.unbalance, config.dynamics.bearing_tones
+    if _some(unbalance.grade_mm_s):
+        yield f"unbalance of grade G{_span(unbalance.grade_mm_s)} at {_span(unbalance.rated_speed_hz)} Hz"
+    if _some(tones.level):
+        yield f"bearing tones of up to {_percent(tones.level)} of the mean mesh force"
+
+
+def _limits(config: Config) -> Iterator[str]:
+    if config.variation.active and config.dynamics.friction.model == "mixed_ehl":
+        yield "the oil film stays that of the operating point's speed and torque while they vary"
+
+
+def _some(number: Number) -> bool:
+    return bounds(number)[1] > 0.0
+
+
+def _percent(number: Number) -> str:
+    return _range(*(100.0 * value for value in bounds(number))) + " %"
+
+
+def _span(number: Number) -> str:
+    return _range(*bounds(number))
+
+
+def _range(low: float, high: float) -> str:
+    return f"{low:g}" if low == high else f"{low:g}-{high:g}"
