@@ -22,8 +22,8 @@ from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
-from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen_drive import RecordDrive, record_drive, variation_labels
+from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
