@@ -25,6 +25,7 @@ FLOORS = {
     "siggen.specimen_structure": 5.0,
     "siggen.spall_physics": 5.05,
     "siggen.specimen_friction": 5.0,
+    "siggen.specimen_contact": 5.0,
     "siggen.specimen_motion": 5.05,
     "siggen.state_damage": 5.1,
     "siggen.physical_problems": 5.2,

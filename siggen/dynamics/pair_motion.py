@@ -12,20 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, equations_about, inverse_times, static_solution
-from siggen.dynamics.pair_law import (
-    COLUMNS,
-    FLANK,
-    FRICTION,
-    NORMAL,
-    POSITION,
-    SLIDING,
-    STIFFNESS,
-    PairLaw,
-    pair_forces,
-    pair_slots,
-    static_approach_m,
-)
+from siggen.dynamics.equations import Equations, equations_about, inverse_times, static_solution
+from siggen.dynamics.pair_forces import static_approach_m, write_forces
+from siggen.dynamics.pair_law import PairLaw
+from siggen.dynamics.pair_places import FLANK, FRICTION, NORMAL, POSITION, SLIDING, STIFFNESS, pair_table
 from siggen.dynamics.runge_kutta import runge_kutta_step
 from siggen.dynamics.structure import Structure, vector
 from siggen.dynamics.transient import transient_s
@@ -46,15 +36,16 @@ PER_PAIR = ("force_n", "load_share", "friction_n", "sliding_m_s", "position_m")
 
 
 class PairEquations(NamedTuple):
-    """Linear equations of motion and how sliding enters them.
+    """Constant numbers of the equations of motion and how sliding enters them.
 
-    `sliding_vectors`, `sliding_input` (2, n): r and M⁻¹ r; `rigid_sliding_0`, `rigid_sliding_1`: sliding speed at s of
-    the rigid rotation is the first plus s times the second [m/s, 1/s].
+    `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
+    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
+    `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s].
     """
 
-    linear: Equations
-    sliding_vectors: FloatArray
-    sliding_input: FloatArray
+    rows: FloatArray
+    static_force: float
+    static_approach: float
     rigid_sliding_0: float
     rigid_sliding_1: float
 
@@ -78,11 +69,11 @@ class PairMotion:
         self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
         damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
         self.transient_s = transient_s(structure, self.equations, damping)
-        self.teeth = law.kind_of_tooth_1.size
+        self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
         self.base_pitch_m = law.base_pitch_m
-        self.internal_names = _names(structure, pair_slots(law))
-        self._pairs = np.zeros((pair_slots(law), COLUMNS))
+        self.internal_names = _names(structure, law.slots)
+        self._pairs = pair_table(law)
         self._step_s = step_s
 
     def start(self, pitches: float) -> FloatArray:
@@ -111,7 +102,7 @@ class PairMotion:
 
     def pairs(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
         """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`."""
-        result = np.empty((len(states), *self._pairs.shape))
+        result = np.stack([pair_table(self.law)] * len(states))
         _all_pairs(self.pair_equations, self.law, states, pitches, result)
         return result
 
@@ -151,22 +142,34 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
     p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
     rolling = {"theta_1": 1.0, "theta_2": -p["theta_1"] / p["theta_2"]}
     rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
-    inputs = np.ascontiguousarray(inverse_times(structure.mass, structure.sliding_vectors.T).T)
-    return PairEquations(equations, np.array(structure.sliding_vectors), inputs, float(rigid[0]), float(rigid[1]))
+    inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
+    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
+    parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
+    return PairEquations(
+        np.ascontiguousarray(np.concatenate(parts)),
+        equations.static_force,
+        equations.static_approach,
+        float(rigid[0]),
+        float(rigid[1]),
+    )
 
 
-@njit(cache=True)
+# Inlined: taking arrays out of tuples again and again costs as much as the forces (see `packed_tables`).
+@njit(cache=True, inline="always")
 def _load_pairs(
     equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
 ) -> tuple[float, float, float]:
     """Write the table of pairs of a state; return ΣN, ΣF and Σ s F."""
-    n = equations.linear.mesh_vector.size
-    approach, approach_rate = approach_of(equations.linear, state)
+    rows = equations.rows
+    n = rows.shape[1]
+    approach, approach_rate = equations.static_approach, 0.0
     sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
     for i in range(n):
-        sliding_0 += equations.sliding_vectors[0, i] * state[n + i]
-        sliding_1 += equations.sliding_vectors[1, i] * state[n + i]
-    pair_forces(law, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
+        approach += rows[2 * n, i] * state[i]
+        approach_rate += rows[2 * n, i] * state[n + i]
+        sliding_0 += rows[2 * n + 1, i] * state[n + i]
+        sliding_1 += rows[2 * n + 2, i] * state[n + i]
+    write_forces(law.scalars, law.numbers, law.places, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
     normal, friction, moment = 0.0, 0.0, 0.0
     for i in range(pairs.shape[0]):
         normal += pairs[i, NORMAL]
@@ -175,23 +178,23 @@ def _load_pairs(
     return normal, friction, moment
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def pair_rate(
     model: tuple[PairEquations, PairLaw, FloatArray], state: FloatArray, pitches: float, rate: FloatArray
 ) -> None:
     """Write ż (2n,) of a state into `rate`; the form that integrators call."""
     equations, law, pairs = model
-    linear = equations.linear
-    n = linear.mesh_vector.size
     normal, friction, moment = _load_pairs(equations, law, pairs, state, pitches)
-    excess = normal - linear.static_force
+    excess = normal - equations.static_force
+    rows = equations.rows
+    n = rows.shape[1]
     for i in range(n):
         rate[i] = state[n + i]
-        total = -linear.mesh_input[i] * excess
-        total -= equations.sliding_input[0, i] * friction + equations.sliding_input[1, i] * moment
-        for j in range(n):
-            total -= linear.stiffness_by_mass[i, j] * state[j] + linear.damping_by_mass[i, j] * state[n + j]
-        rate[n + i] = total
+        rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
+    # Column by column, so that the inner loop has no sum to carry and runs on several rates at once.
+    for j in range(2 * n):
+        for i in range(n):
+            rate[n + i] += rows[j, i] * state[j]
 
 
 @njit(cache=True)
