@@ -34,6 +34,7 @@ FLOORS = {
     "siggen.sensor_channels": 5.35,
     "siggen.stiffness_curves": 5.35,
     "siggen.natural_modes": 5.35,
+    "siggen.contact_notes": 5.35,
     "siggen.damage_table": 5.35,
     "siggen.damage_outline": 5.35,
     "siggen.dataset": 5.4,

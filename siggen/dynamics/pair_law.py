@@ -48,7 +48,7 @@ SCALARS = 23
     SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
     ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT,
 ) = range(26)  # fmt: skip
-"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; 0 roughnesses: no friction)
+"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction)
 and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
 HEAD = 26
 

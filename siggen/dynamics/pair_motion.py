@@ -14,25 +14,16 @@ from numpy.typing import NDArray
 
 from siggen.dynamics.equations import Equations, equations_about, inverse_times, static_solution
 from siggen.dynamics.pair_forces import static_approach_m, write_forces
+from siggen.dynamics.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.pair_law import PairLaw
-from siggen.dynamics.pair_places import FLANK, FRICTION, NORMAL, POSITION, SLIDING, STIFFNESS, pair_table
+from siggen.dynamics.pair_places import FLANK, FRICTION, NORMAL, POSITION, pair_table
 from siggen.dynamics.runge_kutta import runge_kutta_step
 from siggen.dynamics.structure import Structure, vector
 from siggen.dynamics.transient import transient_s
 
 FloatArray = NDArray[np.float64]
 
-SUMS = (
-    "mesh_force_n",
-    "mesh_stiffness_n_per_m",
-    "mesh_damping_n_s_per_m",
-    "approach_m",
-    "approach_rate_m_s",
-    "friction_force_n",
-    "friction_moment_pinion_nm",
-    "friction_moment_gear_nm",
-)
-PER_PAIR = ("force_n", "load_share", "friction_n", "sliding_m_s", "position_m")
+MOTION = ("approach_m", "approach_rate_m_s")
 
 
 class PairEquations(NamedTuple):
@@ -62,9 +53,11 @@ class PairMotion:
         speed_hz: float,
         reference_stiffness_n_per_m: float,
         step_s: float,
+        contact: PairContact | None = None,
     ) -> None:
         self.structure = structure
         self.law = law
+        self.contact = contact
         self.equations = equations_about(structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m)
         self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
         damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
@@ -72,7 +65,7 @@ class PairMotion:
         self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
         self.base_pitch_m = law.base_pitch_m
-        self.internal_names = _names(structure, law.slots)
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *_names(structure))
         self._pairs = pair_table(law)
         self._step_s = step_s
 
@@ -109,32 +102,20 @@ class PairMotion:
     def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         n = self.equations.mesh_vector.size
-        pairs = self.pairs(states, pitches)
-        normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, POSITION))
-        total = normal.sum(axis=1)
-        stiffness = np.where(pairs[:, :, FLANK] != 0.0, pairs[:, :, STIFFNESS], 0.0).sum(axis=1)
-        sums = [
-            total,
-            stiffness,
-            self.law.damping_root_kg * np.sqrt(stiffness),
+        found = pair_internals(self.pairs(states, pitches), self.law.line_of_action_m, self.contact)
+        approach = [
             self.equations.static_approach + (states[:, :n] * self.equations.mesh_vector).sum(axis=1),
             (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
-            friction.sum(axis=1),
-            (position * friction).sum(axis=1),
-            ((self.law.line_of_action_m - position) * friction).sum(axis=1),
         ]
-        share = normal / np.where(total == 0.0, 1.0, total)[:, None]
-        single = np.stack([normal, share, friction, pairs[:, :, SLIDING], position], axis=2)
         moved = states[:, :n] + self.equations.static_deflection
-        return np.concatenate([np.stack(sums, axis=1), single.reshape(len(states), -1), moved], axis=1)
+        return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
 
-def _names(structure: Structure, slots: int) -> tuple[str, ...]:
-    """Return the names of the internals; pair n of an engagement has the number n mod slots."""
-    pairs = tuple(f"pair_{slot}_{name}" for slot in range(slots) for name in PER_PAIR)
+def _names(structure: Structure) -> tuple[str, ...]:
+    """Return the names of the coordinates with their units."""
     units = {True: "rad", False: "m"}
     turning = ("theta", "phi")
-    return (*SUMS, *pairs, *(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates))
+    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates)
 
 
 def _pair_equations(structure: Structure, equations: Equations, speed_hz: float) -> PairEquations:
