@@ -18,10 +18,10 @@ from siggen.errors import SolverFailure
 from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import StiffnessOptions
-from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
+from siggen.specimen_contact import mean_line_load_n_per_m, tooth_tables
 from siggen.specimen_drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
@@ -54,15 +54,20 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     with _limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
-        tables = mesh_tables(pair, damage, options, points=specimen.stiffness.table_points)
-        labels = damage_labels(config.states[state_id], pair, damage, options)
+        load = mean_line_load_n_per_m(config.operating_points, pair)
+        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load)
+        labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
     with _limits_of("outside_model"):
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
     return SpecimenState(
-        pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels | error_labels(config, errors)
+        pair,
+        options,
+        damage,
+        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices),
+        labels | error_labels(config, errors),
     )
 
 

@@ -93,6 +93,9 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
+    if dynamics.mesh.damping == "asperity_share" and dynamics.friction.model != "mixed_ehl":
+        allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
+        yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
 
 
 def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

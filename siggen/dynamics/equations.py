@@ -162,12 +162,12 @@ def no_inputs(pitches: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def external_push(equations: Equations, inputs: FloatArray, push: FloatArray) -> None:
-    """Write the accelerations (n,) that inputs (m,) cause into `push`; without inputs it has no entries."""
+def external_push(external_input: FloatArray, inputs: FloatArray, push: FloatArray) -> None:
+    """Write the accelerations (n,) by inputs (m,) along `external_input` (m, n) into `push`; without, it has none."""
     push[:] = 0.0
     for k in range(inputs.size):
         for i in range(push.size):
-            push[i] += inputs[k] * equations.external_input[k, i]
+            push[i] += inputs[k] * external_input[k, i]
 
 
 @njit(cache=True)

@@ -61,8 +61,8 @@ def _advance(
     model = (equations, law)
     for i in range(pitches.size - 1):
         start, end = trajectory[i], trajectory[i + 1]
-        external_push(equations, inputs[i], pushes[0])
-        external_push(equations, inputs[i + 1], pushes[1])
+        external_push(equations.external_input, inputs[i], pushes[0])
+        external_push(equations.external_input, inputs[i + 1], pushes[1])
         runge_kutta_step(
             linear_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
         )

@@ -321,6 +321,6 @@ def _advance(
         lowest = min(equations.side * x_0, equations.side * x_1) - HERMITE_DIP * (abs(v_0) + abs(v_1))
         if law.half_backlash_m > 0.0 and lowest <= 0.0:
             trajectory[i + 1] = trajectory[i]
-            external_push(equations, inputs[i], pushes[0])
-            external_push(equations, inputs[i + 1], pushes[1])
+            external_push(equations.external_input, inputs[i], pushes[0])
+            external_push(equations.external_input, inputs[i + 1], pushes[1])
             _substeps(equations, law, scheme.step_s, pitches[i], pitches[i + 1], pushes, trajectory[i + 1], scratch)
