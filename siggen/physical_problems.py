@@ -29,6 +29,7 @@ from siggen.gears.damage import Damage, Pit, Spall, damage_problems, flank_heigh
 from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.iso_1328 import outside_iso_1328
 from siggen.spall_physics import spall_on_tooth
+from siggen.specimen_contact import damage_is_geometry
 from siggen.specimen_friction import roughness_problem
 from siggen.specimen_physics import gear_pair, pit_height_m
 
@@ -42,6 +43,9 @@ KEYS = {
     "rack tip": "clearance_coefficient",
 }
 """Key of the configuration that a geometry problem is about, where one key is to blame."""
+
+GO_ON = {"contact": ", or dynamics.mesh.law: pairs with dynamics.mesh.damage: all or geometry"}
+"""What else to do about a problem, by its name."""
 
 SIZE_KEYS = ("face_length_mm", "profile_length_mm", "lower_width_mm", "upper_width_mm", "depth_mm")
 SPALL_KEYS = {
@@ -76,12 +80,14 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     problems = [_located(problem) for pair in pairs for problem in geometry_problems(pair)]
     sound = [pair for pair in pairs if not geometry_problems(pair)]
     flanks = list({_without_bores(pair): pair for pair in sound}.values())
+    dynamics: Dynamics | None = parsed.sections.get("dynamics")
+    through_face = dynamics is not None and damage_is_geometry(dynamics)
     for index, state in parsed.sections.get("states", {}).items():
         if state.damage is not None:
-            problems += _state_problems(flanks, state.damage, f"states.{index}.damage")
+            problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
     if parsed.sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
-    problems += _friction_problems(parsed.sections.get("dynamics"))
+    problems += _friction_problems(dynamics)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 
@@ -131,13 +137,14 @@ def _in_mm(text: str) -> str:
     return re.sub(r"(-?\d[\d.]*(?:e[-+]?\d+)?) m\b", lambda found: f"{float(found[1]) * 1e3:.6g} mm", text)
 
 
-def _state_problems(pairs: list[GearPair], damage: DamageModel, path: str) -> Iterator[Problem]:
+def _state_problems(pairs: list[GearPair], damage: DamageModel, path: str, *, through_face: bool) -> Iterator[Problem]:
+    """Yield what is wrong with the damage of a state; with `through_face` it may take the whole contact length."""
     for pair in pairs:
         misplaced = [problem for place in _places(pair, damage) for problem in _place_problems(pair, place, path)]
         for key, size, reading in _spalls(damage):
             misplaced += _spall_problems(pair, size, reading, f"{path}.{key}" if key else path)
         yield from misplaced
-        if not misplaced:
+        if not misplaced and not through_face:
             yield from _found(pair, _widest_row(pair, damage), path)
 
 
@@ -198,7 +205,7 @@ def _largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) ->
 
 def _found(pair: GearPair, pits: Damage, path: str, remark: str = "") -> list[Problem]:
     return [
-        Problem(path, f"{remark}{_in_mm(problem.received)}", _allowed(problem.allowed))
+        Problem(path, f"{remark}{_in_mm(problem.received)}", _allowed(problem.allowed) + GO_ON.get(problem.name, ""))
         for problem in damage_problems(pair, pits)
     ]
 

@@ -20,8 +20,15 @@ def _faulty_gear(pinion_teeth: list[int], gear_teeth: list[int]) -> str:
     return "gear" if gear_teeth else "none"
 
 
-def damage_labels(state: State, pair: GearPair, damage: Damage, options: StiffnessOptions) -> dict[str, object]:
-    """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses."""
+def damage_labels(
+    state: State, pair: GearPair, damage: Damage, options: StiffnessOptions, sink_depth_m: float = 0.0
+) -> dict[str, object]:
+    """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses.
+
+    mesh_stiffness_loss is by the stiffness model (shorter contact, weaker sections) however the damage acts on the
+    motion, so sets compare. For damage through the face it counts a pair without contact length as one that carries
+    nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage.
+    """
     teeth = {gear: sorted({p.tooth for p in damage if p.gear == gear}) for gear in ("pinion", "gear")}
     summary = damage_summary(pair, damage)
     return {
@@ -38,6 +45,8 @@ def damage_labels(state: State, pair: GearPair, damage: Damage, options: Stiffne
         "damage_profile_length_mm": 1e3 * summary.largest_profile_length_m,
         "contact_length_loss_mm": 1e3 * summary.contact_length_loss_m,
         "mesh_stiffness_loss": largest_stiffness_loss(pair, damage, options),
+        "through_face": summary.through_face,
+        "sink_depth_um": 1e6 * sink_depth_m,
     }
 
 

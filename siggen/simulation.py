@@ -19,10 +19,10 @@ from siggen.errors import SolverFailure
 from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import StiffnessOptions
-from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
+from siggen.specimen_contact import mean_line_load_n_per_m, tooth_tables
 from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
@@ -54,15 +54,18 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     with _limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
-        tables = mesh_tables(pair, damage, options, points=specimen.stiffness.table_points)
-        labels = damage_labels(config.states[state_id], pair, damage, options)
-    with _limits_of("outside_model"):
+        load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
+        lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
+        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
+        labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
+    with _limits_of("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
+        labels |= error_labels(config, errors)
     return SpecimenState(
-        pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels | error_labels(config, errors)
+        pair, options, damage, SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices), labels
     )
 
 

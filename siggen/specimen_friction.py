@@ -18,8 +18,10 @@ LARGEST_FORCE = 10.0
 """End of the table's load axis over the static mesh force; beyond it the coefficient stays."""
 
 
-def specimen_friction(section: Friction, pair: GearPair, point: OperatingPoint) -> FrictionLaw | None:
-    """Return the law of a drawn section, None where friction is off.
+def specimen_friction(
+    section: Friction, pair: GearPair, point: OperatingPoint, *, rough_pits: bool = False
+) -> FrictionLaw | None:
+    """Return the law of a drawn section, None where friction is off; with `rough_pits` it knows the lands in damage.
 
     Raises
     ------
@@ -31,13 +33,13 @@ def specimen_friction(section: Friction, pair: GearPair, point: OperatingPoint) 
         return None
     if section.model == "constant":
         return constant_friction(constant(section.coefficient), slip_speed)
-    mesh = _lubricated(section, pair, point)
-    roughness_m = 1e-6 * constant(section.roughness_um)
-    composite_m = hypot(roughness_m, roughness_m)
+    mesh = lubricated_mesh(section, pair, point)
+    healthy_m, pitted_m = composite_roughness_m(section)
     table = asperity_table(
         mesh,
-        [composite_m],
-        fluid_friction(section.fluid, mesh, composite_m),
+        [healthy_m, pitted_m] if rough_pits else [healthy_m],
+        # The friction of the oil itself stays that of a healthy flank: its formulas end below the roughness of pits.
+        fluid_friction(section.fluid, mesh, healthy_m),
         # Corners touch a little outside the path of contact; half-way to the base circles the radius is still finite.
         (0.5 * pair.contact_start_m, 0.5 * (pair.contact_end_m + pair.line_of_action_m)),
         LARGEST_FORCE * point.torque_nm / pair.pinion.base_radius_m,
@@ -45,7 +47,16 @@ def specimen_friction(section: Friction, pair: GearPair, point: OperatingPoint) 
     return composite_friction(table, constant(section.boundary_coefficient), slip_speed)
 
 
-def _lubricated(section: Friction, pair: GearPair, point: OperatingPoint) -> LubricatedMesh:
+def composite_roughness_m(section: Friction) -> tuple[float, float]:
+    """Return the composite rms roughness of two healthy flanks, and of a healthy one on the lands inside damage [m]."""
+    healthy_m = 1e-6 * constant(section.roughness_um)
+    # Lands inside damage are never smoother than the flank around them.
+    pitted_m = max(1e-6 * constant(section.pit_roughness_um), healthy_m)
+    return hypot(healthy_m, healthy_m), hypot(pitted_m, healthy_m)
+
+
+def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) -> LubricatedMesh:
+    """Return the lubricated pair of a drawn section at an operating point."""
     oil, temperature_c = MINERAL_OILS[section.oil], constant(section.oil_temperature_c)
     speed = 2.0 * pi * point.speed_hz
     return LubricatedMesh(

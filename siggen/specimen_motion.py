@@ -6,17 +6,22 @@ from dataclasses import dataclass
 
 from siggen.config import Dynamics, constant
 from siggen.dataset.specimen import OperatingPoint
+from siggen.dynamics.contact_kinematics import effective_modulus
+from siggen.dynamics.damping import DampingLaw
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.pair_internals import PairContact
 from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.pair_motion import PairMotion
 from siggen.dynamics.response import Motion
+from siggen.dynamics.slice_law import SliceLaw
 from siggen.dynamics.structure import Structure
 from siggen.gears.geometry import GearPair
 from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.tables import MeshTables
-from siggen.specimen_friction import specimen_friction
+from siggen.specimen_contact import damage_is_geometry
+from siggen.specimen_friction import composite_roughness_m, lubricated_mesh, specimen_friction
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +32,7 @@ class SpecimenMesh:
     structure: Structure
     tables: MeshTables
     missing: MissingMaterial
+    slices: SliceLaw | None = None
 
 
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
@@ -56,7 +62,16 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
         speed_hz=point.speed_hz,
         reference_stiffness_n_per_m=mean_mesh_stiffness(mesh.tables),
         step_s=step_s,
+        contact=_contact(dynamics, mesh.pair, point),
     )
+
+
+def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairContact:
+    modulus, friction = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio), dynamics.friction
+    if friction.model != "mixed_ehl":
+        return PairContact(modulus, pair.face_width_m)
+    oil = lubricated_mesh(friction, pair, point)
+    return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(friction))
 
 
 def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
@@ -68,9 +83,21 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
         mesh.tables,
         mesh.missing,
         line_of_action_m=mesh.pair.line_of_action_m,
-        damping_ratio=constant(dynamics.mesh_damping_ratio),
+        damping_ratio=_damping_ratio(dynamics),
         equivalent_mesh_mass_kg=mesh.structure.equivalent_mesh_mass_kg,
         backlash_m=1e-6 * constant(dynamics.backlash_um),
-        friction=specimen_friction(dynamics.friction, mesh.pair, point),
+        friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=damage_is_geometry(dynamics)),
         film=film if section.squeeze_film == "on" else None,
+        slices=mesh.slices,
+    )
+
+
+def _damping_ratio(dynamics: Dynamics) -> float | DampingLaw:
+    section = dynamics.mesh
+    if section.damping == "constant":
+        return constant(dynamics.mesh_damping_ratio)
+    return DampingLaw(
+        structure=constant(section.structure_damping_ratio),
+        film=constant(section.film_damping_ratio),
+        asperities=constant(section.asperity_damping_ratio),
     )

@@ -38,12 +38,13 @@ def plan(
     console = Console()
     console.print(_overview(summary))
     console.print(_states(summary))
-    for note in summary["stiffness_notes"]:
+    for note in (*summary["stiffness_notes"], *summary["lubrication_notes"]):
         console.print(f"note: {note}", highlight=False, markup=False)
 
 
 def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
+    from siggen.contact_notes import contact_notes
     from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen_physics import model_notes
 
@@ -71,6 +72,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "estimated_bytes_on_disk": estimated_bytes(config),
         "stiffness_notes": list(model_notes(config)),
         "manufacture": _manufacture(config),
+        "lubrication_notes": list(contact_notes(config)),
     }
 
 

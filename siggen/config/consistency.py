@@ -90,6 +90,9 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
+    if dynamics.mesh.damping == "asperity_share" and dynamics.friction.model != "mixed_ehl":
+        allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
+        yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
 
 
 def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -98,10 +101,11 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
-    # Slices across the face come with the mesh law; until they do, a misalignment would be a label without an effect.
+    # Without slices across the face a misalignment would be a label without an effect.
     lead = sections["manufacture"].lead_misalignment_um
-    if lead != 0.0:
-        yield Problem("manufacture.lead_misalignment_um", str(lead), "allowed: 0, the mesh law has no slices yet")
+    if lead != 0.0 and sections["dynamics"].mesh.damage == "stiffness":
+        allowed = "allowed: 0 with dynamics.mesh.damage: stiffness, which has no slices across the face"
+        yield Problem("manufacture.lead_misalignment_um", str(lead), allowed)
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:

@@ -30,6 +30,29 @@ class Mesh(Section):
     )
     oil_viscosity_pa_s: Annotated[Number, Within(above=0)] = Field(default=0.112, description="of the squeezed film")
     film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
+    damage: Literal["all", "stiffness", "geometry"] = Field(
+        default="all",
+        description="how pits and spalls act with law: pairs; stiffness: shorter contact and weaker sections, as in "
+        "potential-energy models (paper A); geometry: lands carry, flanks sink where none is left, lands inside damage "
+        "are rough; all: geometry, and weaker sections",
+    )
+    pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
+        default=0.1, description="rounding of the edges of pits and spalls (damage: geometry or all)"
+    )
+    damping: Literal["constant", "asperity_share"] = Field(
+        default="constant",
+        description="constant: mesh_damping_ratio; asperity_share: structure + film (1 - La) + asperities La with the "
+        "asperity share La of friction.model: mixed_ehl",
+    )
+    structure_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.04, description="part of the mesh damping ratio that is always there (damping: asperity_share)"
+    )
+    film_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.02, description="part of the mesh damping ratio in a full oil film (damping: asperity_share)"
+    )
+    asperity_damping_ratio: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.05, description="part of the mesh damping ratio where asperities carry all (damping: asperity_share)"
+    )
 
 
 class Friction(Section):
@@ -59,3 +82,7 @@ class Friction(Section):
         default=0.4, description="rms roughness of either flank (mixed_ehl)"
     )
     hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")
+    pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
+        default=2.0,
+        description="rms roughness of a flank's lands inside damage (mixed_ehl; mesh.damage: geometry or all)",
+    )

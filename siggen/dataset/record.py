@@ -95,6 +95,8 @@ LABEL_COLUMNS = (
     Column("mesh_stiffness_loss", pa.float64(), "", "largest relative loss of mesh stiffness against healthy"),
     Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact"),
     Column("status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows"),
+    Column("through_face", pa.bool_(), "", "whether damage takes the whole contact length somewhere"),
+    Column("sink_depth_um", pa.float64(), "um", "how far the mating flank sinks at most; 0 where lands carry"),
 )
 OPERATING_COLUMNS = (
     Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion"),

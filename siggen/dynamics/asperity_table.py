@@ -126,18 +126,41 @@ def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: 
     Both in one call, since finding the cell costs more than the values.
     """
     positions, loads = table.fluid.shape
-    along = min(max((position_m - table.start_m) * table.per_m, 0.0), positions - 1.0)
-    held = table.start_m + along / table.per_m
-    load = force_n * table.line_m / (table.floor_n_per_m * held * (table.line_m - held))
-    up = min(np.log(max(load, 1.0)) * table.per_log, loads - 1.0)
+    i, j, a, b = contact_cell(
+        positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log, position_m,
+        force_n,
+    )  # fmt: skip
+    ratio = cell_value(table.ratio[layer].reshape(-1), i * loads + j, loads, a, b)
+    return min(ratio, 1.0), cell_value(table.fluid.reshape(-1), i * loads + j, loads, a, b)
+
+
+@njit(cache=True)
+def contact_cell(
+    positions: int,
+    loads: int,
+    line_m: float,
+    start_m: float,
+    per_m: float,
+    floor_n_per_m: float,
+    per_log: float,
+    position_m: float,
+    force_n: float,
+) -> tuple[int, int, float, float]:
+    """Return the cell of a position and a force in a table, and the weights of its upper ends, clamped to the table."""
+    along = min(max((position_m - start_m) * per_m, 0.0), positions - 1.0)
+    held = start_m + along / per_m
+    load = force_n * line_m / (floor_n_per_m * held * (line_m - held))
+    up = min(np.log(max(load, 1.0)) * per_log, loads - 1.0)
     i, j = min(int(along), positions - 2), min(int(up), loads - 2)
-    a, b = along - i, up - j
-    ratio, fluid = table.ratio, table.fluid
-    low = ratio[layer, i, j] * (1.0 - a) + ratio[layer, i + 1, j] * a
-    high = ratio[layer, i, j + 1] * (1.0 - a) + ratio[layer, i + 1, j + 1] * a
-    below = fluid[i, j] * (1.0 - a) + fluid[i + 1, j] * a
-    above = fluid[i, j + 1] * (1.0 - a) + fluid[i + 1, j + 1] * a
-    return min(low * (1.0 - b) + high * b, 1.0), below * (1.0 - b) + above * b
+    return i, j, along - i, up - j
+
+
+@njit(cache=True)
+def cell_value(values: FloatArray, first: int, loads: int, a: float, b: float) -> float:
+    """Return the value in a cell of a table in row order whose lower corner is `first`, bilinear in the weights."""
+    low = values[first] * (1.0 - a) + values[first + loads] * a
+    high = values[first + 1] * (1.0 - a) + values[first + loads + 1] * a
+    return low * (1.0 - b) + high * b
 
 
 @njit(cache=True)

@@ -38,9 +38,9 @@ class FilmGroups(NamedTuple):
 
     load: Values
     speed: Values
-    material: float
+    material: Values
     roughness: Values
-    hardness: float
+    hardness: Values
     radius_m: Values
 
 

@@ -1,16 +1,19 @@
 """PairLaw: the mesh force as a sum over tooth pairs, each with its own stiffness, missing material and friction.
 
-Equations (reference: standard literature; load sharing and friction as paper B names them: Luo, Baddour, Liang, MSSP
-119 (2019) 155-181): with the approach x along the line of action and d_n = x - e_n
+Equations (reference: standard literature; load sharing, friction and contact of pitted flanks as paper B names them:
+Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the line of action and d_n = x - e_n
 
-    drive flank, d_n > 0:          N_n = max(0, k_n d_n + c_n ẋ)
-    back flank, x - e_p < -j:      N_n = min(0, k_n (x - e_p + j) + c_n ẋ)      e_p: place of the teeth alone
-    c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch (Kasuba and Evans 1981: constant ratio)
+    drive flank:                   N_n = max(0, f_n(p_n) + c_n ẋ) where f_n(p_n) > 0,   p_n = d_n - Σ_m c_nm N_m
+    back flank, x - e_p < -j:      N_n = min(0, k_n p_n + c_n ẋ),  d_n = x - e_p + j     e_p: place of the teeth alone
+    c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
     F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
 
-Between flanks that approach without touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders,
-iso-viscous; derived). Positions are in base pitches, as in `mesh_force`; outside the path of contact the stiffness is
-that of its end. Load sharing is N_n/ΣN and needs no formula of its own.
+f_n(p) = k_n p, or the force of slices across pitted flanks (`slice_law`). c_nm is the deflection at one pair per unit
+force at another, through the gear bodies that they share; 0 without coupling. Between flanks that approach without
+touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders, iso-viscous; derived); its force
+jumps where the flanks touch, from that of the thinnest film to the mesh damper's, since a film in closed contact is as
+good as rigid. Positions are in base pitches, as in `mesh_force`; outside the path of contact the stiffness is that of
+its end. Load sharing is N_n/ΣN and needs no formula of its own.
 """
 
 from __future__ import annotations
@@ -19,49 +22,76 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.friction import FrictionLaw, constant_friction, friction_force
-from siggen.dynamics.mesh_force import read_only
+from siggen.dynamics.friction import FrictionLaw
+from siggen.dynamics.packed_tables import PackedTables
 
 if TYPE_CHECKING:
+    from siggen.dynamics.damping import DampingLaw
+    from siggen.dynamics.slice_law import SliceLaw
     from siggen.gears.missing_material import MissingMaterial
     from siggen.gears.tables import MeshTables
 
 FloatArray = NDArray[np.float64]
 
-NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK = range(7)
-"""Columns of the table of pairs: forces [N], penetration [m], stiffness [N/m], sliding speed [m/s], position s [m], and
-+1, -1, 0 for the drive flank, the back flank and no contact."""
-COLUMNS = 7
+(
+    CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
+    BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
+    LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG,
+) = range(23)  # fmt: skip
+"""Places of single numbers in `PairLaw.scalars`."""
+SCALARS = 23
+
+(
+    TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
+    SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
+    ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT,
+) = range(26)  # fmt: skip
+"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction)
+and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
+HEAD = 26
 
 
 class PairLaw(NamedTuple):
-    """All that the compiled pair law needs (a named tuple, since compiled code takes no dataclass)."""
+    """All that the compiled pair law needs, in three arrays (see `packed_tables` for the reason).
 
-    stiffness: FloatArray  # (tables, points) over the path of contact
-    table_of_pair: NDArray[np.int32]  # (z_1, z_2)
-    contact_ratio: float
-    intervals_per_pitch: float
-    missing_1: FloatArray  # (kinds, points) over the path of contact and the reach of the corners
-    kind_of_tooth_1: NDArray[np.int32]  # (z_1,)
-    offset_1: FloatArray  # (z_1,)
-    missing_2: FloatArray
-    kind_of_tooth_2: NDArray[np.int32]
-    offset_2: FloatArray
-    missing_intervals_per_pitch: float
-    reach_before: float
-    reach_after: float
-    start_m: float
-    base_pitch_m: float
-    line_of_action_m: float
-    damping_root_kg: float  # 2 ζ √m_e, in √kg
-    backlash_m: float
-    film_n_s_per_m: float  # 12 π η L, 0 without a film
-    film_floor_m: float
-    rubs: bool
-    friction: FrictionLaw
+    `scalars` (SCALARS,), `numbers` (k,) all tables in a row, `places` (k,) where they begin and the teeth's rows.
+    """
+
+    scalars: FloatArray
+    numbers: FloatArray
+    places: NDArray[np.int64]
+
+    @property
+    def teeth(self) -> int:
+        """Teeth of the pinion."""
+        return int(self.places[TEETH_1])
+
+    @property
+    def slots(self) -> int:
+        """How many pairs can be in reach at once; pair n has slot n mod slots during its whole engagement."""
+        return int(np.floor(self.scalars[REACH_BEFORE] + self.scalars[CONTACT_RATIO] + self.scalars[REACH_AFTER])) + 1
+
+    @property
+    def base_pitch_m(self) -> float:
+        """Distance of neighbouring pairs [m]."""
+        return float(self.scalars[PITCH_M])
+
+    @property
+    def line_of_action_m(self) -> float:
+        """Length T of the line of action [m]."""
+        return float(self.scalars[LINE_M])
+
+    @property
+    def backlash_m(self) -> float:
+        """Total normal backlash [m]."""
+        return float(self.scalars[BACKLASH_M])
+
+    @property
+    def damping_root_kg(self) -> float:
+        """2 ζ √m_e in √kg; where the ratio depends on the lubrication, of its part that is always there."""
+        return float(self.scalars[DAMPING_ROOT])
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,175 +108,144 @@ def pair_law(
     missing: MissingMaterial,
     *,
     line_of_action_m: float,
-    damping_ratio: float,
+    damping_ratio: float | DampingLaw,
     equivalent_mesh_mass_kg: float,
     backlash_m: float,
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
+    slices: SliceLaw | None = None,
+    coupling_m_per_n: FloatArray | None = None,
 ) -> PairLaw:
     """Return the law of these tables.
+
+    Parameters
+    ----------
+    tables : MeshTables
+        Stiffness of single pairs; with slices, of pairs whose whole face is in contact (`slice_tables`).
+    missing : MissingMaterial
+    line_of_action_m, equivalent_mesh_mass_kg, backlash_m : float
+    damping_ratio : float or DampingLaw
+        ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
+    friction, film : FrictionLaw, SqueezeFilm or None
+    slices : SliceLaw or None
+        On the grid of `tables`: forces of pitted or misaligned flanks.
+    coupling_m_per_n : (apart, points) or None
+        Deflection at one pair per unit force at the pair a + 1 base pitches away, over the position of the pair that
+        entered later, on the grid of `tables` [m/N].
 
     Raises
     ------
     ValueError
-        If damping, backlash or film are negative or not finite, or the missing material does not cover the
-        path of contact.
+        If a number is negative or not finite, or tables do not fit together.
     """
-    numbers = {"damping_ratio": damping_ratio, "backlash_m": backlash_m}
+    _check(tables, missing, damping_ratio, backlash_m, film)
+    packed = PackedTables(HEAD)
+    scalars = np.zeros(SCALARS)
+    pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
+    points, missing_points = tables.pair_stiffness_n_per_m.shape[1], missing.pinion.profile_m.shape[1]
+    scalars[CONTACT_RATIO], scalars[PER_PITCH] = ratio, (points - 1) / ratio
+    scalars[MISSING_PER_PITCH] = (missing_points - 1) * pitch / (missing.end_m - missing.start_m)
+    scalars[REACH_BEFORE] = max(0.0, (tables.start_m - missing.start_m) / pitch)
+    scalars[REACH_AFTER] = max(0.0, (missing.end_m - tables.end_m) / pitch)
+    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, line_of_action_m
+    scalars[BACKLASH_M] = backlash_m
+    scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
+    scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
+    _pack_teeth(packed, tables, missing)
+    if slices is not None:
+        _pack_slices(packed, scalars, slices, tables)
+    if coupling_m_per_n is not None:
+        _pack_coupling(packed, coupling_m_per_n, points)
+    if friction is not None:
+        _pack_friction(packed, scalars, friction)
+    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(equivalent_mesh_mass_kg)))
+    scalars.setflags(write=False)
+    return PairLaw(scalars, packed.numbers, packed.index)
+
+
+def _check(
+    tables: MeshTables,
+    missing: MissingMaterial,
+    damping_ratio: float | DampingLaw,
+    backlash_m: float,
+    film: SqueezeFilm | None,
+) -> None:
+    ratios = (damping_ratio,) if isinstance(damping_ratio, (int, float)) else tuple(damping_ratio)
+    numbers = [("damping_ratio", value) for value in ratios] + [("backlash_m", backlash_m)]
     if film is not None:
-        numbers |= {"film viscosity_pa_s": film.viscosity_pa_s}
-    for name, value in numbers.items():
+        numbers += [("film viscosity_pa_s", film.viscosity_pa_s)]
+    for name, value in numbers:
         if not (np.isfinite(value) and value >= 0.0):
             raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
-    pitch = tables.base_pitch_m
-    before, after = (tables.start_m - missing.start_m) / pitch, (missing.end_m - tables.end_m) / pitch
-    if min(before, after) < -1e-9:
+    if min(tables.start_m - missing.start_m, missing.end_m - tables.end_m) < -1e-9 * tables.base_pitch_m:
         raise ValueError(
             f"missing material: received tables from {missing.start_m} m to {missing.end_m} m; allowed are tables "
             f"from {tables.start_m} m or before to {tables.end_m} m or after"
         )
-    stiffness = read_only(tables.pair_stiffness_n_per_m, np.float64)
-    ratio = (tables.end_m - tables.start_m) / pitch
-    return PairLaw(
-        stiffness=stiffness,
-        table_of_pair=read_only(tables.table_of_pair, np.int32),
-        contact_ratio=float(ratio),
-        intervals_per_pitch=float((stiffness.shape[1] - 1) / ratio),
-        missing_1=read_only(missing.pinion.profile_m, np.float64),
-        kind_of_tooth_1=read_only(missing.pinion.kind_of_tooth, np.int32),
-        offset_1=read_only(missing.pinion.offset_m, np.float64),
-        missing_2=read_only(missing.gear.profile_m, np.float64),
-        kind_of_tooth_2=read_only(missing.gear.kind_of_tooth, np.int32),
-        offset_2=read_only(missing.gear.offset_m, np.float64),
-        missing_intervals_per_pitch=float(
-            (missing.pinion.profile_m.shape[1] - 1) * pitch / (missing.end_m - missing.start_m)
-        ),
-        reach_before=max(0.0, float(before)),
-        reach_after=max(0.0, float(after)),
-        start_m=float(tables.start_m),
-        base_pitch_m=float(pitch),
-        line_of_action_m=float(line_of_action_m),
-        damping_root_kg=2.0 * float(damping_ratio) * float(np.sqrt(equivalent_mesh_mass_kg)),
-        backlash_m=float(backlash_m),
-        film_n_s_per_m=0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m,
-        film_floor_m=1.0 if film is None else film.floor_m,
-        rubs=friction is not None,
-        friction=constant_friction(0.0) if friction is None else friction,
-    )
 
 
-def pair_slots(law: PairLaw) -> int:
-    """Return how many pairs can be in reach at once; pair n has slot n mod slots during its whole engagement."""
-    return int(np.floor(law.reach_before + law.contact_ratio + law.reach_after)) + 1
+def _pack_teeth(packed: PackedTables, tables: MeshTables, missing: MissingMaterial) -> None:
+    packed.head(TEETH_1, tables.table_of_pair.shape[0])
+    packed.head(TEETH_2, tables.table_of_pair.shape[1])
+    packed.head(POINTS, tables.pair_stiffness_n_per_m.shape[1])
+    packed.head(MISSING_POINTS, missing.pinion.profile_m.shape[1])
+    packed.add(STIFFNESS_AT, tables.pair_stiffness_n_per_m)
+    packed.add_index(TABLE_AT, tables.table_of_pair)
+    places = ((MISSING_1_AT, OFFSET_1_AT, KIND_1_AT), (MISSING_2_AT, OFFSET_2_AT, KIND_2_AT))
+    for (profile, offset, kind), teeth in zip(places, (missing.pinion, missing.gear), strict=True):
+        packed.add(profile, teeth.profile_m)
+        packed.add(offset, teeth.offset_m)
+        packed.add_index(kind, teeth.kind_of_tooth)
 
 
-@njit(cache=True)
-def _linear(table: FloatArray, row: int, place: float) -> float:
-    """Return the value of a row `place` intervals from its first point, linear between points, kept beyond its ends."""
-    place = min(max(place, 0.0), table.shape[1] - 1.0)
-    index = min(int(place), table.shape[1] - 2)
-    share = place - index
-    return table[row, index] * (1.0 - share) + table[row, index + 1] * share
+def _pack_slices(packed: PackedTables, scalars: FloatArray, slices: SliceLaw, tables: MeshTables) -> None:
+    if slices.stiffness_n_per_m.shape != tables.pair_stiffness_n_per_m.shape:
+        raise ValueError(
+            f"slices: received tables of shape {slices.stiffness_n_per_m.shape}; allowed are those of the stiffness, "
+            f"{tables.pair_stiffness_n_per_m.shape}"
+        )
+    packed.head(GROUPS, slices.sink_m.shape[2])
+    for place, values in (
+        (SINK_AT, slices.sink_m), (FLUSH_AT, slices.flush), (LAND_AT, slices.land), (ON_DAMAGE_AT, slices.on_damage),
+        (CONTACT_AT, slices.contact_n_per_m),
+    ):  # fmt: skip
+        packed.add(place, values)
+    scalars[LEAD_M] = slices.lead_m
 
 
-@njit(cache=True)
-def _find_contacts(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
-    """Write stiffness, position, penetration and flank of the pairs in reach; return Σk of those that touch."""
-    pairs[:] = 0.0
-    touching = 0.0
-    pair = int(np.floor(pitches + law.reach_before))
-    while pitches - pair < law.contact_ratio + law.reach_after:
-        place = pitches - pair
-        tooth_1, tooth_2 = pair % law.kind_of_tooth_1.size, pair % law.kind_of_tooth_2.size
-        k = _linear(law.stiffness, law.table_of_pair[tooth_1, tooth_2], place * law.intervals_per_pitch)
-        at = (place + law.reach_before) * law.missing_intervals_per_pitch
-        offset = law.offset_1[tooth_1] + law.offset_2[tooth_2]
-        missing = _linear(law.missing_1, law.kind_of_tooth_1[tooth_1], at)
-        missing += _linear(law.missing_2, law.kind_of_tooth_2[tooth_2], at)
-        row = pairs[pair % pairs.shape[0]]
-        row[STIFFNESS] = k
-        row[POSITION] = law.start_m + place * law.base_pitch_m
-        row[PENETRATION] = approach_m - offset - missing
-        if row[PENETRATION] > 0.0:
-            row[FLANK] = 1.0
-            touching += k
-        elif approach_m - offset < -law.backlash_m:
-            row[FLANK] = -1.0
-            row[PENETRATION] = approach_m - offset + law.backlash_m
-            touching += k
-        pair -= 1
-    return touching
+def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:
+    table = np.asarray(coupling_m_per_n, dtype=np.float64)
+    if table.ndim != 2 or table.shape[1] != points or not np.isfinite(table).all():
+        raise ValueError(
+            f"coupling_m_per_n: received shape {table.shape}; allowed are finite tables of shape (apart, {points})"
+        )
+    packed.head(APART, table.shape[0])
+    packed.add(COUPLING_AT, table)
 
 
-@njit(cache=True)
-def _film_force(law: PairLaw, position_m: float, gap_m: float, rate_m_s: float) -> float:
-    """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
-    place = (position_m - law.start_m) / law.base_pitch_m
-    if rate_m_s <= 0.0 or place < 0.0 or place > law.contact_ratio:
-        return 0.0
-    curvature_m = position_m * (law.line_of_action_m - position_m) / law.line_of_action_m
-    return law.film_n_s_per_m * (0.5 * curvature_m / max(gap_m, law.film_floor_m)) ** 1.5 * rate_m_s
+def _pack_friction(packed: PackedTables, scalars: FloatArray, friction: FrictionLaw) -> None:
+    table = friction.table
+    packed.head(ROUGHNESSES, table.ratio.shape[0])
+    packed.head(LUBRICATED_POSITIONS, table.fluid.shape[0])
+    packed.head(LUBRICATED_LOADS, table.fluid.shape[1])
+    packed.add(RATIO_AT, table.ratio)
+    packed.add(FLUID_AT, table.fluid)
+    scalars[SLIP_SPEED], scalars[BOUNDARY] = friction.slip_speed_m_s, friction.boundary
+    scalars[LUBRICATED_LINE], scalars[LUBRICATED_START] = table.line_m, table.start_m
+    scalars[LUBRICATED_PER_M], scalars[LUBRICATED_FLOOR] = table.per_m, table.floor_n_per_m
+    scalars[LUBRICATED_PER_LOG] = table.per_log
 
 
-@njit(cache=True)
-def pair_forces(
-    law: PairLaw,
-    approach_m: float,
-    rate_m_s: float,
-    pitches: float,
-    sliding_0_m_s: float,
-    sliding_1_per_s: float,
-    pairs: FloatArray,
-) -> None:
-    """Write the forces of all pairs into `pairs` (slots, COLUMNS); sliding speed at s: sliding_0 + s sliding_1."""
-    touching = _find_contacts(law, approach_m, pitches, pairs)
-    damping = law.damping_root_kg / np.sqrt(touching) if touching > 0.0 else 0.0
-    for i in range(pairs.shape[0]):
-        row = pairs[i]
-        if row[STIFFNESS] == 0.0:
-            continue
-        row[SLIDING] = sliding_0_m_s + row[POSITION] * sliding_1_per_s
-        if row[FLANK] == 0.0:
-            if law.film_n_s_per_m > 0.0:
-                row[NORMAL] = _film_force(law, row[POSITION], -row[PENETRATION], rate_m_s)
-            continue
-        force = row[STIFFNESS] * (row[PENETRATION] + damping * rate_m_s)
-        if row[FLANK] > 0.0:
-            row[NORMAL] = max(0.0, force)
-            if law.rubs:
-                row[FRICTION] = friction_force(law.friction, 0, row[POSITION], row[NORMAL], row[SLIDING])
-        else:
-            row[NORMAL] = min(0.0, force)
-
-
-@njit(cache=True)
-def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
-    """Return ΣN [N] at rest."""
-    pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)
-    total = 0.0
-    for i in range(pairs.shape[0]):
-        total += pairs[i, NORMAL]
-    return total
-
-
-def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
-    """Return the approach [m] at which the pairs carry a force [N] at rest; negative on the back flank.
-
-    Raises
-    ------
-    ValueError
-        If not even a penetration of a tenth of a base pitch carries it.
-    """
-    pairs = np.empty((pair_slots(law), COLUMNS))
-    reach = 0.1 * law.base_pitch_m
-    low, high = -law.backlash_m - reach, reach
-    if not static_force(law, low, pitches, pairs) <= force_n <= static_force(law, high, pitches, pairs):
-        raise ValueError(f"force_n: received {force_n}; allowed are forces that teeth carry within {reach:.3g} m")
-    # Monotone, so halving always ends; 80 halvings of 2 mm are below the rounding of a nanometre.
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        if static_force(law, middle, pitches, pairs) < force_n:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
+def _pack_damping(packed: PackedTables, scalars: FloatArray, ratio: float | DampingLaw, root: float) -> None:
+    """Write 2 ζ √m_e, or its three parts."""
+    if isinstance(ratio, (int, float)):
+        scalars[DAMPING_ROOT] = 2.0 * float(ratio) * root
+        return
+    if packed.index[ROUGHNESSES] == 0:
+        raise ValueError(
+            "damping_ratio: received parts by asperity share without friction; allowed: with a table of it"
+        )
+    packed.head(SHARE_DAMPS, 1)
+    scalars[DAMPING_STRUCTURE], scalars[DAMPING_FILM] = 2.0 * ratio.structure * root, 2.0 * ratio.film * root
+    scalars[DAMPING_ASPERITIES] = 2.0 * ratio.asperities * root
+    scalars[DAMPING_ROOT] = scalars[DAMPING_STRUCTURE] + 0.5 * (scalars[DAMPING_FILM] + scalars[DAMPING_ASPERITIES])

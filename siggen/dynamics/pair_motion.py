@@ -12,49 +12,31 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, approach_of, equations_about, inverse_times, static_solution
-from siggen.dynamics.pair_law import (
-    COLUMNS,
-    FLANK,
-    FRICTION,
-    NORMAL,
-    POSITION,
-    SLIDING,
-    STIFFNESS,
-    PairLaw,
-    pair_forces,
-    pair_slots,
-    static_approach_m,
-)
+from siggen.dynamics.equations import Equations, equations_about, inverse_times, static_solution
+from siggen.dynamics.pair_forces import static_approach_m, write_forces
+from siggen.dynamics.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.dynamics.pair_law import PairLaw
+from siggen.dynamics.pair_places import FLANK, FRICTION, NORMAL, POSITION, pair_table
 from siggen.dynamics.runge_kutta import runge_kutta_step
 from siggen.dynamics.structure import Structure, vector
 from siggen.dynamics.transient import transient_s
 
 FloatArray = NDArray[np.float64]
 
-SUMS = (
-    "mesh_force_n",
-    "mesh_stiffness_n_per_m",
-    "mesh_damping_n_s_per_m",
-    "approach_m",
-    "approach_rate_m_s",
-    "friction_force_n",
-    "friction_moment_pinion_nm",
-    "friction_moment_gear_nm",
-)
-PER_PAIR = ("force_n", "load_share", "friction_n", "sliding_m_s", "position_m")
+MOTION = ("approach_m", "approach_rate_m_s")
 
 
 class PairEquations(NamedTuple):
-    """Linear equations of motion and how sliding enters them.
+    """Constant numbers of the equations of motion and how sliding enters them.
 
-    `sliding_vectors`, `sliding_input` (2, n): r and M⁻¹ r; `rigid_sliding_0`, `rigid_sliding_1`: sliding speed at s of
-    the rigid rotation is the first plus s times the second [m/s, 1/s].
+    `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
+    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
+    `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s].
     """
 
-    linear: Equations
-    sliding_vectors: FloatArray
-    sliding_input: FloatArray
+    rows: FloatArray
+    static_force: float
+    static_approach: float
     rigid_sliding_0: float
     rigid_sliding_1: float
 
@@ -71,18 +53,20 @@ class PairMotion:
         speed_hz: float,
         reference_stiffness_n_per_m: float,
         step_s: float,
+        contact: PairContact | None = None,
     ) -> None:
         self.structure = structure
         self.law = law
+        self.contact = contact
         self.equations = equations_about(structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m)
         self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
         damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
         self.transient_s = transient_s(structure, self.equations, damping)
-        self.teeth = law.kind_of_tooth_1.size
+        self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
         self.base_pitch_m = law.base_pitch_m
-        self.internal_names = _names(structure, pair_slots(law))
-        self._pairs = np.zeros((pair_slots(law), COLUMNS))
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *_names(structure))
+        self._pairs = pair_table(law)
         self._step_s = step_s
 
     def start(self, pitches: float) -> FloatArray:
@@ -111,39 +95,27 @@ class PairMotion:
 
     def pairs(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
         """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`."""
-        result = np.empty((len(states), *self._pairs.shape))
+        result = np.stack([pair_table(self.law)] * len(states))
         _all_pairs(self.pair_equations, self.law, states, pitches, result)
         return result
 
     def internals(self, states: FloatArray, pitches: FloatArray) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         n = self.equations.mesh_vector.size
-        pairs = self.pairs(states, pitches)
-        normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, POSITION))
-        total = normal.sum(axis=1)
-        stiffness = np.where(pairs[:, :, FLANK] != 0.0, pairs[:, :, STIFFNESS], 0.0).sum(axis=1)
-        sums = [
-            total,
-            stiffness,
-            self.law.damping_root_kg * np.sqrt(stiffness),
+        found = pair_internals(self.pairs(states, pitches), self.law.line_of_action_m, self.contact)
+        approach = [
             self.equations.static_approach + (states[:, :n] * self.equations.mesh_vector).sum(axis=1),
             (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
-            friction.sum(axis=1),
-            (position * friction).sum(axis=1),
-            ((self.law.line_of_action_m - position) * friction).sum(axis=1),
         ]
-        share = normal / np.where(total == 0.0, 1.0, total)[:, None]
-        single = np.stack([normal, share, friction, pairs[:, :, SLIDING], position], axis=2)
         moved = states[:, :n] + self.equations.static_deflection
-        return np.concatenate([np.stack(sums, axis=1), single.reshape(len(states), -1), moved], axis=1)
+        return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
 
-def _names(structure: Structure, slots: int) -> tuple[str, ...]:
-    """Return the names of the internals; pair n of an engagement has the number n mod slots."""
-    pairs = tuple(f"pair_{slot}_{name}" for slot in range(slots) for name in PER_PAIR)
+def _names(structure: Structure) -> tuple[str, ...]:
+    """Return the names of the coordinates with their units."""
     units = {True: "rad", False: "m"}
     turning = ("theta", "phi")
-    return (*SUMS, *pairs, *(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates))
+    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates)
 
 
 def _pair_equations(structure: Structure, equations: Equations, speed_hz: float) -> PairEquations:
@@ -151,22 +123,34 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
     p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
     rolling = {"theta_1": 1.0, "theta_2": -p["theta_1"] / p["theta_2"]}
     rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
-    inputs = np.ascontiguousarray(inverse_times(structure.mass, structure.sliding_vectors.T).T)
-    return PairEquations(equations, np.array(structure.sliding_vectors), inputs, float(rigid[0]), float(rigid[1]))
+    inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
+    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
+    parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
+    return PairEquations(
+        np.ascontiguousarray(np.concatenate(parts)),
+        equations.static_force,
+        equations.static_approach,
+        float(rigid[0]),
+        float(rigid[1]),
+    )
 
 
-@njit(cache=True)
+# Inlined: taking arrays out of tuples again and again costs as much as the forces (see `packed_tables`).
+@njit(cache=True, inline="always")
 def _load_pairs(
     equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
 ) -> tuple[float, float, float]:
     """Write the table of pairs of a state; return ΣN, ΣF and Σ s F."""
-    n = equations.linear.mesh_vector.size
-    approach, approach_rate = approach_of(equations.linear, state)
+    rows = equations.rows
+    n = rows.shape[1]
+    approach, approach_rate = equations.static_approach, 0.0
     sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
     for i in range(n):
-        sliding_0 += equations.sliding_vectors[0, i] * state[n + i]
-        sliding_1 += equations.sliding_vectors[1, i] * state[n + i]
-    pair_forces(law, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
+        approach += rows[2 * n, i] * state[i]
+        approach_rate += rows[2 * n, i] * state[n + i]
+        sliding_0 += rows[2 * n + 1, i] * state[n + i]
+        sliding_1 += rows[2 * n + 2, i] * state[n + i]
+    write_forces(law.scalars, law.numbers, law.places, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
     normal, friction, moment = 0.0, 0.0, 0.0
     for i in range(pairs.shape[0]):
         normal += pairs[i, NORMAL]
@@ -175,23 +159,23 @@ def _load_pairs(
     return normal, friction, moment
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def pair_rate(
     model: tuple[PairEquations, PairLaw, FloatArray], state: FloatArray, pitches: float, rate: FloatArray
 ) -> None:
     """Write ż (2n,) of a state into `rate`; the form that integrators call."""
     equations, law, pairs = model
-    linear = equations.linear
-    n = linear.mesh_vector.size
     normal, friction, moment = _load_pairs(equations, law, pairs, state, pitches)
-    excess = normal - linear.static_force
+    excess = normal - equations.static_force
+    rows = equations.rows
+    n = rows.shape[1]
     for i in range(n):
         rate[i] = state[n + i]
-        total = -linear.mesh_input[i] * excess
-        total -= equations.sliding_input[0, i] * friction + equations.sliding_input[1, i] * moment
-        for j in range(n):
-            total -= linear.stiffness_by_mass[i, j] * state[j] + linear.damping_by_mass[i, j] * state[n + j]
-        rate[n + i] = total
+        rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
+    # Column by column, so that the inner loop has no sum to carry and runs on several rates at once.
+    for j in range(2 * n):
+        for i in range(n):
+            rate[n + i] += rows[j, i] * state[j]
 
 
 @njit(cache=True)

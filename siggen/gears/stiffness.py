@@ -76,6 +76,8 @@ def contact_compliance(
     pinion_pits: Iterable[Pit | Spall] = (),
     gear_pits: Iterable[Pit | Spall] = (),
     options: StiffnessOptions = LINEAR,
+    *,
+    through_face: bool = False,
 ) -> FloatArray:
     """Return 1/k_h of a tooth pair at contact positions (k,) [m/N].
 
@@ -90,11 +92,13 @@ def contact_compliance(
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
     options : StiffnessOptions
         Contact law and its force; the tooth's options are not read.
+    through_face : bool
+        Whether a contact may lose its whole length; its compliance is infinite there.
 
     Raises
     ------
     ValueError
-        If a position is off the path of contact or the whole contact length is lost.
+        If a position is off the path of contact, or the whole contact length is lost where that is not allowed.
 
     Source: `siggen.gears.hertz`; the remaining length as contact length: paper A, section 2.2.
     """
@@ -109,11 +113,12 @@ def contact_compliance(
         height_gear = involute.heights(roll_gear, gear.base_radius_m, gear.base_half_angle_rad)
         lost = lengths_covered(height_pinion, rows_pinion, height_gear, rows_gear, width)
         worst = float(np.max(lost, initial=0.0))
-        if worst >= width * (1.0 - WHOLE_FACE):
+        if worst >= width * (1.0 - WHOLE_FACE) and not through_face:
             raise ValueError(
                 f"pits take {worst:.6g} m of contact length; allowed: less than the face width {width:.6g} m"
             )
-    return _law(pair, position, width - lost, options)
+    open_face = lost >= width * (1.0 - WHOLE_FACE)
+    return np.where(open_face, np.inf, _law(pair, position, np.where(open_face, width, width - lost), options))
 
 
 def _law(pair: GearPair, position_m: FloatArray, length_m: FloatArray, options: StiffnessOptions) -> FloatArray:

@@ -78,7 +78,7 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
         step_m=(pair.contact_end_m - pair.contact_start_m) / (points - 1),
         base_pitch_m=pair.base_pitch_m,
         pair_stiffness_n_per_m=kind_stiffness(pair, damage, options, kinds, position),
-        table_of_pair=_table_of_pair(pair, kinds),
+        table_of_pair=table_of_pair(pair, kinds),
     )
 
 
@@ -105,6 +105,8 @@ def kind_stiffness(
     options: StiffnessOptions,
     kinds: tuple[tuple[int, int], ...],
     position_m: FloatArray,
+    *,
+    through_face: bool = False,
 ) -> FloatArray:
     """Return the pair stiffness of each kind at positions (k,), (kinds, k) [N/m].
 
@@ -117,11 +119,13 @@ def kind_stiffness(
         Pinion tooth and gear tooth of each kind, HEALTHY for any undamaged one.
     position_m : (k,)
         Contact positions on the path of contact, in any order [m].
+    through_face : bool
+        Whether pits may leave no contact; the pair's stiffness is 0 there.
 
     Raises
     ------
     ValueError
-        If a position is off the path of contact, or pits leave no contact or no section.
+        If a position is off the path of contact, or pits leave no section, or no contact where that is not allowed.
     """
     rolls = dict(zip(("pinion", "gear"), rolls_at(pair, position_m), strict=True))
     tooth: dict[tuple[str, int], FloatArray] = {}
@@ -132,12 +136,13 @@ def kind_stiffness(
     out = np.empty((len(kinds), position_m.size))
     for row, (first, second) in enumerate(kinds):
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits, options)
+        contact = contact_compliance(pair, position_m, pinion_pits, gear_pits, options, through_face=through_face)
         out[row] = 1.0 / (contact + tooth["pinion", first] + tooth["gear", second])
     return out
 
 
-def _table_of_pair(pair: GearPair, kinds: tuple[tuple[int, int], ...]) -> NDArray[np.int32]:
+def table_of_pair(pair: GearPair, kinds: tuple[tuple[int, int], ...]) -> NDArray[np.int32]:
+    """Return the row (z1, z2) of `kinds` (see `pair_kinds`) for every pair of teeth."""
     table = np.zeros((pair.pinion.teeth, pair.gear.teeth), dtype=np.int32)
     # Kinds with two damaged teeth come last and overwrite the rows of the single ones.
     for row, (first, second) in enumerate(kinds):
@@ -164,17 +169,18 @@ def largest_stiffness_loss(pair: GearPair, damage: Damage, options: StiffnessOpt
 
     Derived: the newest pair's position covers one base pitch while older pairs follow one pitch ahead each; every
     sequence of kinds of pairs that occurs is searched on a grid with pit centres, pits' ends and zone edges, and the
-    highest peaks are refined.
+    highest peaks are refined. A pair whose contact loses its whole length carries nothing, so damage through the face
+    loses 1 where it is the only pair, and the pair's share of the mesh where another one is in contact.
 
     Raises
     ------
     ValueError
-        If a damaged tooth does not exist, or pits leave no contact or no section.
+        If a damaged tooth does not exist, or pits leave no section.
     """
     if not damage:
         return 0.0
     kinds = pair_kinds(pair, damage)
-    sequences = _sequences(pair, _table_of_pair(pair, kinds))
+    sequences = _sequences(pair, table_of_pair(pair, kinds))
     grid = _newest_positions(pair, damage)
     for _ in range(5):
         losses = np.max(_losses(pair, damage, options, kinds, sequences, grid), axis=0)
@@ -234,7 +240,7 @@ def _losses(
         inside = position <= pair.contact_end_m
         if not np.any(inside):
             continue
-        stiffness = kind_stiffness(pair, damage, options, kinds, position[inside])
+        stiffness = kind_stiffness(pair, damage, options, kinds, position[inside], through_face=True)
         healthy[inside] += stiffness[0]
         damaged[:, inside] += stiffness[sequences[:, older]]
     return 1.0 - damaged / healthy

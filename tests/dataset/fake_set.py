@@ -74,6 +74,8 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
         "contact_length_loss_mm": 0.6 * pits,
         "mesh_stiffness_loss": 0.01 * pits,
         "contact_loss_share": 0.0,
+        "through_face": False,
+        "sink_depth_um": 0.0,
         "status": "ok",
         "teeth_pinion": 18,
         "teeth_gear": 47,

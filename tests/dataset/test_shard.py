@@ -91,7 +91,7 @@ def test_an_encoding_that_the_writer_ignores_is_noticed_and_nothing_is_committed
 
 
 def test_a_dictionary_for_signals_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    options = {**shard._options(SCHEMA), "use_dictionary": True, "column_encoding": None, "use_byte_stream_split": True}
+    options = {**shard._options(SCHEMA), "use_dictionary": True, "column_encoding": None}
     monkeypatch.setattr(shard, "_options", lambda schema: options)
     with pytest.raises(DatasetError, match="did not do as asked"):
         written(tmp_path, [ROWS])

@@ -8,20 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dynamics.friction import constant_friction
-from siggen.dynamics.pair_law import (
-    COLUMNS,
-    FLANK,
-    FRICTION,
-    NORMAL,
-    PENETRATION,
-    POSITION,
-    STIFFNESS,
-    PairLaw,
-    SqueezeFilm,
-    pair_forces,
-    pair_slots,
-    static_approach_m,
-)
+from siggen.dynamics.pair_forces import pair_forces, static_approach_m
+from siggen.dynamics.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.pair_places import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS, pair_table
 from siggen.gears.missing_material import MissingMaterial, missing_material
 from tests.dynamics.pair_runs import constant_tables, exact_involutes, gear_pair, law, tables
 
@@ -32,7 +21,7 @@ DOUBLE, SINGLE = 5.3, 5.85
 def loaded(
     chosen: PairLaw, approach: float, pitches: float, rate: float = 0.0, sliding: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
-    pairs = np.empty((pair_slots(chosen), COLUMNS))
+    pairs = pair_table(chosen)
     pair_forces(chosen, approach, rate, pitches, *sliding, pairs)
     return pairs
 

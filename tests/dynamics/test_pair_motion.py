@@ -12,8 +12,8 @@ from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_law import FLANK, FRICTION, SLIDING
 from siggen.dynamics.pair_motion import PairMotion
+from siggen.dynamics.pair_places import FLANK, FRICTION, SLIDING
 from siggen.dynamics.response import Response, response_of
 from siggen.dynamics.structure import eight_dof
 from siggen.gears.missing_material import MissingMaterial, missing_material

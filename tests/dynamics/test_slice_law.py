@@ -191,3 +191,49 @@ def test_two_pairs_share_the_load_as_the_gap_of_a_pit_demands(length: float) -> 
     expected = first / (first + second) * (1.0 - second * gap / load)
     # The gap has its kink in a cell of 7 µm: 0.05 µm of some 5 µm of deflection.
     assert share == pytest.approx(max(expected, 0.0), abs=0.01)
+
+
+SLICES = SHARP.slices
+TILT = 10e-6 * ((np.arange(SLICES) + 0.5) / SLICES - 0.5)
+"""Shafts out of parallel by 10 µm over the face."""
+
+
+def test_a_lead_of_zeros_is_none_to_the_bit() -> None:
+    damage = chord_pit(PAIR, 1.5e-3, CENTRE, semi_face_m=5e-3)
+    for got, expected in zip(
+        slice_law(PAIR, (damage,), STIFFNESS, SHARP, lead_m=np.zeros(SLICES)), law(damage), strict=True
+    ):
+        np.testing.assert_array_equal(got, expected)
+
+
+def test_a_tilted_face_touches_at_its_end_first() -> None:
+    tilted = slice_law(PAIR, (), STIFFNESS, SHARP, lead_m=TILT)
+    assert tilted.lead_m == TILT.min()
+    middle = 2e-6
+    contact = 1.0 / contact_compliance(PAIR, CENTRE)[0]
+    pair = float(pair_stiffness(PAIR, CENTRE, STIFFNESS)[0])
+    compliance = 1.0 / pair - 1.0 / contact
+    # Hertz springs k_h/L over the face, in contact down to p = d - C N: N = k_h p²/(2 F_β).
+    low, high = 0.0, middle
+    for _ in range(100):
+        p = 0.5 * (low + high)
+        low, high = (p, high) if p + compliance * contact * p**2 / 20e-6 < middle else (low, p)
+    # 32 groups, and their last one in part: of a force that grows with the square.
+    assert slice_pair_force(tilted, 0, CENTRE, middle) == pytest.approx(contact * p**2 / 20e-6, rel=0.02)
+    assert slice_contact_length(tilted, 0, CENTRE) == PAIR.face_width_m
+    # Far beyond the tilt the mean plane counts: d from the face's end less half the tilt.
+    deep = slice_pair_force(tilted, 0, CENTRE, 200e-6)
+    assert deep == pytest.approx(pair * (200e-6 + TILT.min()), rel=1e-6)
+
+
+def test_a_lead_and_pits_add_up_as_all_slices_do() -> None:
+    damage = (chord_pit(PAIR, 1.5e-3, CENTRE, semi_face_m=5e-3),)
+    table = slice_law(PAIR, damage, STIFFNESS, SHARP, lead_m=TILT)
+    # Depths count from the end that touches first; the groups' coarseness shows at small ones.
+    assert slice_law_error(PAIR, damage, STIFFNESS, SHARP, table, np.array([5e-6, 8e-6, 45e-6]), TILT) < 0.01
+
+
+@pytest.mark.parametrize("wrong", [np.zeros(3), np.full(SLICES, np.nan)])
+def test_a_lead_on_other_slices_is_refused(wrong: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="lead_m: received shape"):
+        slice_law(PAIR, (), STIFFNESS, SHARP, lead_m=wrong)

@@ -1,0 +1,136 @@
+"""Elastic forces of tooth pairs, compiled: the spring of each by itself, and how pairs on one gear body share the load.
+
+With coupling the penetrations solve p_n = d_n - Σ c_nm f_m(p_m) (derived): f is piecewise linear, so Newton's method
+ends after a few steps with the exact solution; it exists and is unique while the coupling of a pair stays below its own
+compliance, since then the energy is strictly convex.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.dynamics import pair_law as at
+from siggen.dynamics.pair_places import (
+    CELL,
+    COUPLED,
+    FLANK,
+    MOST_APART,
+    PENETRATION,
+    POSITION,
+    ROW,
+    WEIGHT,
+    WHOLE,
+    between,
+)
+from siggen.dynamics.slice_law import grouped_force
+
+FloatArray = NDArray[np.float64]
+IndexArray = NDArray[np.int64]
+
+MOST_STEPS = 50
+"""Beyond half of these, pairs are solved one at a time; Newton's method was never seen to need more than 5."""
+
+
+@njit(cache=True, inline="always")
+def _spring(
+    numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int, penetration_m: float
+) -> tuple[float, float, float]:
+    """Return force [N], stiffness [N/m] and carrying share of the face of slot i on its drive flank."""
+    whole = pairs[i, WHOLE]
+    if penetration_m <= 0.0:
+        return 0.0, 0.0, 0.0
+    groups = index[at.GROUPS]
+    if groups > 0:
+        cell, weight, points = int(pairs[i, CELL]), pairs[i, WEIGHT], index[at.POINTS]
+        corner = int(pairs[i, ROW]) * points + cell
+        low = index[at.SINK_AT] + corner * groups
+        if numbers[low + groups - 1] != 0.0 or numbers[low + 2 * groups - 1] != 0.0:
+            flush = between(numbers, index[at.FLUSH_AT], corner, weight)
+            contact = between(numbers, index[at.CONTACT_AT], cell, weight)
+            return grouped_force(numbers, low, groups, weight, flush, contact, whole, penetration_m)
+        land = between(numbers, index[at.LAND_AT], corner, weight)
+        return whole * penetration_m, whole, land
+    return whole * penetration_m, whole, 1.0
+
+
+@njit(cache=True, inline="always")
+def spring_of_flank(
+    numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int, penetration_m: float
+) -> tuple[float, float, float]:
+    """Return the same on the flank of column FLANK; the back flank has no damage and pushes the other way."""
+    if pairs[i, FLANK] >= 0.0:
+        return _spring(numbers, index, pairs, i, penetration_m)
+    if penetration_m >= 0.0:
+        return 0.0, 0.0, 0.0
+    return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE], 1.0
+
+
+@njit(cache=True)
+def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
+    """Return c of two slots [m/N]."""
+    away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[at.PITCH_M]))
+    if away == 0 or abs(away) > apart:
+        return 0.0
+    # The pair that entered later has the smaller s.
+    return pairs[j, COUPLED + away - 1] if away > 0 else pairs[i, COUPLED - away - 1]
+
+
+@njit(cache=True)
+def _solve(matrix: FloatArray, right: FloatArray) -> None:
+    """Write the solution of a system with a dominant diagonal into `right`, without pivoting."""
+    n = right.size
+    for k in range(n):
+        for i in range(k + 1, n):
+            factor = matrix[i, k] / matrix[k, k]
+            for j in range(k + 1, n):
+                matrix[i, j] -= factor * matrix[k, j]
+            right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            right[k] -= matrix[k, j] * right[j]
+        right[k] /= matrix[k, k]
+
+
+@njit(cache=True)
+def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IndexArray, pairs: FloatArray) -> None:
+    """Replace the penetration of every pair by itself with that under the forces of the others."""
+    slots, apart = pairs.shape[0], min(index[at.APART], MOST_APART)
+    coupling, matrix = np.zeros((slots, slots)), np.empty((slots, slots))
+    alone, force, change, slope = np.zeros(slots), np.zeros(slots), np.zeros(slots), np.full(slots, -1.0)
+    for i in range(slots):
+        alone[i] = pairs[i, PENETRATION]
+        for j in range(slots):
+            if i != j and pairs[i, WHOLE] > 0.0 and pairs[j, WHOLE] > 0.0:
+                coupling[i, j] = _coupling(scalars, pairs, apart, i, j)
+    for step in range(MOST_STEPS):
+        settled = True
+        for i in range(slots):
+            if pairs[i, WHOLE] == 0.0:
+                found, tangent = 0.0, 0.0
+            else:
+                pairs[i, PENETRATION] = alone[i] - _dot(coupling[i], force)
+                found, tangent, _ = spring_of_flank(numbers, index, pairs, i, pairs[i, PENETRATION])
+            settled = settled and tangent == slope[i]
+            slope[i], change[i] = tangent, found - force[i]
+            if step > MOST_STEPS // 2:
+                # Pieces that alternate, which strong couplings could make: one pair at a time always ends.
+                force[i], change[i] = found, 0.0
+        if settled:
+            return
+        for i in range(slots):
+            for j in range(slots):
+                matrix[i, j] = slope[i] * coupling[i, j]
+            matrix[i, i] += 1.0
+        _solve(matrix, change)
+        for i in range(slots):
+            force[i] += change[i]
+
+
+@njit(cache=True)
+def _dot(first: FloatArray, second: FloatArray) -> float:
+    total = 0.0
+    for j in range(first.size):
+        total += first[j] * second[j]
+    return total
