@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.load_lock import locked_load
+from siggen.dynamics.pair_law import static_approach_m
 from siggen.gears.gear_errors import GearErrors
 from siggen.gears.missing_material import missing_material
 from siggen.gears.tooth_errors import with_errors
+from siggen.gears.transmission_error import unloaded_transmission_error_m
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 from tests.gears.erroneous_gears import drawn, only_eccentric
@@ -48,6 +50,15 @@ def lines(values: np.ndarray) -> np.ndarray:
 @cache
 def class_6(share: float = 0.4) -> dict[str, np.ndarray]:
     return inner(*(drawn(PAIR, which, 1, 6, share) for which in ("pinion", "gear")))
+
+
+def test_hardly_loaded_gears_rest_at_the_unloaded_transmission_error() -> None:
+    missing = with_errors(missing_material(PAIR, RELIEF), PAIR, drawn(PAIR, "pinion", 5), drawn(PAIR, "gear", 5))
+    chosen = law(missing, backlash_m=1e-3)
+    pitches = np.linspace(0.0, HUNTING, 300) + 0.0137
+    found = [static_approach_m(chosen, 1e-3, float(angle)) for angle in pitches]
+    # A thousandth of a newton on 2e8 N/m.
+    np.testing.assert_allclose(found, unloaded_transmission_error_m(PAIR, missing, pitches), atol=1e-11)
 
 
 @pytest.mark.parametrize(("which", "shaft"), [("pinion", 47), ("gear", 18)])
