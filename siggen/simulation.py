@@ -55,19 +55,17 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
     with _limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
-        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load)
+        errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
+        lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
+        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
         labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
     with _limits_of("outside_model"):
-        errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
+        labels |= error_labels(config, errors)
     return SpecimenState(
-        pair,
-        options,
-        damage,
-        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices),
-        labels | error_labels(config, errors),
+        pair, options, damage, SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices), labels
     )
 
 

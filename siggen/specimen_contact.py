@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
@@ -11,6 +14,8 @@ from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness_options import StiffnessOptions
 from siggen.gears.tables import MeshTables, mesh_tables
+
+FloatArray = NDArray[np.float64]
 
 LEAST_LINE_LOAD_N_PER_M = 1e3
 """Where the configuration has next to no torque: a Hertz band of some 10 µm."""
@@ -41,6 +46,7 @@ def tooth_tables(
     options: StiffnessOptions,
     points: int,
     line_load_n_per_m: float,
+    lead_m: Callable[[int], FloatArray] | None = None,
 ) -> ToothTables:
     """Return the tables of a drawn `dynamics` section.
 
@@ -49,20 +55,16 @@ def tooth_tables(
     ValueError
         If the stiffness model does not know such damage.
     """
-    if not (damage and damage_is_geometry(dynamics)):
+    # Misaligned faces need slices in the healthy state too: states must not differ by it.
+    if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
         return ToothTables(mesh_tables(pair, damage, options, points=points), None)
     section = dynamics.mesh
-    slices = slice_law(
-        pair,
-        damage,
-        options,
-        SliceOptions(
-            line_load_n_per_m,
-            edge_radius_m=1e-3 * constant(section.pit_edge_radius_mm),
-            section_loss=section.damage == "all",
-        ),
-        points,
+    sliced = SliceOptions(
+        line_load_n_per_m,
+        edge_radius_m=1e-3 * constant(section.pit_edge_radius_mm),
+        section_loss=section.damage == "all",
     )
+    slices = slice_law(pair, damage, options, sliced, points, lead_m=None if lead_m is None else lead_m(sliced.slices))
     return ToothTables(slice_tables(pair, damage, slices), slices)
 
 

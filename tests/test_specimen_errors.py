@@ -146,6 +146,18 @@ def test_a_record_does_not_depend_on_its_company() -> None:
         assert together[1].channels[name].tobytes() == signal.tobytes()
 
 
+def test_misaligned_shafts_change_healthy_and_damaged_records_alike() -> None:
+    aligned, askew = (
+        records(made(f"manufacture={{accuracy_class: 6, lead_misalignment_um: {lead}}}"), [0, 2]) for lead in (0.0, 8.0)
+    )
+    for before, after in zip(aligned, askew, strict=True):
+        signal = before.channels["lid_vertical"].astype(float)
+        change = np.std(after.channels["lid_vertical"] - signal) / np.std(signal)
+        assert 0.05 < change < 1.0
+        assert abs(after.labels["lead_misalignment_um"]) == pytest.approx(8.0)  # type: ignore[arg-type]
+        assert after.labels["sink_depth_um"] == before.labels["sink_depth_um"]
+
+
 def test_errors_shake_a_healthy_gearbox() -> None:
     perfect, errors = (records(config, [0])[0] for config in (made(), CLASS_6))
     assert errors.channels["lid_vertical"].std() > 1.2 * perfect.channels["lid_vertical"].std()

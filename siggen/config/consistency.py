@@ -104,10 +104,11 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
-    # Slices across the face come with the mesh law; until they do, a misalignment would be a label without an effect.
+    # Without slices across the face a misalignment would be a label without an effect.
     lead = sections["manufacture"].lead_misalignment_um
-    if lead != 0.0:
-        yield Problem("manufacture.lead_misalignment_um", str(lead), "allowed: 0, the mesh law has no slices yet")
+    if lead != 0.0 and sections["dynamics"].mesh.damage == "stiffness":
+        allowed = "allowed: 0 with dynamics.mesh.damage: stiffness, which has no slices across the face"
+        yield Problem("manufacture.lead_misalignment_um", str(lead), allowed)
 
 
 def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.config import Config, Manufacture, Uniform, parse
+from siggen.config import Manufacture, Uniform, parse
 from siggen.errors import ConfigError
 from siggen.loading import load_config
 from tests.config.minimal import config, minimal
@@ -76,9 +76,13 @@ def test_teeth_that_are_all_alike_have_no_errors() -> None:
     assert "dynamics.mesh.law: pairs" in found.allowed
 
 
-def test_a_misalignment_is_refused_as_long_as_the_mesh_law_takes_none() -> None:
-    assert "lead_misalignment_um: received 8.0; allowed: 0" in problem(accuracy_class=6, lead_misalignment_um=8)
-    assert Config.model_validate(with_section(accuracy_class=6, lead_misalignment_um="iso_1328")).manufacture
+def test_a_misalignment_needs_slices_across_the_face() -> None:
+    section = {"accuracy_class": 6, "lead_misalignment_um": "iso_1328"}
+    assert parse(with_section(**section)).config is not None
+    raw = with_section(**section)
+    raw["dynamics"]["mesh"]["damage"] = "stiffness"  # type: ignore[index]
+    (found,) = parse(raw).problems
+    assert str(found).startswith("manufacture.lead_misalignment_um: received iso_1328; allowed: 0 with")
 
 
 def test_gears_outside_the_standard_are_refused_by_name() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.load_lock import locked_load
-from siggen.dynamics.pair_law import static_approach_m
+from siggen.dynamics.pair_forces import static_approach_m
 from siggen.gears.gear_errors import GearErrors
 from siggen.gears.missing_material import missing_material
 from siggen.gears.tooth_errors import with_errors
