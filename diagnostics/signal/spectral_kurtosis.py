@@ -35,12 +35,12 @@ def spectral_kurtosis(signal: np.ndarray, frame_samples: int = FRAME_SAMPLES) ->
     from scipy import fft
 
     hop = frame_samples // 2
-    frames = np.lib.stride_tricks.sliding_window_view(signal, frame_samples)[::hop] if signal.size >= hop * 2 else []
-    if len(frames) < FEWEST_FRAMES:
+    if signal.size < (FEWEST_FRAMES + 1) * hop:
         raise UsageError(
             f"spectral kurtosis: received {signal.size} samples; {FEWEST_FRAMES} frames of {frame_samples} samples "
             f"need {(FEWEST_FRAMES + 1) * hop}. Use longer records or shorter frames."
         )
+    frames = np.lib.stride_tricks.sliding_window_view(signal, frame_samples)[::hop]
     weights = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(frame_samples) / frame_samples)
     spectrum = fft.rfft(frames * weights, axis=1)
     power = spectrum.real**2 + spectrum.imag**2
