@@ -50,9 +50,12 @@ def indicators(
     from diagnostics.indicator_table import indicator_table
     from diagnostics.indicators.own_indicator import load_indicator
     from diagnostics.report.indicator_report import write_indicator_report
+    from diagnostics.signal.tacholess_angle import check_speed_range
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
+    if speed_range is not None:
+        check_speed_range(speed_range)
     own = [load_indicator(reference) for reference in indicator or ()]
     dataset = open_set(directory)
     settings = IndicatorSettings(speed_range_hz=speed_range)

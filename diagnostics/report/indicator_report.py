@@ -226,8 +226,8 @@ def _write_page(
         grid("separation", "sensitivity"),
         html.heading("Trend with severity, and the smallest damage found"),
         html.paragraph(_size_text(evaluated)),
-        grid("severity", "detection", "noise"),
         indicator_tables.trend_html(found, names),
+        grid("severity", "noise", "detection"),
         html.heading("What moves indicators in healthy records"),
         html.paragraph(
             "Adjusted share of rank variance that each cause explains alone; speed, load and signal-to-noise ratio as "

@@ -79,9 +79,10 @@ def _survivors(found: Sequence[IndicatorResult], states: tuple[str, ...], specim
     )
     if smallest_paired_p(specimens) * count > SIGNIFICANT:
         needed = math.ceil(1.0 + math.log2(count / SIGNIFICANT))
+        least = f"{smallest_paired_p(specimens):.2g}"
         text += (
-            f" With {specimens} specimens the paired test cannot give less than p = "
-            f"{smallest_paired_p(specimens):.2g}, so Holm's correction of {count} comparisons needs at least {needed} specimens to let any pass."
+            f" With {specimens} specimens the paired test cannot give less than p = {least}, so Holm's correction of "
+            f"{count} comparisons needs at least {needed} specimens to let any pass."
         )
     return [text]
 

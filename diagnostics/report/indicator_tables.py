@@ -19,17 +19,16 @@ ARROWS = {1: "rises", -1: "falls"}
 def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
     """Return all indicators, best between other specimens first, with the separation of every state in both designs."""
     head = [
-        "Indicator", "Channel", "Rank", "With damage", "Score, other specimens",
-        *(f"AUC {state}" for state in states), *(f"Holm p {state}" for state in states),
-        "Score, same specimen", *(f"Share of pairs above, {state}" for state in states),
-        *(f"Holm p, paired {state}" for state in states),
+        "Indicator, channel", "Rank", "Score, other specimens", *(f"AUC {state}" for state in states),
+        "Score, same specimen", *(f"Share of pairs above, {state}" for state in states), "With damage",
+        *(f"Holm p {state}" for state in states), *(f"Holm p, paired {state}" for state in states),
     ]  # fmt: skip
     rows = [
         [
-            Cell(r.indicator), Cell(r.channel), Cell(str(rank), value=rank), Cell(ARROWS[r.direction]),
+            Cell(r.indicator, r.channel), Cell(str(rank), value=rank),
             interval_cell(r.score_others), *(interval_cell(r.others[state].separation) for state in states),
-            *(p_cell(r.others[state].holm) for state in states),
             interval_cell(r.score_same), *(interval_cell(r.same[state].separation) for state in states),
+            Cell(ARROWS[r.direction]), *(p_cell(r.others[state].holm) for state in states),
             *(p_cell(r.same[state].holm) for state in states),
         ]
         for rank, r in enumerate(found, start=1)
@@ -41,17 +40,17 @@ def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str
     """Return trend with severity, effect sizes and the smallest sizes found."""
     sizes = {name: None for r in found for name in r.detectable}
     head = [
-        "Indicator", "Channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity",
-        *(f"Cohen's d {state}" for state in states), *(f"paired d {state}" for state in states),
+        "Indicator, channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity",
         *(size_title(name) for name in sizes),
+        *(f"Cohen's d {state}" for state in states), *(f"paired d {state}" for state in states),
     ]  # fmt: skip
     rows = [
         [
-            Cell(r.indicator), Cell(r.channel), interval_cell(r.spearman_area, sign=True),
+            Cell(r.indicator, r.channel), interval_cell(r.spearman_area, sign=True),
             interval_cell(r.spearman_stiffness, sign=True), interval_cell(r.monotonicity, sign=True),
+            *(size_cell(r, name) for name in sizes),
             *(interval_cell(r.others[state].effect, sign=True) for state in states),
             *(interval_cell(r.same[state].effect, sign=True) for state in states),
-            *(size_cell(r, name) for name in sizes),
         ]
         for r in found
     ]  # fmt: skip
@@ -97,10 +96,9 @@ def p_cell(p_value: float) -> Cell:
 def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
     """Return what explains each indicator in healthy records."""
     rows = [
-        [Cell(r.indicator), Cell(r.channel), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)]
-        for r in found
+        [Cell(r.indicator, r.channel), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)] for r in found
     ]
-    return table(["Indicator", "Channel", *(cause.capitalize() for cause in CAUSES)], rows, sortable=True, tall=True)
+    return table(["Indicator, channel", *(cause.capitalize() for cause in CAUSES)], rows, sortable=True, tall=True)
 
 
 def _share(value: float) -> Cell:

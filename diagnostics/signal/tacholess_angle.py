@@ -71,12 +71,8 @@ def mesh_ridge(
     UsageError
         If the range is empty or the record is shorter than one frame of four revolutions.
     """
+    check_speed_range(speed_range_hz)
     low, high = speed_range_hz
-    if not 0.0 < low < high < 2.0 * low:
-        raise UsageError(
-            f"speed range: received {low:g} to {high:g} Hz; allowed is 0 < low < high < 2 low, so that no other mesh "
-            "harmonic lies in it. Give the range the shaft can have run in."
-        )
     size = round(FRAME_REVOLUTIONS / low * fs_hz)
     if signal.size < size:
         raise UsageError(
@@ -91,6 +87,22 @@ def mesh_ridge(
     path = _best_path(score, reach)
     clarity = float(score[np.arange(starts.size), path].mean() / len(used))
     return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity)
+
+
+def check_speed_range(speed_range_hz: tuple[float, float]) -> None:
+    """Check that a range of speed holds one mesh harmonic only.
+
+    Raises
+    ------
+    UsageError
+        If it is empty or reaches from a speed to twice that speed.
+    """
+    low, high = speed_range_hz
+    if not 0.0 < low < high < 2.0 * low:
+        raise UsageError(
+            f"speed range: received {low:g} to {high:g} Hz; allowed is 0 < low < high < 2 low, so that no other mesh "
+            "harmonic lies in it. Give the range the shaft can have run in."
+        )
 
 
 def _frame_score(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
