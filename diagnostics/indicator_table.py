@@ -201,7 +201,11 @@ def record_indicators(
     order = chosen.order_domain
     teeth = (int(labels["teeth_pinion"]), int(labels["teeth_gear"]))
     gears = Gears(*teeth, record.fs_hz, float(labels["speed_hz"]), float(labels["torque_nm"]))
-    pulses = _pulses(record, good, teeth[0], chosen)
+    try:
+        pulses = _pulses(record, good, teeth[0], chosen)
+    except UsageError as error:
+        lost = RecordProblem(int(labels["record_id"]), "", str(error))
+        return RecordIndicators(labels, {}, {}, (0, 0), str(error), [*problems, lost])
     grid = angle_grid(pulses, teeth[0] * order.samples_per_tooth) if pulses.size > 1 else None
     shafts = record_shafts(grid, teeth, order.samples_per_tooth, order.sidebands)
     values: dict[str, float] = {}

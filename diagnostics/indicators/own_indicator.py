@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import importlib
 import re
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -89,6 +91,8 @@ def unregister(name: str) -> None:
 def load_indicator(reference: str) -> OwnIndicator:
     """Return the indicator named as `package.module:function`; its columns carry the function's name.
 
+    Modules in the current folder are found too.
+
     Raises
     ------
     UsageError
@@ -97,12 +101,15 @@ def load_indicator(reference: str) -> OwnIndicator:
     module_name, colon, attribute = reference.partition(":")
     if not colon or not module_name or not attribute:
         raise UsageError(f"--indicator: received {reference!r}; allowed is package.module:function")
+    here = str(Path.cwd())
+    if here not in sys.path:  # an installed command does not look into the folder it is called from
+        sys.path.append(here)
     try:
         function = getattr(importlib.import_module(module_name), attribute)
     except (ImportError, AttributeError) as error:
         raise UsageError(
-            f"--indicator {reference}: {error}. The module must be importable from here: install its package or set "
-            "PYTHONPATH to its folder."
+            f"--indicator {reference}: {error}. The module must be importable: put it into this folder, install its "
+            "package, or set PYTHONPATH to its folder."
         ) from error
     if not callable(function):
         raise UsageError(f"--indicator {reference}: {attribute} is a {type(function).__name__}, not a function")

@@ -114,11 +114,24 @@ def undefined_html(found: Sequence[IndicatorResult]) -> str:
             reason = known.undefined if known else "its function returned nan"
             missing = 1.0 - result.defined_share
             rows.append([Cell(result.column), Cell(f"{missing:.1%}", value=missing), Cell(reason)])
-    return table(["Indicator and channel", "Undefined", "When"], rows, sortable=True, tall=True) if rows else ""
+    head = ["Indicator and channel", "Undefined", "When"]
+    return table(head, rows, sortable=True, tall=True, text=True) if rows else ""
 
 
 def definition_html() -> str:
     """Return the definitions of all indicators."""
-    head = ["Column starts with", "Indicator", "Taken from", "Value", "Unit", "On known signals", "Source"]
-    rows = [[Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.source)] for d in DEFINITIONS]
-    return table(head, rows, tall=True)
+    head = [
+        "Column starts with",
+        "Indicator",
+        "Taken from",
+        "Value",
+        "Unit",
+        "On known signals",
+        "Undefined when",
+        "Source",
+    ]
+    rows = [
+        [Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)]
+        for d in DEFINITIONS
+    ]
+    return table(head, rows, tall=True, text=True)

@@ -25,6 +25,14 @@ PHASE_BANDWIDTH_ORDERS = 0.1
 7e-4 of its amplitude."""
 
 PASSES = 3
+NOISE_EXCESS = 1.0
+"""Logarithm of amplitude over its median that noise reaches (Rayleigh: 1 in 160 samples); less says nothing."""
+
+LEAST_CLARITY = 0.1
+"""Five times what noise reaches: one of ten harmonics that stands out by e more than noise does."""
+
+HARMONICS = tuple(range(1, 11))
+"""Structural resonances decide which mesh harmonics are strong; often it is none of the first three."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +44,8 @@ class MeshRidge:
     time_s, speed_hz : (frames,) float64
         Middle of each short spectrum and the speed found there.
     clarity : float
-        Mean excess of the mesh lines over the median of the searched band, as natural logarithm of amplitude.
+        Mean over frames and harmonics of how far the lines stand above noise, as natural logarithm of amplitude; white
+        noise alone gives 0.01 to 0.02.
     """
 
     time_s: np.ndarray
@@ -49,7 +58,7 @@ def mesh_ridge(
     fs_hz: float,
     teeth: int,
     speed_range_hz: tuple[float, float],
-    harmonics: tuple[int, ...] = (1, 2, 3),
+    harmonics: tuple[int, ...] = HARMONICS,
 ) -> MeshRidge:
     """Return the speed whose mesh harmonics are strongest, frame by frame.
 
@@ -69,7 +78,7 @@ def mesh_ridge(
     Raises
     ------
     UsageError
-        If the range is empty or the record is shorter than one frame of four revolutions.
+        If the range is empty, the record is shorter than one frame of four revolutions, or no harmonic is in the band.
     """
     check_speed_range(speed_range_hz)
     low, high = speed_range_hz
@@ -79,8 +88,13 @@ def mesh_ridge(
             f"received {signal.size / fs_hz:.3g} s; following the mesh line from {low:g} Hz on needs "
             f"{FRAME_REVOLUTIONS / low:.3g} s. Use a longer record, raise the low end of the range, or give a tacho."
         )
-    speeds = np.arange(low, high, 0.25 * fs_hz / size / teeth / max(harmonics))
     used = tuple(h for h in harmonics if h * teeth * high < 0.5 * fs_hz)
+    if not used:
+        raise UsageError(
+            f"mesh frequency of {teeth * high:g} Hz lies above half the sampling rate of {fs_hz:g} Hz: no mesh line to "
+            "follow. Give a tacho or a faster record."
+        )
+    speeds = np.arange(low, high, 0.25 * fs_hz / size / teeth / max(used))
     starts = np.arange(0, signal.size - size + 1, size // HOPS_PER_FRAME)
     score = np.stack([_frame_score(signal[i : i + size], fs_hz, teeth * np.outer(used, speeds)) for i in starts])
     reach = max(1, round(LARGEST_CHANGE_PER_HOP * 0.5 * (low + high) / (speeds[1] - speeds[0])))
@@ -106,14 +120,15 @@ def check_speed_range(speed_range_hz: tuple[float, float]) -> None:
 
 
 def _frame_score(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
-    """Return the summed log amplitude over its median at each candidate, (candidates,)."""
+    """Return the summed excess of log amplitude over the band's median and its noise, (candidates,)."""
     from scipy import fft
 
     padded = fft.next_fast_len(4 * frame.size, real=True)
     spectrum = np.abs(fft.rfft(frame * np.hanning(frame.size), padded))
     bins = np.rint(frequency_hz * padded / fs_hz).astype(np.int64)
     level = np.log(spectrum[bins] + 1e-12 * spectrum.max() + 1e-300)
-    return np.asarray((level - np.median(level, axis=1, keepdims=True)).sum(axis=0))
+    excess = level - np.median(level, axis=1, keepdims=True)
+    return np.asarray(np.maximum(excess - NOISE_EXCESS, 0.0).sum(axis=0))
 
 
 def _best_path(score: np.ndarray, reach: int) -> np.ndarray:
@@ -139,7 +154,7 @@ def tacholess_pulses(
     fs_hz: float,
     teeth: int,
     speed_range_hz: tuple[float, float],
-    harmonics: tuple[int, ...] = (1, 2, 3),
+    harmonics: tuple[int, ...] = HARMONICS,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
 
@@ -158,22 +173,34 @@ def tacholess_pulses(
     Raises
     ------
     UsageError
-        As `mesh_ridge`.
+        As `mesh_ridge`, and if no mesh line stands above the noise within the range.
     """
     ridge = mesh_ridge(signal, fs_hz, teeth, speed_range_hz, harmonics)
+    if ridge.clarity < LEAST_CLARITY:
+        raise UsageError(
+            f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
+            f"speed (clarity {ridge.clarity:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
+        )
     time_s = np.arange(signal.size) / fs_hz
-    turns = np.cumsum(np.interp(time_s, ridge.time_s, ridge.speed_hz)) / fs_hz
+    turns = np.cumsum(np.interp(time_s, ridge.time_s, _smoothed(ridge.speed_hz))) / fs_hz
     centred = np.asarray(signal, dtype=np.float64) - np.mean(signal)
     bandwidth_hz = PHASE_BANDWIDTH_ORDERS * float(ridge.speed_hz.min())
-    used = [h for h in harmonics if h * teeth * float(ridge.speed_hz.max()) < 0.45 * fs_hz]
-    # the lowest line first: its phase wraps last where the ridge is a little off; then the strongest one
-    slow = [_carrier(centred, turns, h * teeth, fs_hz, bandwidth_hz) for h in used]
-    chosen = used[int(np.argmax([np.abs(carrier).mean() for carrier in slow]))]
+    used = [h for h in harmonics if h * teeth * float(ridge.speed_hz.max()) < 0.5 * fs_hz]
+    level = [np.abs(_carrier(centred, turns, h * teeth, fs_hz, bandwidth_hz)).mean() for h in used]
+    chosen = used[int(np.argmax(level))]
     for _ in range(PASSES):
         carrier = _carrier(centred, turns, chosen * teeth, fs_hz, bandwidth_hz)
         turns = turns + np.unwrap(np.angle(carrier)) / (2.0 * np.pi * chosen * teeth)
     whole = np.arange(np.ceil(turns[0]), np.floor(turns[-1]) + 1)
     return np.interp(whole, turns, time_s)
+
+
+def _smoothed(speed_hz: np.ndarray) -> np.ndarray:
+    """Return the speed as local parabolas over two frames: what overlapping frames tell apart is only their noise."""
+    from scipy.signal import savgol_filter
+
+    width = min(2 * HOPS_PER_FRAME + 1, speed_hz.size - 1 + speed_hz.size % 2)
+    return np.asarray(savgol_filter(speed_hz, width, min(2, width - 1)))
 
 
 def _carrier(signal: np.ndarray, turns: np.ndarray, order: int, fs_hz: float, bandwidth_hz: float) -> np.ndarray:

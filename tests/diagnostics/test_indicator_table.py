@@ -86,6 +86,15 @@ def test_angle_from_the_mesh_lines_gives_nearly_the_same_average(small: Any, tab
     np.testing.assert_allclose(column(found, name), column(table, name), rtol=0.02)
 
 
+def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> None:
+    record = next(recordings(small))
+    noise = np.random.default_rng(1).standard_normal(12_800)
+    found = record_indicators(
+        replace(record, channels={"a": noise}), settings=IndicatorSettings(speed_range_hz=(25.0, 36.0))
+    )
+    assert str(found.problems[0]).startswith("record 0: no mesh line stands above the noise")
+
+
 def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -> None:
     arrow = table.arrow()
     assert arrow.num_rows == 9

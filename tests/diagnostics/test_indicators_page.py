@@ -40,7 +40,8 @@ def test_page_runs_from_yaml_to_ranking(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.delitem(sys.modules, "my_indicators", raising=False)
     try:
         for language, name, code in BLOCK.findall(PAGE):
             if language == "yaml":

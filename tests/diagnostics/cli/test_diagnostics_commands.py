@@ -97,10 +97,10 @@ def test_indicators_are_ranked_with_the_users_own(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    (tmp_path / "my_indicators.py").write_text("def peak(signal, tacho, gears):\n    return abs(signal).max()\n")
+    (tmp_path / "own_functions.py").write_text("def peak(signal, tacho, gears):\n    return abs(signal).max()\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(reading, "open", lambda path: make_dataset(("test",) * 3))
-    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--indicator", "my_indicators:peak") == 0
+    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--indicator", "own_functions:peak") == 0
     assert capsys.readouterr().out.strip() == str(tmp_path / "o" / "indicators.html")
     table = pq.read_table(tmp_path / "o" / "evaluation.parquet")
     assert "peak" in table.column("indicator").to_pylist()

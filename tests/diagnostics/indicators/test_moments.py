@@ -69,6 +69,17 @@ def test_na4_is_kurtosis_at_first_and_then_compares_with_the_history() -> None:
         assert na4(records[:count]) == pytest.approx(naive_na4(records[:count]))
 
 
+def test_growing_fault_tone_follows_its_closed_form_and_a_published_worked_example() -> None:
+    # amplitude k/3 in record k: 1.5 k^4 / (mean of j^2, j = 1 ... k)^2; the values printed in the documentation of
+    # onebone 1.3.1 are for records that are no whole number of samples long, whose leakage adds up to 2.5 %
+    published = (1.5370, 3.8577, 5.5903, 6.8353, 7.7552, 8.4577, 9.0097, 9.4542, 9.8194, 10.1245)
+    records = [k / 3 * np.sin(10 * ANGLE) for k in range(1, 11)]
+    for k, printed in enumerate(published, start=1):
+        found = na4(records[:k])
+        assert found == pytest.approx(1.5 * k**4 / ((k + 1) * (2 * k + 1) / 6) ** 2)
+        assert found == pytest.approx(printed, rel=0.025)
+
+
 def test_level_that_doubles_against_one_healthy_record() -> None:
     # mean variance (1 + 4)/2: 1.5 * 16 / 2.5^2; frozen: 1.5 * 16
     assert na4([TONE, 2 * TONE]) == pytest.approx(1.5 * 16 / 2.5**2)
