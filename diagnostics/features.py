@@ -22,10 +22,10 @@ from diagnostics.indicators.sideband_amplitude import sideband_amplitude
 from diagnostics.indicators.sideband_index import sideband_index
 from diagnostics.indicators.sideband_level_factor import sideband_level_factor
 from diagnostics.indicators.sideband_ratio import sideband_ratio
-from diagnostics.signal.difference_signal import SHAFT_ORDERS, SIDEBANDS, separated_average
+from diagnostics.shaft_signals import Shaft, ShaftSignals, record_shafts, shaft_signals
+from diagnostics.signal.difference_signal import SHAFT_ORDERS, SIDEBANDS
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle
-from diagnostics.signal.spectrum import line_amplitudes, resolved_lines, revolutions_needed
-from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
+from diagnostics.signal.synchronous_average import whole_revolutions
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +64,6 @@ class RecordFeatures:
     notes: str
 
 
-@dataclass(frozen=True, slots=True)
-class Shaft:
-    """One shaft of a record: its name, both tooth numbers, whole revolutions, and which sidebands are resolved."""
-
-    name: str
-    teeth: int
-    revolutions: int
-    resolved: np.ndarray
-    note: str
-
-
 def record_features(
     channels: Mapping[str, np.ndarray],
     tacho_s: np.ndarray,
@@ -99,32 +88,13 @@ def record_features(
     """
     chosen = settings or FeatureSettings()
     grid = angle_grid(tacho_s, teeth[0] * chosen.samples_per_tooth) if len(tacho_s) > 1 else None
-    shafts = _shafts(grid, teeth, chosen)
+    shafts = record_shafts(grid, teeth, chosen.samples_per_tooth, chosen.sidebands)
     values: dict[str, float] = {}
     for channel, signal in channels.items():
         found = channel_features(signal.astype(np.float64), fs_hz, grid, shafts, chosen)
         values |= {f"{name}__{channel}": value for name, value in found.items()}
     notes = "; ".join(shaft.note for shaft in shafts if shaft.note)
     return RecordFeatures(values, shafts[0].revolutions, shafts[1].revolutions, notes)
-
-
-def _shafts(grid: AngleGrid | None, teeth: tuple[int, int], settings: FeatureSettings) -> tuple[Shaft, Shaft]:
-    """Return both shafts; the pinion's lines come from the plain average, the gear's from a Hann-weighted one."""
-    steps = grid.time_s.size if grid else 0
-    pinion_turns, gear_turns = (steps // (z * settings.samples_per_tooth) for z in teeth)
-    order = range(1, settings.sidebands + 1)
-    needed = np.array([revolutions_needed(k, teeth[1], teeth[0]) for k in order])
-    resolved = needed <= gear_turns
-    note = "" if pinion_turns else "no whole pinion revolution between two pulses"
-    pinion = Shaft("pinion", teeth[0], pinion_turns, np.ones(settings.sidebands, dtype=bool), note)
-    return pinion, Shaft("gear", teeth[1], gear_turns, resolved, _resolution_note(resolved, needed, gear_turns))
-
-
-def _resolution_note(resolved: np.ndarray, needed: np.ndarray, turns: int) -> str:
-    if turns < 1:
-        return "no whole gear revolution: all gear averages undefined"
-    missing = [f"{k + 1} (needs {needed[k]:.0f})" for k in np.flatnonzero(~resolved)]
-    return f"gear sidebands not resolved by {turns} gear revolutions: {', '.join(missing)}" if missing else ""
 
 
 def channel_features(
@@ -143,24 +113,16 @@ def shaft_features(steps: np.ndarray, shaft: Shaft, settings: FeatureSettings) -
     if whole_revolutions(steps, shaft.teeth, settings.samples_per_tooth) < 1:
         one_turn = np.ones(shaft.teeth * settings.samples_per_tooth)
         return dict.fromkeys(shaft_features(one_turn, replace(shaft, revolutions=1), settings), math.nan)
-    average = synchronous_average(steps, shaft.teeth, settings.samples_per_tooth).signal
-    lines = line_amplitudes(average)
-    if shaft.name == "gear":
-        weights = hann_weights(shaft.revolutions * average.size)
-        weighted = synchronous_average(steps, shaft.teeth, settings.samples_per_tooth, weights).signal
-        sideband_lines = resolved_lines(line_amplitudes(weighted), shaft.resolved, shaft.teeth)
-    else:
-        sideband_lines = lines
-    values = average_features(average, lines, shaft, settings)
-    return values | sideband_features(sideband_lines, average, shaft, settings)
+    found = shaft_signals(
+        steps, shaft, settings.samples_per_tooth, settings.shaft_orders, settings.difference_sidebands
+    )
+    return average_features(found, settings) | sideband_features(found, settings)
 
 
-def average_features(
-    average: np.ndarray, lines: np.ndarray, shaft: Shaft, settings: FeatureSettings
-) -> dict[str, float]:
+def average_features(signals: ShaftSignals, settings: FeatureSettings) -> dict[str, float]:
     """Return indicators of the synchronous average and its difference signal; mesh lines once, from the pinion's."""
+    shaft, average, lines, parts = signals.shaft, signals.average, signals.lines, signals.parts
     name, harmonics = shaft.name, settings.mesh_harmonics
-    parts = separated_average(average, shaft.teeth, settings.shaft_orders, settings.difference_sidebands)
     values = {
         f"average_rms_{name}": rms(average),
         f"average_kurtosis_{name}": kurtosis(average),
@@ -176,11 +138,10 @@ def average_features(
     return values
 
 
-def sideband_features(
-    lines: np.ndarray, average: np.ndarray, shaft: Shaft, settings: FeatureSettings
-) -> dict[str, float]:
+def sideband_features(signals: ShaftSignals, settings: FeatureSettings) -> dict[str, float]:
     """Return relative sideband amplitudes, sideband ratios, sideband index and level factor of one shaft."""
-    name, teeth, each_side = shaft.name, shaft.teeth, settings.ratio_sidebands
+    name, teeth, each_side = signals.shaft.name, signals.shaft.teeth, settings.ratio_sidebands
+    lines, average = signals.sideband_lines, signals.average
     values = {
         f"sideband_index_{name}_h1": sideband_index(lines, teeth),
         f"sideband_level_factor_{name}_h1": sideband_level_factor(lines, average, teeth),

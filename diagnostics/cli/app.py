@@ -8,6 +8,7 @@ from importlib.metadata import version
 import typer
 
 from diagnostics.cli.features import features
+from diagnostics.cli.indicators import indicators
 from diagnostics.cli.report import report
 from diagnostics.cli.train import train
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenError
@@ -22,6 +23,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 app.command()(features)
+app.command()(indicators)
 app.command()(train)
 app.command()(report)
 

@@ -34,6 +34,7 @@ table.sortable thead th{cursor:pointer;user-select:none}
 table.sortable thead th::after{content:" \\2195";color:#a9b4be}
 thead th[aria-sort=ascending]::after{content:" \\2191"!important;color:var(--accent)!important}
 thead th[aria-sort=descending]::after{content:" \\2193"!important;color:var(--accent)!important}
+table.text th,table.text td{text-align:left;white-space:normal;vertical-align:top;min-width:7rem}
 small{color:var(--soft)}
 code{overflow-wrap:anywhere;font-size:.88em}
 @media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
@@ -98,12 +99,20 @@ def figure_grid(blocks: Sequence[str]) -> str:
     return f'<div class="figures">{"".join(blocks)}</div>'
 
 
-def table(head: Sequence[str], rows: Sequence[Sequence[Cell]], *, sortable: bool = False, tall: bool = False) -> str:
-    """Return a table that scrolls inside itself, with a click on a head sorting it if asked for."""
+def table(
+    head: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    *,
+    sortable: bool = False,
+    tall: bool = False,
+    text: bool = False,
+) -> str:
+    """Return a table that scrolls inside itself, sorted by a click on a head if asked for; text wraps in its cells."""
+    style = " ".join(name for name, wanted in (("sortable", sortable), ("text", text)) if wanted)
     titles = "".join(f"<th>{escape(title)}</th>" for title in head)
     body = "".join(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>" for row in rows)
     return (
-        f'<div class="scroll{" tall" if tall else ""}"><table{" class=sortable" if sortable else ""}>'
+        f'<div class="scroll{" tall" if tall else ""}"><table class="{style}">'
         f"<thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>"
     )
 

@@ -3,7 +3,8 @@
 residual = average minus shaft orders and ALL mesh harmonics (sidebands kept); difference = residual minus the first-
 order sidebands; regular = average minus difference. Orders are whole bins of one revolution, so nothing rings and
 nothing depends on speed, unlike notch filters in Hz. Source: Lebold et al. 2000 for the separation of residual and
-difference; all mesh harmonics below the band edge are removed, not the first two that some toolboxes take.
+difference; all mesh harmonics below the band edge are removed unless `harmonics` says how many. MATLAB's `tsaresidual`,
+`tsadifference` and `tsaregular` separate alike, with the first shaft order always taken away.
 """
 
 from __future__ import annotations
@@ -26,7 +27,11 @@ class SeparatedAverage:
 
 
 def separated_average(
-    average: np.ndarray, teeth: int, shaft_orders: int = SHAFT_ORDERS, sidebands: int = SIDEBANDS
+    average: np.ndarray,
+    teeth: int,
+    shaft_orders: int = SHAFT_ORDERS,
+    sidebands: int = SIDEBANDS,
+    harmonics: int | None = None,
 ) -> SeparatedAverage:
     """Separate one averaged revolution.
 
@@ -40,13 +45,16 @@ def separated_average(
         Shaft orders 0 ... `shaft_orders` count as regular.
     sidebands : int
         Sidebands on each side of every mesh harmonic that count as regular.
+    harmonics : int, optional
+        Mesh harmonics that count as regular; default all up to the band edge.
     """
     from scipy import fft
 
     spectrum = fft.rfft(average)
     order = np.arange(spectrum.size)
     harmonic = np.round(order / teeth)
-    distance = np.where(harmonic > 0, np.abs(order - harmonic * teeth), np.inf)
+    last = np.inf if harmonics is None else harmonics
+    distance = np.where((harmonic > 0) & (harmonic <= last), np.abs(order - harmonic * teeth), np.inf)
     shaft = order <= shaft_orders
     residual = fft.irfft(np.where(shaft | (distance == 0), 0.0, spectrum), n=average.size)
     difference = fft.irfft(np.where(shaft | (distance <= sidebands), 0.0, spectrum), n=average.size)

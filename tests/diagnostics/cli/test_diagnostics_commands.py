@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return int(stop.value.code or 0)
 
 
-@pytest.mark.parametrize("command", [[], ["features"], ["train"], ["report"]])
+@pytest.mark.parametrize("command", [[], ["features"], ["indicators"], ["train"], ["report"]])
 def test_every_command_explains_itself_with_an_example(
     command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -43,11 +44,11 @@ def test_help_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("command", ["features", "train", "report"])
+@pytest.mark.parametrize("command", ["features", "indicators", "train", "report"])
 def test_a_folder_without_a_set_is_a_usage_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = {"features": ["--out", "x.csv"], "train": ["--out", "y"], "report": []}[command]
+    out = {"features": ["--out", "x.csv"], "indicators": [], "train": ["--out", "y"], "report": []}[command]
     assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
     error = capsys.readouterr().err
     assert error.startswith("error: ")
@@ -88,6 +89,39 @@ def test_features_are_written_where_asked(
     table = pq.read_table(out)
     assert table.num_rows == 72
     assert set(table.column("revolutions_pinion").to_pylist()) <= {28, 29, 30}
+
+
+def test_indicators_are_ranked_with_the_users_own(
+    make_dataset: Callable[..., Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "own_functions.py").write_text("def peak(signal, tacho, gears):\n    return abs(signal).max()\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(reading, "open", lambda path: make_dataset(("test",) * 3))
+    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--indicator", "own_functions:peak") == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "o" / "indicators.html")
+    table = pq.read_table(tmp_path / "o" / "evaluation.parquet")
+    assert "peak" in table.column("indicator").to_pylist()
+
+
+def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
+    make_dataset: Callable[..., Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    short = make_dataset(("test",) * 2, duration_s=0.15)  # four pinion revolutions, one of the gear
+    monkeypatch.setattr(reading, "open", lambda path: short)
+    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o")) == 2
+    error = capsys.readouterr().err
+    for part in ("memory_set", "record 0", "revolutions need 6", "--leave-out"):
+        assert part in error
+    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--leave-out") == 2
+    assert "not one of 6 records can be used" in capsys.readouterr().err
+    assert run(monkeypatch, "indicators", "x", "--speed-range", "40", "30") == 2
+    assert "speed range" in capsys.readouterr().err
 
 
 def test_columns_that_are_read_exist_in_every_set() -> None:

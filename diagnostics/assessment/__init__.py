@@ -1,0 +1,1 @@
+"""How good each indicator is: separation, trend, sensitivity, smallest size found, in both designs, with intervals."""

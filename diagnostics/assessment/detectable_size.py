@@ -1,0 +1,117 @@
+"""Smallest damage that an indicator finds at a given rate of false alarms.
+
+The threshold is the quantile of healthy records that the rate leaves above it. Damaged records are sorted by size into
+groups of equal count; the share of alarms per group is made to rise with size by isotonic regression, and the size at
+which it reaches the wanted share is read between the groups' medians, on a logarithmic axis. Source: probability of
+detection (a50, a90), standard literature of non-destructive testing; isotonic instead of logistic: derived, since no
+indicator has to follow a logistic curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+GROUPS = 12
+RECORDS_PER_GROUP = 5
+
+
+@dataclass(frozen=True, slots=True)
+class DetectionCurve:
+    """Share of alarms over size: (g,) median sizes and (b, g) shares, one row per resample, rising with size."""
+
+    size: np.ndarray
+    share: np.ndarray
+
+
+def weighted_quantile(values: np.ndarray, weights: np.ndarray, level: float) -> np.ndarray:
+    """Return the smallest value with at least `level` of the weight at or below it, (b,) for every row of weights.
+
+    Parameters
+    ----------
+    values : (n,) float64
+        Without NaN.
+    weights : (b, n) float64
+        Weights of the records.
+    level : float
+        Between 0 and 1.
+    """
+    order = np.argsort(values, kind="stable")
+    below = np.cumsum(weights[:, order], axis=1)
+    # a rounding error of the sum must not push the threshold to the next record
+    reached = below >= level * below[:, -1:] * (1.0 - 1e-12)
+    return values[order][reached.argmax(axis=1)]
+
+
+def detection_curve(
+    values: np.ndarray, healthy: np.ndarray, size: np.ndarray, weights: np.ndarray, false_alarms: float
+) -> DetectionCurve | None:
+    """Return the share of alarms over size; None with fewer than two groups.
+
+    Parameters
+    ----------
+    values : (n,) float64
+        Indicator, larger means more damage; without NaN.
+    healthy : (n,) bool
+        Which records set the threshold; all others are damaged.
+    size : (n,) float64
+        Damaged area or profile length of each record, positive where damaged.
+    weights : (b, n) float64
+        Weights of the records, of bootstrap resamples of the specimens; the threshold is drawn anew in each.
+    false_alarms : float
+        Share of healthy records above the threshold.
+    """
+    damaged = np.flatnonzero(~healthy & (size > 0.0))
+    groups = min(GROUPS, damaged.size // RECORDS_PER_GROUP)
+    if groups < 2 or not healthy.any():
+        return None
+    threshold = weighted_quantile(values[healthy], weights[:, healthy], 1.0 - false_alarms)
+    order = damaged[np.argsort(size[damaged], kind="stable")]
+    members = np.array_split(order, groups)
+    counts = np.stack([weights[:, rows].sum(axis=1) for rows in members], axis=1)
+    alarms = np.stack(
+        [(weights[:, rows] * (values[rows] > threshold[:, None])).sum(axis=1) for rows in members], axis=1
+    )
+    medians = np.array([float(np.median(size[rows])) for rows in members])
+    return DetectionCurve(medians, isotonic(alarms, counts))
+
+
+def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Return the rising least-squares fit to group means, (b, g), by the min-max formula.
+
+    Parameters
+    ----------
+    sums, counts : (b, g) float64
+        Sum and weight of each group; a group without weight takes the value of the one below.
+    """
+    groups = sums.shape[1]
+    zero = np.zeros((sums.shape[0], 1))
+    total = np.concatenate([zero, np.cumsum(sums, axis=1)], axis=1)
+    weight = np.concatenate([zero, np.cumsum(counts, axis=1)], axis=1)
+    # mean of groups j ... k for all j <= k; empty stretches take part in neither bound
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = (total[:, None, 1:] - total[:, :-1, None]) / (weight[:, None, 1:] - weight[:, :-1, None])
+    fit = np.empty_like(sums)
+    for i in range(groups):
+        block = mean[:, : i + 1, i:]
+        highest = np.where(np.isfinite(block), block, -np.inf).max(axis=1)
+        fit[:, i] = np.where(np.isfinite(highest), highest, np.inf).min(axis=1)
+    return fit
+
+
+def size_at(curve: DetectionCurve, share: float) -> np.ndarray:
+    """Return the size at which the share of alarms is reached, (b,); infinite where the largest damage does not.
+
+    Where the group of the smallest damage reaches it already, that group's size: an upper bound.
+    """
+    reached = curve.share >= share - 1e-12
+    first = reached.argmax(axis=1)
+    rows = np.arange(first.size)
+    before = np.maximum(first - 1, 0)
+    low, high = curve.share[rows, before], curve.share[rows, first]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        part = np.where(first > 0, (share - low) / (high - low), 1.0)
+    logarithm = np.log(curve.size)
+    found = np.exp(logarithm[before] + part * (logarithm[first] - logarithm[before]))
+    return np.where(reached.any(axis=1), found, np.inf)

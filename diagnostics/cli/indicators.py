@@ -1,0 +1,66 @@
+"""`siggen-diagnostics indicators`: all indicators of a set, ranked by how well they show the damage."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def indicators(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="FOLDER", help="Folder to write; default DIR_indicators.", show_default=False
+        ),
+    ] = None,
+    indicator: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="MODULE:FUNCTION",
+            help="Your own indicator, function(signal, tacho, gears) -> float; may be given several times.",
+            show_default=False,
+        ),
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    false_alarms: Annotated[
+        float, typer.Option(min=0.001, max=0.5, help="Share of healthy records above the threshold.")
+    ] = 0.05,
+    speed_range: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Angles from the mesh lines within this range of pinion speed [Hz], not from the tacho.",
+            show_default=False,
+        ),
+    ] = None,
+    leave_out: Annotated[bool, typer.Option("--leave-out", help="Leave unusable records and channels out.")] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
+) -> None:
+    """Compute all indicators, rank them in both designs, and write page, JSON and tables.
+
+    Example: siggen-diagnostics indicators data/quickstart --workers 4
+    """
+    from diagnostics.assessment.assessment import AssessmentSettings
+    from diagnostics.channel_indicators import IndicatorSettings
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.extras import require_packages
+    from diagnostics.indicator_table import indicator_table
+    from diagnostics.indicators.own_indicator import load_indicator
+    from diagnostics.report.indicator_report import write_indicator_report
+    from diagnostics.signal.tacholess_angle import check_speed_range
+    from siggen.dataset.reading import open as open_set
+
+    require_packages("the report of indicators", "matplotlib")
+    if speed_range is not None:
+        check_speed_range(speed_range)
+    own = [load_indicator(reference) for reference in indicator or ()]
+    dataset = open_set(directory)
+    settings = IndicatorSettings(speed_range_hz=speed_range)
+    with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        table = indicator_table(dataset, own, settings, workers=workers, leave_out=leave_out, advance=advance)
+    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
+    judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
+    typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))

@@ -1,0 +1,127 @@
+"""A user's own indicator: a function of signal, pulse times and gears that stands in the same tables."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.indicators.definition import base_name
+from diagnostics.indicators.definitions import BY_NAME
+from siggen.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Gears:
+    """What an own indicator is told besides signal and pulses: tooth numbers, sampling rate, operating point."""
+
+    teeth_pinion: int
+    teeth_gear: int
+    fs_hz: float
+    speed_hz: float
+    torque_nm: float
+
+
+IndicatorFunction = Callable[[np.ndarray, np.ndarray, Gears], float]
+_REGISTERED: dict[str, OwnIndicator] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class OwnIndicator:
+    """A named function `(signal (n,) [m/s²], tacho (k,) [s], gears) -> float`; NaN means undefined."""
+
+    name: str
+    function: IndicatorFunction
+
+    def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: Gears, where: str) -> float:
+        """Return the value for one channel of a record.
+
+        Raises
+        ------
+        UsageError
+            If the function fails or returns no number; the message names indicator and record.
+        """
+        try:
+            found = self.function(signal, tacho_s, gears)
+            return float(found)
+        except Exception as error:
+            raise UsageError(
+                f"indicator {self.name!r} failed at {where}: {type(error).__name__}: {error}. It is called as "
+                "function(signal, tacho, gears) and has to return one float (nan: undefined)."
+            ) from error
+
+
+def register(name: str) -> Callable[[IndicatorFunction], IndicatorFunction]:
+    """Return a decorator that puts a function among the indicators of this process.
+
+    Parameters
+    ----------
+    name : str
+        Name of its columns: lower case letters, digits and single underscores; no name that the package has.
+
+    Raises
+    ------
+    UsageError
+        If the name cannot be used.
+    """
+    _check_name(name)
+
+    def keep(function: IndicatorFunction) -> IndicatorFunction:
+        _REGISTERED[name] = OwnIndicator(name, function)
+        return function
+
+    return keep
+
+
+def registered() -> tuple[OwnIndicator, ...]:
+    """Return the registered indicators in the order of their registration."""
+    return tuple(_REGISTERED.values())
+
+
+def unregister(name: str) -> None:
+    """Take an indicator out of the registry; unknown names are ignored."""
+    _REGISTERED.pop(name, None)
+
+
+def load_indicator(reference: str) -> OwnIndicator:
+    """Return the indicator named as `package.module:function`; its columns carry the function's name.
+
+    Modules in the current folder are found too.
+
+    Raises
+    ------
+    UsageError
+        If the reference has no colon, the module cannot be imported, or it has no such function.
+    """
+    module_name, colon, attribute = reference.partition(":")
+    if not colon or not module_name or not attribute:
+        raise UsageError(f"--indicator: received {reference!r}; allowed is package.module:function")
+    here = str(Path.cwd())
+    if here not in sys.path:  # an installed command does not look into the folder it is called from
+        sys.path.append(here)
+    try:
+        function = getattr(importlib.import_module(module_name), attribute)
+    except (ImportError, AttributeError) as error:
+        raise UsageError(
+            f"--indicator {reference}: {error}. The module must be importable: put it into this folder, install its "
+            "package, or set PYTHONPATH to its folder."
+        ) from error
+    if not callable(function):
+        raise UsageError(f"--indicator {reference}: {attribute} is a {type(function).__name__}, not a function")
+    _check_name(attribute)
+    return OwnIndicator(attribute, function)
+
+
+def _check_name(name: str) -> None:
+    if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name) or base_name(name) != name:
+        raise UsageError(
+            f"indicator name: received {name!r}; allowed are lower case letters, digits and single underscores, "
+            "without an ending such as _pinion, _h1 or _k1"
+        )
+    if name in BY_NAME:
+        raise UsageError(f"indicator name: {name!r} is one of the package's own; choose another")

@@ -1,0 +1,177 @@
+"""Figures of the evaluation of indicators: heat map, curves over severity, size of damage and noise, and causes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnostics.assessment.assessment import SIZES, Records
+from diagnostics.assessment.detectable_size import detection_curve
+from diagnostics.assessment.indicator_result import IndicatorResult
+from diagnostics.assessment.noise_curve import NoiseCurve
+from diagnostics.assessment.paired_differences import HEALTHY
+from diagnostics.feature_table import FeatureMatrix
+from diagnostics.report.style import FAULT_COLOURS, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ROWS_SHOWN = 36
+CAUSES = ("speed", "load", "sensor", "noise", "specimen")
+CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
+
+
+def separation_figure(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> Figure:
+    """Return the heat map: indicators over states in both designs, median over channels, best first."""
+    names = list(dict.fromkeys(result.indicator for result in found))
+    values = {name: _medians(found, name, states) for name in names}
+    shown = sorted(names, key=lambda name: -_mean(values[name][: len(states)]))[:ROWS_SHOWN]
+    head = [f"{state}\nothers" for state in states] + [f"{state}\nsame" for state in states]
+    return _heat_map(np.array([values[name] for name in shown]), shown, head, (0.0, 1.0), "RdBu_r", "Separation [-]")
+
+
+def _medians(found: Sequence[IndicatorResult], name: str, states: tuple[str, ...]) -> list[float]:
+    """Return the median over channels of the separations, turned so that 1 is perfect."""
+    rows = [result for result in found if result.indicator == name]
+    medians = []
+    for design in ("others", "same"):
+        for state in states:
+            turned = [0.5 + r.direction * (getattr(r, design)[state].separation.value - 0.5) for r in rows]
+            defined = [value for value in turned if math.isfinite(value)]
+            medians.append(float(np.median(defined)) if defined else math.nan)
+    return medians
+
+
+def _mean(values: list[float]) -> float:
+    return float(np.mean(values)) if all(map(math.isfinite, values)) else -math.inf
+
+
+def sensitivity_figure(found: Sequence[IndicatorResult]) -> Figure:
+    """Return the heat map of what explains indicators in healthy records, median over channels, in ranking order."""
+    names = list(dict.fromkeys(result.indicator for result in found))[:ROWS_SHOWN]
+    rows = []
+    for name in names:
+        shares = np.array(
+            [[r.sensitivity.get(cause, np.nan) for cause in CAUSES] for r in found if r.indicator == name]
+        )
+        defined = np.isfinite(shares).any(axis=0)
+        row = np.full(len(CAUSES), np.nan)
+        row[defined] = np.nanmedian(shares[:, defined], axis=0)
+        rows.append(row)
+    return _heat_map(np.array(rows), names, list(CAUSES), (0.0, 1.0), "Greys", "Explained share [-]")
+
+
+def _heat_map(
+    values: np.ndarray, rows: list[str], columns: list[str], limits: tuple[float, float], colours: str, title: str
+) -> Figure:
+    figure, axes = new_figure(height_in=1.2 + 0.215 * len(rows))
+    axis = axes[0, 0]
+    picture = axis.imshow(values, cmap=colours, vmin=limits[0], vmax=limits[1], aspect="auto")
+    for (row, column), value in np.ndenumerate(values):
+        if math.isfinite(value):
+            dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
+            axis.text(
+                column, row, f"{value:.2f}", ha="center", va="center", fontsize=7, color="white" if dark else "#1c2733"
+            )
+    axis.set_xticks(range(len(columns)), columns, fontsize=8)
+    axis.xaxis.tick_top()
+    axis.set_yticks(range(len(rows)), rows, fontsize=7.5)
+    axis.grid(visible=False)
+    axis.tick_params(length=0)
+    figure.colorbar(picture, ax=axis, location="bottom", shrink=0.6, aspect=40, pad=0.01, label=title)
+    return figure
+
+
+def severity_figure(
+    matrix: FeatureMatrix, shown: Sequence[IndicatorResult], states: tuple[str, ...], healthy: tuple[str, ...]
+) -> Figure:
+    """Return each indicator over the states: median and 5 to 95 % of the records, and every specimen as a thin line."""
+    rows = (len(shown) + 1) // 2
+    figure, axes = new_figure(rows, 2, height_in=0.5 + 1.75 * rows, sharex=True)
+    ladder = (*healthy, *states)
+    for axis, result in zip(axes.ravel(), shown, strict=False):
+        values = matrix.values[:, matrix.names.index(result.column)]
+        _draw_ladders(axis, matrix.labels, values, ladder)
+        position = [k for k, state in enumerate(ladder) if np.isfinite(values[matrix.labels["state"] == state]).any()]
+        limits = [np.nanquantile(values[matrix.labels["state"] == ladder[k]], [0.05, 0.5, 0.95]) for k in position]
+        low, middle, high = np.array(limits).T
+        axis.fill_between(position, low, high, color="#1f6f8b", alpha=0.18, linewidth=0)
+        axis.plot(position, middle, color="#b01e3c", linewidth=1.8, marker="o", markersize=4)
+        if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
+            axis.set_yscale("log")
+        axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=8)
+        axis.set_xticks(range(len(ladder)), ladder, fontsize=8, rotation=20)
+    for axis in axes.ravel()[len(shown) :]:
+        axis.set_visible(False)
+    return figure
+
+
+def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, ladder: tuple[str, ...]) -> None:
+    """Draw the mean of every specimen over the states."""
+    for specimen in np.unique(labels["specimen_id"])[:60]:
+        own = labels["specimen_id"] == specimen
+        means = []
+        for state in ladder:
+            chosen = values[own & (labels["state"] == state)]
+            defined = chosen[np.isfinite(chosen)]
+            means.append(float(defined.mean()) if defined.size else np.nan)
+        axis.plot(range(len(ladder)), means, color="#8a97a3", linewidth=0.5, alpha=0.7)
+
+
+def detection_figure(
+    matrix: FeatureMatrix, records: Records, shown: Sequence[IndicatorResult], false_alarms: float
+) -> Figure | None:
+    """Return the share of alarms over the damaged area, between other specimens, with intervals; None without data."""
+    figure, axes = new_figure(height_in=3.4)
+    axis, drawn = axes[0, 0], 0
+    healthy = matrix.labels["fault"] == HEALTHY
+    for colour, result in zip(CURVE_COLOURS, shown, strict=False):
+        values = result.direction * matrix.values[:, matrix.names.index(result.column)]
+        kept = np.isfinite(values)
+        area = matrix.labels[SIZES["area_mm2"]]
+        curve = detection_curve(values[kept], healthy[kept], area[kept], records.weights[:, kept], false_alarms)
+        if curve is None:
+            continue
+        drawn += 1
+        low, high = np.quantile(curve.share[1:], [0.025, 0.975], axis=0)
+        axis.fill_between(curve.size, low, high, color=colour, alpha=0.12, linewidth=0)
+        axis.plot(curve.size, curve.share[0], color=colour, marker="o", markersize=3, label=result.column)
+    if not drawn:
+        return None
+    for level in (0.5, 0.9):
+        axis.axhline(level, color="#8a97a3", linestyle=":", linewidth=0.9)
+    axis.axhline(false_alarms, color="#8a97a3", linestyle="--", linewidth=0.9)
+    axis.set_xscale("log")
+    axis.set_ylim(0.0, 1.03)
+    axis.set_xlabel("Damaged area [mm²]")
+    axis.set_ylabel("Share of alarms [-]")
+    figure.legend(loc="outside lower center", ncols=1, fontsize=8)
+    return figure
+
+
+def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ...]) -> Figure | None:
+    """Return AUC over signal-to-noise ratio, one panel per indicator, a line per state; None without curves."""
+    usable = {name: found for name, found in curves.items() if any(curve.auc for curve in found.values())}
+    if not usable:
+        return None
+    rows = (len(usable) + 1) // 2
+    figure, axes = new_figure(rows, 2, height_in=0.8 + 1.75 * rows, sharex=True, sharey=True)
+    for axis, (name, found) in zip(axes.ravel(), usable.items(), strict=False):
+        for position, state in enumerate(states):
+            curve, colour = found[state], FAULT_COLOURS[min(position, len(FAULT_COLOURS) - 1)]
+            low, high = [a.low for a in curve.auc], [a.high for a in curve.auc]
+            axis.fill_between(curve.snr_db, low, high, color=colour, alpha=0.12, linewidth=0)
+            label = state if axis is axes[0, 0] else None
+            axis.plot(curve.snr_db, [a.value for a in curve.auc], color=colour, marker="o", markersize=3, label=label)
+        axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
+        axis.set_title(name.replace("__", "\n"), loc="left", fontsize=8)
+    for axis in axes.ravel()[len(usable) :]:
+        axis.set_visible(False)
+    axes[0, 0].set_ylim(-0.03, 1.03)
+    figure.supxlabel("Signal-to-noise ratio of the records [dB]", fontsize=10)
+    figure.supylabel("AUC, healthy against state [-]", fontsize=10)
+    figure.legend(loc="outside upper center", ncols=len(states), fontsize=9)
+    return figure

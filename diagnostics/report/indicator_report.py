@@ -1,0 +1,284 @@
+"""Report of the evaluation of indicators: one page, one JSON file, tables of all values and all results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnostics.assessment.assessment import AssessmentSettings, Records, assessment, result_table, shared_records
+from diagnostics.assessment.indicator_result import IndicatorResult
+from diagnostics.assessment.noise_curve import NoiseCurve, noise_curve
+from diagnostics.assessment.paired_differences import HEALTHY
+from diagnostics.extras import require_packages
+from diagnostics.feature_table import write_table
+from diagnostics.indicator_table import IndicatorTable
+from diagnostics.indicators.definition import base_name
+from diagnostics.progress import Stage, silent_stage
+from diagnostics.realism import meaning_of_scores
+from diagnostics.report import html, indicator_figures, indicator_tables
+from diagnostics.report.indicator_sentences import indicator_findings
+from diagnostics.report.report import clipping_notes, states
+from diagnostics.report.style import png_bytes, styled
+from diagnostics.report.tables import set_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CURVES_SHOWN = 6
+PAGE, NUMBERS = "indicators.html", "indicators.json"
+HOW_TO_READ = (
+    "Two designs. Other specimens: healthy against damaged records of all gearboxes; AUC 0.5 is chance, Cliff's delta "
+    "is 2 AUC − 1. Same specimen: each damaged record minus the healthy one of the same gearbox, operating point and "
+    "repeat; the share of pairs in which the indicator is higher after. Scores are means over the states, turned by "
+    "the direction with damage, which the same-specimen design tells. Limits: 95 %, resampled specimens. p-values: "
+    "specimen means, Mann-Whitney (other specimens, conservative, since healthy and damaged gearboxes are the same) "
+    "and Wilcoxon (same specimen), adjusted by Holm over all indicators, channels and states. A click on a head sorts."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluated:
+    """Everything the page is made of."""
+
+    table: IndicatorTable
+    settings: AssessmentSettings
+    records: Records
+    found: list[IndicatorResult]
+    noise: dict[str, dict[str, NoiseCurve]]
+
+    @property
+    def shown(self) -> list[IndicatorResult]:
+        """The best channel of each of the best indicators of different definition."""
+        chosen: dict[str, IndicatorResult] = {}
+        for result in self.found:
+            chosen.setdefault(base_name(result.indicator), result)
+        return list(chosen.values())[:CURVES_SHOWN]
+
+
+def write_indicator_report(
+    dataset: Any,
+    table: IndicatorTable,
+    folder: Path,
+    settings: AssessmentSettings | None = None,
+    stage: Stage = silent_stage,
+) -> Path:
+    """Evaluate a table of indicators and write everything; return the page's path.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set that the table was made of.
+    table : IndicatorTable
+        All indicators of the set.
+    folder : Path
+        Created where missing. Gets `indicators.html`, `indicators.json`, `indicators.parquet` (all values),
+        `evaluation.parquet` and `.csv` (all results, in the order of the ranking) and `figures/`.
+    settings : AssessmentSettings, optional
+        Default: `AssessmentSettings()`.
+    stage : Stage
+        Told of every step.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib is missing.
+    """
+    require_packages("the report of indicators", "matplotlib")
+    chosen = settings or AssessmentSettings()
+    folder.mkdir(parents=True, exist_ok=True)
+    write_table(table.arrow(), folder / "indicators.parquet")
+    with stage("evaluation", len(table.matrix.names)) as advance:
+        found = assessment(table, chosen, advance)
+    evaluated = Evaluated(table, chosen, shared_records(table, chosen), found, {})
+    evaluated = Evaluated(table, chosen, evaluated.records, found, _noise_curves(evaluated))
+    results = result_table(found)
+    write_table(results, folder / "evaluation.parquet")
+    write_table(results, folder / "evaluation.csv")
+    sentences = indicator_findings(found, evaluated.records.states, _specimens(table))
+    numbers = report_numbers(dataset, evaluated, sentences)
+    (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    with stage("figures", 1) as advance, styled():
+        pictures = {name: (png_bytes(drawn), text) for name, (drawn, text) in figures(evaluated).items()}
+        advance()
+    (folder / "figures").mkdir(exist_ok=True)
+    for name, (png, _) in pictures.items():
+        (folder / "figures" / f"{name}.png").write_bytes(png)
+    return _write_page(dataset, folder, evaluated, sentences, pictures)
+
+
+def _specimens(table: IndicatorTable) -> int:
+    return int(np.unique(table.matrix.labels["specimen_id"]).size)
+
+
+def _noise_curves(evaluated: Evaluated) -> dict[str, dict[str, NoiseCurve]]:
+    """Return AUC over signal-to-noise ratio of the indicators shown, by column and state."""
+    labels, curves = evaluated.table.matrix.labels, {}
+    for result in evaluated.shown:
+        if f"snr_{result.channel}_db" not in labels:
+            continue
+        values = result.direction * evaluated.table.matrix.values[:, evaluated.table.matrix.names.index(result.column)]
+        found = {}
+        for state in evaluated.records.states:
+            chosen = np.isfinite(values) & ((labels["fault"] == HEALTHY) | (labels["state"] == state))
+            found[state] = noise_curve(
+                values[chosen],
+                (labels["state"] == state)[chosen],
+                labels[f"snr_{result.channel}_db"][chosen],
+                labels["specimen_id"][chosen],
+                evaluated.records.weights[:, chosen],
+            )
+        curves[result.column] = found
+    return curves
+
+
+def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
+    """Return all figures by file name with their captions; those without data are left out."""
+    found, names = evaluated.found, evaluated.records.states
+    if not names or not evaluated.shown:
+        return {}
+    matrix = evaluated.table.matrix
+    intact = tuple(state for state in states(matrix) if state not in names)
+    drawn: dict[str, tuple[Figure | None, str]] = {
+        "separation": (
+            indicator_figures.separation_figure(found, names),
+            f"Separation of each state from healthy, the best {indicator_figures.ROWS_SHOWN} indicators, median over "
+            "channels, turned so that 1 (red) is perfect and 0.5 (white) chance. Others: AUC between specimens. Same: "
+            "share of pairs of one specimen that move its way.",
+        ),
+        "sensitivity": (
+            indicator_figures.sensitivity_figure(found),
+            "What moves the same indicators in healthy records: adjusted share of rank variance that each cause "
+            "explains alone, median over channels.",
+        ),
+        "severity": (
+            indicator_figures.severity_figure(matrix, evaluated.shown, names, intact),
+            "Indicators over the severity ladder: median (red), 5 to 95 % of the records (blue), specimens (grey).",
+        ),
+        "detection": (
+            indicator_figures.detection_figure(
+                matrix, evaluated.records, evaluated.shown, evaluated.settings.false_alarms
+            ),
+            f"Share of alarms over the damaged area at {evaluated.settings.false_alarms:.0%} false alarms (dashed), "
+            "other specimens, with 95 % limits; dotted: a50 and a90.",
+        ),
+        "noise": (
+            indicator_figures.noise_figure(evaluated.noise, names),
+            "Separation over the signal-to-noise ratio: records in groups of equal count, 95 % limits.",
+        ),
+    }
+    return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
+
+
+def report_numbers(dataset: Any, evaluated: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
+    """Return the content of `indicators.json`; undefined and unreached numbers are null."""
+    table = evaluated.table
+    return {
+        "set": dataset.path.name,
+        "identity": dataset.manifest["identity"],
+        "records": int(table.matrix.values.shape[0]),
+        "specimens": _specimens(table),
+        "states": list(evaluated.records.states),
+        "summary": list(sentences),
+        "indicator_settings": asdict(table.settings),
+        "assessment_settings": asdict(evaluated.settings),
+        "left_out": [str(problem) for problem in table.problems],
+        "notes": _note_counts(table),
+        "results": [result.numbers() for result in evaluated.found],
+        "noise_curves": {
+            column: {state: {"snr_db": c.snr_db, "auc": [a.numbers() for a in c.auc]} for state, c in found.items()}
+            for column, found in evaluated.noise.items()
+        },
+    }
+
+
+def _note_counts(table: IndicatorTable) -> list[str]:
+    reasons, counts = np.unique([note for note in table.notes if note], return_counts=True)
+    return [f"{count} of {len(table.notes)} records: {reason}" for reason, count in zip(reasons, counts, strict=True)]
+
+
+def _write_page(
+    dataset: Any,
+    folder: Path,
+    evaluated: Evaluated,
+    sentences: Sequence[str],
+    pictures: dict[str, tuple[bytes, str]],
+) -> Path:
+    found, names, table = evaluated.found, evaluated.records.states, evaluated.table
+
+    def grid(*wanted: str) -> str:
+        return html.figure_grid([html.figure_block(*pictures[name]) for name in wanted if name in pictures])
+
+    title = f"Indicators of {dataset.path.name}"
+    undefined = indicator_tables.undefined_html(found)
+    parts = [
+        html.heading(title, 1),
+        html.paragraph(meaning_of_scores(dataset.config), "first"),
+        *(html.paragraph(sentence) for sentence in sentences),
+        set_table(table.matrix.labels, states(table.matrix)),
+        html.heading("Ranking"),
+        html.paragraph(HOW_TO_READ),
+        indicator_tables.ranking_html(found, names),
+        grid("separation", "sensitivity"),
+        html.heading("Trend with severity, and the smallest damage found"),
+        html.paragraph(_size_text(evaluated)),
+        indicator_tables.trend_html(found, names),
+        grid("severity", "noise", "detection"),
+        html.heading("What moves indicators in healthy records"),
+        html.paragraph(
+            "Adjusted share of rank variance that each cause explains alone; speed, load and signal-to-noise ratio as "
+            "a parabola, sensor and specimen as groups. Causes may share variance."
+        ),
+        indicator_tables.sensitivity_html(found),
+        *([html.heading("Undefined values"), undefined] if undefined else []),
+        html.heading("Definitions"),
+        indicator_tables.definition_html(),
+        html.heading("Notes"),
+        *(html.paragraph(note, "note") for note in _notes(dataset, evaluated)),
+    ]
+    path = folder / PAGE
+    path.write_text(html.page(title, parts), encoding="utf-8")
+    return path
+
+
+def _size_text(evaluated: Evaluated) -> str:
+    repeated = evaluated.records.pairs.null_rows.size > 0
+    same = (
+        "Same specimen: changes against the specimen's first healthy record, the threshold from its other healthy ones."
+        if repeated
+        else "On the same specimen no threshold can be set, since healthy records are not repeated (repeats > 1)."
+    )
+    return (
+        f"a50 and a90: size at which half and 90 % of the damaged records give an alarm, at "
+        f"{evaluated.settings.false_alarms:.0%} false alarms among healthy ones. ≤: found already at the smallest "
+        f"damage of the set. {same} Monotonicity: mean sign of the steps up the ladder. An indicator need not be "
+        "monotone: pitting over many teeth lowers FM4 again."
+    )
+
+
+def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
+    table = evaluated.table
+    angle = table.settings.speed_range_hz
+    settings = json.dumps(asdict(table.settings.order_domain))
+    return [
+        *(f"Left out: {problem}" for problem in table.problems),
+        *_note_counts(table),
+        *clipping_notes(dataset),
+        f"Revolutions averaged: pinion {_range(table.revolutions[:, 0])}, gear {_range(table.revolutions[:, 1])}. "
+        "Values of averages depend on their number where noise matters (see noise_share).",
+        f"Settings: {settings}; {table.settings.modulation_harmonics} harmonics demodulated, spectral kurtosis over "
+        f"{table.settings.frame_samples} samples; bootstrap seed {evaluated.settings.seed}, "
+        f"{evaluated.records.weights.shape[0] - 1} resamples.",
+        f"Angles from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}. Set "
+        f"{dataset.path.name}, identity {dataset.manifest['identity']}, {dataset.fs_hz:g} Hz, "
+        f"{dataset.duration_s:g} s.",
+    ]
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = int(values.min()), int(values.max())
+    return str(low) if low == high else f"{low} to {high}"

@@ -1,0 +1,111 @@
+"""What the indicators of one shaft are made of: its average, the parts of it, and its lines; computed once per channel.
+
+Lines of the pinion's sidebands come from the plain average; those of the gear from a Hann-weighted one, since over the
+few revolutions of a record the pinion's lines do not cancel. Source: derived; see `revolutions_needed`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.signal.difference_signal import SeparatedAverage, separated_average
+from diagnostics.signal.order_domain import AngleGrid
+from diagnostics.signal.spectrum import line_amplitudes, resolved_lines, revolutions_needed
+from diagnostics.signal.synchronous_average import hann_weights, synchronous_average
+
+
+@dataclass(frozen=True, slots=True)
+class Shaft:
+    """One shaft of a record: its name, teeth, whole revolutions, which sidebands are resolved, and what is not."""
+
+    name: str
+    teeth: int
+    revolutions: int
+    resolved: np.ndarray
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class ShaftSignals:
+    """Signals of one shaft in one channel.
+
+    Attributes
+    ----------
+    shaft : Shaft
+    average : (n,) float64
+        Synchronous average, one revolution.
+    lines : (n // 2 + 1,) float64
+        Its line amplitudes at whole shaft orders.
+    sideband_average : (n,) float64
+        The average that sidebands are read from: the same for the pinion, Hann-weighted for the gear.
+    sideband_lines : (n // 2 + 1,) float64
+        Its line amplitudes, NaN where a sideband is not resolved.
+    parts : SeparatedAverage
+        Regular, residual and difference signal of the average.
+    """
+
+    shaft: Shaft
+    average: np.ndarray
+    lines: np.ndarray
+    sideband_average: np.ndarray
+    sideband_lines: np.ndarray
+    parts: SeparatedAverage
+
+
+def record_shafts(
+    grid: AngleGrid | None, teeth: tuple[int, int], samples_per_tooth: int, sidebands: int
+) -> tuple[Shaft, Shaft]:
+    """Return pinion and gear of a record.
+
+    Parameters
+    ----------
+    grid : AngleGrid, optional
+        Steps of pinion angle; without them both shafts have no revolution.
+    teeth : (int, int)
+        Teeth of pinion and gear.
+    samples_per_tooth : int
+        Angle steps per mesh period.
+    sidebands : int
+        Sidebands 1 ... of which it is told whether they are resolved.
+    """
+    steps = grid.time_s.size if grid else 0
+    pinion_turns, gear_turns = (steps // (z * samples_per_tooth) for z in teeth)
+    needed = np.array([revolutions_needed(k, teeth[1], teeth[0]) for k in range(1, sidebands + 1)])
+    resolved = needed <= gear_turns
+    note = "" if pinion_turns else "no whole pinion revolution between two pulses"
+    pinion = Shaft("pinion", teeth[0], pinion_turns, np.ones(sidebands, dtype=bool), note)
+    return pinion, Shaft("gear", teeth[1], gear_turns, resolved, _resolution_note(resolved, needed, gear_turns))
+
+
+def _resolution_note(resolved: np.ndarray, needed: np.ndarray, turns: int) -> str:
+    if turns < 1:
+        return "no whole gear revolution: all gear averages undefined"
+    missing = [f"{k + 1} (needs {needed[k]:.0f})" for k in np.flatnonzero(~resolved)]
+    return f"gear sidebands not resolved by {turns} gear revolutions: {', '.join(missing)}" if missing else ""
+
+
+def shaft_signals(
+    steps: np.ndarray, shaft: Shaft, samples_per_tooth: int, shaft_orders: int, difference_sidebands: int
+) -> ShaftSignals:
+    """Return the signals of one shaft from a record in equal steps of angle.
+
+    Parameters
+    ----------
+    steps : (n,) float64
+        Angle signal, at least one revolution of the shaft.
+    shaft : Shaft
+        Whose revolutions are averaged.
+    samples_per_tooth, shaft_orders, difference_sidebands : int
+        As of `FeatureSettings`.
+    """
+    average = synchronous_average(steps, shaft.teeth, samples_per_tooth).signal
+    lines = line_amplitudes(average)
+    parts = separated_average(average, shaft.teeth, shaft_orders, difference_sidebands)
+    if shaft.name != "gear":
+        return ShaftSignals(shaft, average, lines, average, lines, parts)
+    weights = hann_weights(shaft.revolutions * average.size)
+    weighted = synchronous_average(steps, shaft.teeth, samples_per_tooth, weights).signal
+    resolved = resolved_lines(line_amplitudes(weighted), shaft.resolved, shaft.teeth)
+    return ShaftSignals(shaft, average, lines, weighted, resolved, parts)

@@ -1,0 +1,81 @@
+"""Real cepstrum, and lifters that keep or drop part of it.
+
+c = IFFT(log |X|): sidebands or harmonics at a common spacing collect into one peak (rahmonic) at its inverse. Source:
+Randall 2017, standard literature.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+FLOOR = 1e-9
+"""Amplitudes below this share of the strongest line count as that much: the logarithm of an empty bin says nothing."""
+
+
+def log_amplitude(signal: np.ndarray) -> np.ndarray:
+    """Return the natural logarithm of the Hann-weighted amplitude spectrum, (n // 2 + 1,), floored at 1e-9 of its top.
+
+    Parameters
+    ----------
+    signal : (n,) float64
+        Record or angle signal.
+    """
+    from scipy import fft
+
+    weights = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(signal.size) / signal.size)
+    amplitude = np.abs(fft.rfft(signal * weights))
+    return np.log(np.maximum(amplitude, FLOOR * amplitude.max() + 1e-300))
+
+
+def real_cepstrum(log_spectrum: np.ndarray) -> np.ndarray:
+    """Return the real cepstrum of a one-sided log amplitude spectrum.
+
+    Parameters
+    ----------
+    log_spectrum : (k,) float64
+        Natural logarithm of amplitude in equal steps from zero; the last bin counts as the end of the band.
+
+    Returns
+    -------
+    (2 (k - 1),) float64
+        Dimensionless; index q is the quefrency of q / (2 (k - 1)) of the inverse bin width. An echo of share a after q
+        samples gives a/2 there.
+    """
+    from scipy import fft
+
+    return np.asarray(fft.irfft(log_spectrum, n=2 * (log_spectrum.size - 1)))
+
+
+def short_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
+    """Return the cepstrum with quefrencies from `samples` on zeroed: its spectrum is the smooth envelope (the path)."""
+    kept = cepstrum.copy()
+    kept[samples : kept.size - samples + 1] = 0.0
+    return kept
+
+
+def long_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
+    """Return the cepstrum with quefrencies below `samples` zeroed: its spectrum is flat but for lines (the source)."""
+    return cepstrum - short_pass(cepstrum, samples)
+
+
+def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -> np.ndarray:
+    """Return the log spectrum with every line at multiples of `spacing` replaced by a straight line over it.
+
+    Mesh lines would else collect at the pinion's quefrency too, a whole number of mesh periods. The two neighbours
+    beyond `half_width` bins (the Hann main lobe) carry the straight line.
+
+    Parameters
+    ----------
+    log_spectrum : (k,) float64
+        One-sided log amplitude.
+    spacing : int
+        Bins between the lines.
+    half_width : int
+        Bins replaced on each side of a line.
+    """
+    index = np.arange(log_spectrum.size)
+    distance = np.abs((index + spacing // 2) % spacing - spacing // 2)
+    line = (distance <= half_width) & (index > spacing // 2)
+    replaced = log_spectrum.copy()
+    replaced[line] = np.interp(index[line], index[~line], log_spectrum[~line])
+    return replaced

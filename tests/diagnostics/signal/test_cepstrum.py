@@ -1,0 +1,72 @@
+"""Cepstrum and spectral kurtosis on signals whose values are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import stft
+
+from diagnostics.signal.cepstrum import log_amplitude, long_pass, real_cepstrum, short_pass, without_lines
+from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
+from siggen.errors import UsageError
+
+
+def test_echo_gives_half_its_share_at_its_delay() -> None:
+    # log|1 + a exp(-jw tau)| = a cos(w tau) - a^2/2 cos(2 w tau) + ..., and a cosine splits into two quefrencies
+    impulse = np.zeros(1024)
+    impulse[0], impulse[100] = 1.0, 0.4
+    cepstrum = real_cepstrum(np.log(np.abs(np.fft.rfft(impulse))))
+    assert cepstrum[100] == pytest.approx(0.2)
+    assert cepstrum[200] == pytest.approx(-0.04)
+    assert np.argmax(cepstrum[10:512]) + 10 == 100
+
+
+def test_lifters_share_the_cepstrum_without_overlap() -> None:
+    noise = np.random.default_rng(1).standard_normal(512)
+    cepstrum = real_cepstrum(log_amplitude(noise))
+    np.testing.assert_allclose(short_pass(cepstrum, 20) + long_pass(cepstrum, 20), cepstrum)
+    assert np.count_nonzero(short_pass(cepstrum, 20)) == 39  # -19 ... 19
+    back = np.fft.rfft(cepstrum).real
+    np.testing.assert_allclose(back, log_amplitude(noise), atol=1e-9)
+
+
+def test_removed_lines_leave_no_rahmonic() -> None:
+    log_spectrum = np.zeros(1001)
+    log_spectrum[::50] = 5.0
+    # a line of log height 5 every 50 of 2000 bins: 5/50 at quefrency 2000/50
+    assert real_cepstrum(log_spectrum)[40] == pytest.approx(0.1)
+    np.testing.assert_allclose(without_lines(log_spectrum, 50)[26:], 0.0)
+
+
+def test_spectral_kurtosis_of_noise_is_zero_and_of_a_tone_minus_one() -> None:
+    rng = np.random.default_rng(2)
+    noise = rng.standard_normal(256 * 2000)
+    found = spectral_kurtosis(noise, 256)
+    frames = 2 * 2000 - 1
+    # standard error 2/sqrt(frames) for independent frames; overlap by half costs below a factor 1.2
+    assert np.abs(found[2:-2]).max() < 5 * 1.2 * 2 / np.sqrt(frames)
+    tone = np.cos(2 * np.pi * 32 / 256 * np.arange(256 * 50))
+    assert spectral_kurtosis(tone, 256)[32] == pytest.approx(-1.0)
+
+
+def test_impulses_raise_it_where_they_ring() -> None:
+    rng = np.random.default_rng(3)
+    signal = rng.standard_normal(100_000)
+    ring = np.exp(-np.arange(200) / 40) * np.cos(2 * np.pi * 0.25 * np.arange(200))
+    for start in range(1000, 99_000, 5000):
+        signal[start : start + 200] += 6 * ring
+    found = spectral_kurtosis(signal, 256)
+    assert abs(np.argmax(found) / 256 - 0.25) < 0.02
+    assert found.max() > 1.0
+
+
+def test_spectral_kurtosis_is_that_of_scipys_short_spectra() -> None:
+    signal = np.random.default_rng(4).standard_normal(5120)
+    _, _, spectra = stft(signal, window="hann", nperseg=512, noverlap=256, boundary=None, padded=False)
+    power = np.abs(spectra) ** 2
+    np.testing.assert_allclose(spectral_kurtosis(signal), (power**2).mean(1) / power.mean(1) ** 2 - 2, rtol=1e-9)
+
+
+def test_record_of_too_few_frames_is_refused() -> None:
+    with pytest.raises(UsageError, match="need 2304"):
+        spectral_kurtosis(np.ones(1000))

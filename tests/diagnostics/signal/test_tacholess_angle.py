@@ -1,0 +1,97 @@
+"""Angle from a mesh line alone, against the true angle of a record that drifts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.synchronous_average import synchronous_average
+from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
+from siggen.errors import UsageError
+
+FS_HZ, TEETH, RATIO = 12_800.0, 18, 18 / 47
+
+
+def drifting(drift: float, noise: float, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Return a modulated mesh signal whose speed drifts by `drift` in 2 s, and its true pinion turns."""
+    rng = np.random.default_rng(seed)
+    time_s = np.arange(round(2.0 * FS_HZ)) / FS_HZ
+    speed_hz = 30.0 * (1.0 + drift * (time_s / 2.0 - 0.5)) * (1 + 0.001 * np.sin(2 * np.pi * 1.1 * time_s))
+    turns = np.cumsum(speed_hz) / FS_HZ + 0.3
+    shape = 1 + 0.4 * np.cos(2 * np.pi * turns) + 0.2 * np.cos(2 * np.pi * RATIO * turns + 1)
+    mesh = sum(a * np.cos(2 * np.pi * h * TEETH * turns + h) for h, a in ((1, 0.5), (2, 1.0), (3, 0.4)))
+    return shape * mesh + noise * rng.standard_normal(time_s.size), turns
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.04, -0.04])
+def test_angle_is_found_within_a_hundredth_of_a_tooth_pitch_although_speed_drifts(drift: float) -> None:
+    signal, turns = drifting(drift, 0.5)
+    pulses = tacholess_pulses(signal, FS_HZ, TEETH, (25.0, 36.0))
+    at = np.interp(pulses, np.arange(turns.size) / FS_HZ, turns)
+    error = at - np.arange(at.size) - np.median(at - np.arange(at.size))
+    # the phase filter sees the record on one side only within 1/(2 pi 0.1) = 1.6 turns of its ends
+    inner = slice(4, -4)
+    assert np.abs(error[inner]).max() < 0.01 / TEETH
+    assert np.abs(error).max() < 0.1 / TEETH
+
+
+def test_ridge_follows_the_speed_within_its_bin() -> None:
+    signal, turns = drifting(0.04, 0.5)
+    ridge = mesh_ridge(signal, FS_HZ, TEETH, (25.0, 36.0))
+    speed_hz = np.interp(ridge.time_s, np.arange(turns.size) / FS_HZ, np.gradient(turns) * FS_HZ)
+    # a frame of 0.16 s has bins of 6.25 Hz; the first harmonic alone, of 18 teeth, would tell the speed that well
+    assert np.abs(ridge.speed_hz - speed_hz).max() < 6.25 / 18
+    assert ridge.clarity > 0.3  # three of ten harmonics, each at least e above what noise reaches
+
+
+def test_noise_without_a_mesh_line_is_refused() -> None:
+    noise = np.random.default_rng(3).standard_normal(25_600)
+    assert mesh_ridge(noise, FS_HZ, TEETH, (25.0, 36.0)).clarity < 0.03
+    with pytest.raises(UsageError, match="no mesh line stands above the noise"):
+        tacholess_pulses(noise, FS_HZ, TEETH, (25.0, 36.0))
+
+
+def test_strong_high_harmonics_do_when_the_first_three_are_buried() -> None:
+    rng = np.random.default_rng(2)
+    signal, turns = drifting(0.04, 0.0)
+    high = sum(a * np.cos(2 * np.pi * h * TEETH * turns) for h, a in ((4, 1.0), (7, 2.0), (9, 1.0)))
+    pulses = tacholess_pulses(0.02 * signal + high + rng.standard_normal(signal.size), FS_HZ, TEETH, (19.0, 36.0))
+    at = np.interp(pulses, np.arange(turns.size) / FS_HZ, turns)
+    error = at - np.arange(at.size) - np.median(at - np.arange(at.size))
+    assert np.abs(error[4:-4]).max() < 0.01 / TEETH
+
+
+def test_record_too_slow_for_its_mesh_line_is_refused() -> None:
+    with pytest.raises(UsageError, match="no mesh line to follow"):
+        mesh_ridge(np.ones(10_000), 1000.0, TEETH, (25.0, 36.0))
+
+
+def test_average_by_the_found_angle_holds_what_the_true_angle_gives() -> None:
+    signal, turns = drifting(0.04, 0.0)
+    whole = np.arange(np.ceil(turns[0]), np.floor(turns[-1]) + 1)
+    truth = np.interp(whole, turns, np.arange(turns.size) / FS_HZ)
+    found = tacholess_pulses(signal, FS_HZ, TEETH, (25.0, 36.0))
+    level = [
+        synchronous_average(resample_to_angle(signal, FS_HZ, angle_grid(pulses, TEETH * 64)), TEETH, 64).signal.std()
+        for pulses in (truth, found)
+    ]
+    assert level[1] == pytest.approx(level[0], rel=0.02)  # a hundredth of a pitch costs (2 pi 0.03)^2 / 2 = 2 % at h3
+
+
+def test_average_by_the_nominal_speed_is_lost_which_is_why_the_angle_is_needed() -> None:
+    signal, _ = drifting(0.04, 0.0)
+    nominal = np.arange(0.0, 2.0, 1 / 30.0)
+    average = synchronous_average(resample_to_angle(signal, FS_HZ, angle_grid(nominal, TEETH * 64)), TEETH, 64).signal
+    assert average.std() < 0.5 * signal.std()
+
+
+@pytest.mark.parametrize("speeds", [(30.0, 20.0), (0.0, 30.0), (20.0, 41.0)])
+def test_range_that_names_no_single_harmonic_is_refused(speeds: tuple[float, float]) -> None:
+    with pytest.raises(UsageError, match="speed range"):
+        mesh_ridge(np.ones(100_000), FS_HZ, TEETH, speeds)
+
+
+def test_record_shorter_than_four_turns_is_refused_with_the_length_it_needs() -> None:
+    with pytest.raises(UsageError, match=r"needs 0\.16 s"):
+        mesh_ridge(np.ones(1000), FS_HZ, TEETH, (25.0, 36.0))
