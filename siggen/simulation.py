@@ -28,7 +28,15 @@ from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
 from siggen.state_damage import state_damage
 
-__all__ = ["damage_rows", "record_response", "simulate", "simulate_specimen", "specimen_state", "start_angle_rad"]
+__all__ = [
+    "damage_rows",
+    "limits_of",
+    "record_response",
+    "simulate",
+    "simulate_specimen",
+    "specimen_state",
+    "start_angle_rad",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,18 +59,18 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         If what was drawn cannot be built (named in the reason).
     """
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    with _limits_of("impossible_damage"):
+    with limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         tables = mesh_tables(pair, damage, options, points=specimen.stiffness.table_points)
         labels = damage_labels(config.states[state_id], pair, damage, options)
-    with _limits_of("outside_model"):
+    with limits_of("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
     return SpecimenState(pair, options, damage, SpecimenMesh(pair, assembled, tables, missing), labels)
 
 
 @contextmanager
-def _limits_of(status: str) -> Iterator[None]:
+def limits_of(status: str) -> Iterator[None]:
     """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
     try:
         yield
@@ -89,7 +97,7 @@ def record_response(
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
-    with _limits_of("outside_model"):
+    with limits_of("outside_model"):
         response = response_of(
             specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps)),
             Drive(point.speed_hz, start_angle_rad(config, state.pair, record)),

@@ -39,6 +39,7 @@ FLOORS = {
     "siggen.flank_views": 5.45,
     "siggen.simulation": 5.5,
     "siggen.record_internals": 5.6,
+    "siggen.exported_model": 5.6,
     "siggen.engines": 7,
     "siggen.generation": 8,
     "siggen.verification": 8,
