@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd, pi
 
+import numpy as np
+
 from siggen.config import Config
 from siggen.damage_table import damage_rows
-from siggen.dataset.plan import PlannedRecord, planned_record
+from siggen.dataset.plan import PlannedRecord, has_internals, planned_record
 from siggen.dataset.record import Record, RecordFailure
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.dynamics.drive import Drive
@@ -20,6 +22,7 @@ from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import StiffnessOptions
 from siggen.gears.tables import mesh_tables
+from siggen.internal_quantities import internal_quantities
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
@@ -113,7 +116,8 @@ def record_response(
 
 
 def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned: PlannedRecord) -> Record:
-    response, point = record_response(config, specimen, state, planned)
+    with_internals = has_internals(config, planned)
+    response, point = record_response(config, specimen, state, planned, internals=with_internals)
     channels, channel_labels = measured_channels(config, specimen, planned, response)
     labels = {
         **state.labels,
@@ -123,7 +127,9 @@ def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned
         "status": response.status,
         **channel_labels,
     }
-    return Record(planned=planned, labels=labels, channels=channels, tacho_s=response.tacho_s)
+    found = internal_quantities(specimen, response) if with_internals else {}
+    internals = {name: values.astype(np.float32) for name, values in found.items()}
+    return Record(planned, labels, channels, response.tacho_s, internals if with_internals else None)
 
 
 def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:

@@ -37,6 +37,7 @@ FLOORS = {
     "siggen.damage_outline": 5.35,
     "siggen.dataset": 5.4,
     "siggen.flank_views": 5.45,
+    "siggen.internal_quantities": 5.45,
     "siggen.simulation": 5.5,
     "siggen.record_internals": 5.6,
     "siggen.exported_model": 5.6,

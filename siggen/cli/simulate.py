@@ -15,6 +15,9 @@ def simulate(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override a key, such as duration_s=0.5.")
     ] = None,
+    internals: Annotated[
+        bool, typer.Option("--internals/--signals", help="With what no sensor sees, or what is stored alone.")
+    ] = True,
 ) -> None:
     """Simulate one record again and write it with mesh force, mesh stiffness, transmission error and bearing forces.
 
@@ -27,5 +30,5 @@ def simulate(
     config = chosen_config(source, record, overrides or ())
     from siggen.record_internals import internals_table
 
-    write_table_file(internals_table(config, record), out)
+    write_table_file(internals_table(config, record, internals=internals), out)
     typer.echo(str(out))

@@ -7,6 +7,7 @@ from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.gears import Gears, Wheel
+from siggen.config.internals import Internals
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
@@ -31,6 +32,7 @@ __all__ = [
     "Dynamics",
     "Friction",
     "Gears",
+    "Internals",
     "LayeredPits",
     "ListedPit",
     "ListedPits",
