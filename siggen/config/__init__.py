@@ -1,6 +1,6 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
-from siggen.config.casing import Bolts, Casing
+from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
@@ -23,6 +23,7 @@ __all__ = [
     "BLOCK",
     "SCHEMA_VERSION",
     "Bolts",
+    "Caps",
     "Casing",
     "Choice",
     "ClusteredPits",

@@ -70,9 +70,11 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
+    with_caps = model == "casing" and sections["dynamics"].casing.caps is not None
+    places = (*PLACES[model], "pinion_cap", "gear_cap") if with_caps else PLACES[model]
     for index, sensor in sections.get("sensors", {}).items():
-        if sensor.place not in PLACES[model]:
-            allowed = f"allowed: one of {', '.join(PLACES[model])} (dynamics.model: {model})"
+        if sensor.place not in places:
+            allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
             yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
 
 
