@@ -68,7 +68,7 @@ def exported_model(config: Config, record_id: int) -> Model:
         **_structure(motion.structure),
         **_static_part(motion.equations),
         "torque_nm": point.torque_nm,
-        "integrator": specimen.dynamics.integrator,
+        "integrator": specimen.dynamics.method,
         **grid,
         "start_state": start,
         "law": specimen.dynamics.mesh.law,

@@ -46,7 +46,7 @@ def specimen_motion(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoin
             mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
             backlash_m=1e-6 * constant(dynamics.backlash_um),
             step_s=step_s,
-            integrator=dynamics.integrator,
+            integrator=dynamics.method,
         )
     rubbing = dynamics.friction.model != "off"
     return PairMotion(

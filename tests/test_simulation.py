@@ -96,7 +96,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
 
 
 def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
-    law = ["dynamics.mesh.law=pairs", "dynamics.integrator=runge_kutta", "operating_points.torque_nm=2.0e+4"]
+    law = ["dynamics.mesh.law=pairs", "operating_points.torque_nm=2.0e+4"]
     results = simulate_specimen(load_config("configs/quickstart.yaml", [*SMALL, *law]), [0, 2])
     assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))

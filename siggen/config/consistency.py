@@ -82,8 +82,8 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if "dynamics" not in sections:
         return
     dynamics = sections["dynamics"]
-    if dynamics.mesh.law == "pairs" and dynamics.integrator != "runge_kutta":
-        allowed = "allowed: runge_kutta (dynamics.mesh.law: pairs)"
+    if dynamics.mesh.law == "pairs" and dynamics.method != "runge_kutta":
+        allowed = "allowed: auto or runge_kutta (dynamics.mesh.law: pairs)"
         yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
     if dynamics.mesh.law == "linear" and dynamics.friction.model != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
