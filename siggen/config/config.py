@@ -98,8 +98,8 @@ class Config(Section):
     def identity(self) -> str:
         """SHA-256 (hexadecimal) of what differs from the first defaults, without `specimens`: what records follow from.
 
-        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist; where
-        a default has changed, its first value is what does not count (`first_default`).
+        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist;
+        where a default has changed, its first value is what does not count (`first_default`).
         """
         content = {**_told(self), "schema_version": SCHEMA_VERSION}
         del content["specimens"]
