@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pyarrow as pa
-
 from siggen.dataset.card import card
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
 from siggen.dataset.folder import config_bytes, is_finished
+from siggen.dataset.internals import internals_group_rows, internals_name, internals_schema
 from siggen.dataset.label_tables import DamageRows, write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest, sealed
 from siggen.dataset.plan import ShardPlan, plan, record_ids_of, rows_per_group, shards
-from siggen.dataset.record import RecordFailure, channels, record_schema
-from siggen.dataset.shard import write_table
+from siggen.dataset.record import Column, RecordFailure, channels, record_schema
+from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.engines.interruption import Interruption
@@ -32,6 +31,9 @@ from siggen.errors import EXIT_INTERRUPTED, SiggenError
 
 if TYPE_CHECKING:
     from siggen.config import Config
+
+Quantities = Callable[["Config"], Sequence[Column]]
+"""config -> columns of `internals/`, as `siggen.record_internals.stored_quantities` gives them."""
 
 Progress = Callable[[int, int], None]
 """(records done, records of the set); called after every chunk."""
@@ -76,6 +78,7 @@ def generate(
     *,
     simulate: Simulate | None = None,
     damage_rows: DamageRows | None = None,
+    quantities: Quantities | None = None,
 ) -> Generation:
     """Generate a data set, or continue one that was interrupted; the files do not depend on `workers` nor on stops.
 
@@ -88,8 +91,8 @@ def generate(
         Worker processes, by default one per core. 0 runs everything in this process (for debuggers).
     progress : callable, optional
         Called with (records done, records of the set).
-    simulate, damage_rows : callable, optional
-        By default the physics of `siggen.simulation`; module-level functions.
+    simulate, damage_rows, quantities : callable, optional
+        By default the physics of `siggen.simulation` and `siggen.record_internals`; module-level functions.
 
     Raises
     ------
@@ -106,8 +109,10 @@ def generate(
             return _unchanged(storage)
         storage.delete_leftovers()
         engine = _engine(workers)
+        stored = _stored_quantities(config, quantities)
         with Interruption() as interruption:
-            run = _Run(config, storage, engine, *_physics(simulate, damage_rows), progress or _silent, interruption)
+            physics = _physics(simulate, damage_rows)
+            run = _Run(config, storage, engine, *physics, stored, progress or _silent, interruption)
             try:
                 return run.finish()
             except KeyboardInterrupt:
@@ -120,6 +125,16 @@ def _physics(simulate: Simulate | None, damage_rows: DamageRows | None) -> tuple
 
         return simulate or physics.simulate_specimen, damage_rows or physics.damage_rows
     return simulate, damage_rows
+
+
+def _stored_quantities(config: Config, quantities: Quantities | None) -> tuple[Column, ...]:
+    if config.internals is None:
+        return ()
+    if quantities is not None:
+        return tuple(quantities(config))
+    from siggen.record_internals import stored_quantities
+
+    return stored_quantities(config)
 
 
 def _engine(workers: int | None) -> Engine:
@@ -144,6 +159,7 @@ class _Run:
     engine: Engine
     simulate: Simulate
     damage_rows: DamageRows
+    quantities: tuple[Column, ...]
     progress: Progress
     interruption: Interruption
     started_s: float = field(default_factory=time.perf_counter)
@@ -186,7 +202,7 @@ class _Run:
         """Simulate and write shards one after the other, from one stream of chunks."""
         work = {shard.key: self._chunks(shard) for shard in missing}
         tasks = (chunk for pieces in work.values() for chunk in pieces)
-        with closing(self.engine.map(ChunkSimulation(self.config, self.simulate), tasks)) as results:
+        with closing(self.engine.map(ChunkSimulation(self.config, self.simulate, self.quantities), tasks)) as results:
             ordered = in_order(results)
             for shard in missing:
                 self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
@@ -194,31 +210,33 @@ class _Run:
     def _chunks(self, shard: ShardPlan) -> list[Chunk]:
         config = self.config
         specimens = [record_ids_of(config, specimen) for specimen in shard.specimens]
-        return list(chunks(shard.key, specimens, rows_per_group(config)))
+        rows = internals_group_rows(config, self.quantities) if self.quantities else rows_per_group(config)
+        return list(chunks(shard.key, specimens, min(rows, rows_per_group(config))))
 
     def _write(self, shard: ShardPlan, results: Iterator[tuple[Chunk, ChunkResult]]) -> None:
         """Write the rows of a shard as they come, then commit it with its sidecar."""
         failures: list[RecordFailure] = []
         rows_per_state = dict.fromkeys((state.name for state in self.config.states), 0)
-
-        def batches() -> Iterator[pa.RecordBatch]:
+        with self._data(shard) as data, self._internals(shard) as internals:
             for chunk, result in results:
                 self.interruption.check()
                 batch = result.batch()
                 failures.extend(result.failures)
                 for state in batch.column("state").to_pylist():
                     rows_per_state[state] += 1
-                yield batch
+                data.add(batch)
+                if internals is not None and (inner := result.internals_batch()) is not None:
+                    internals.add(inner)
                 self.made += len(chunk.records)
                 self._advance(len(chunk.records))
-
-        schema = record_schema(self.config)
-        facts = write_table(self.storage, data_name(shard.key), schema, batches(), rows_per_group(self.config))
+            facts = data.finish()
+            internal_facts = None if internals is None else internals.finish()
         self.sidecars[shard.key] = Sidecar(
             shard=shard.key,
             split=shard.split,
             identity=self.config.identity,
             data=facts,
+            internals=internal_facts,
             specimens=id_ranges(shard.specimens),
             records=id_ranges(shard.record_ids),
             rows_per_state=rows_per_state,
@@ -226,6 +244,17 @@ class _Run:
             environment=self.environment,
         )
         put_sidecar(self.storage, self.sidecars[shard.key])
+
+    def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
+        schema, rows = record_schema(self.config), rows_per_group(self.config)
+        return table_draft(self.storage, data_name(shard.key), schema, rows)
+
+    def _internals(self, shard: ShardPlan) -> AbstractContextManager[TableFile | None]:
+        if not self.quantities:
+            return nullcontext()
+        schema = internals_schema(self.config, self.quantities)
+        rows = internals_group_rows(self.config, self.quantities)
+        return table_draft(self.storage, internals_name(shard.key), schema, rows)
 
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
         """Write tables, card and run.json; the manifest comes last and makes the set a finished one."""
@@ -236,8 +265,8 @@ class _Run:
                 written.append(write_metadata(self.storage, self.config, split, of_split).name)
                 written.append(write_damage(self.storage, self.config, split, of_split, self.damage_rows).name)
             self.interruption.check()
-        self.storage.put(CARD, card(self.config, sidecars).encode())
-        manifest = build_manifest(self.storage, _facts(self.config), sidecars, written)
+        self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
+        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, written)
         self.storage.put(RUN, sealed(self._run_facts(taken_over)))
         self.storage.put(MANIFEST, sealed(manifest))
         return manifest
@@ -252,7 +281,7 @@ class _Run:
             "records_per_s": round(self.made / seconds, 3),
             "signal_s_per_s": round(self.made * self.config.duration_s / seconds, 3),
             "shards_taken_over": taken_over,
-            "bytes": sum(sidecar.data.bytes for sidecar in self.sidecars.values()),
+            "bytes": sum(file.bytes for sidecar in self.sidecars.values() for file in sidecar.files),
             "peak_memory_bytes": peak_memory_bytes(),
             "host": host_facts(),
             "environment": self.environment,
@@ -274,8 +303,10 @@ def in_order(results: Iterator[tuple[int, ChunkResult]]) -> Iterator[ChunkResult
             following += 1
 
 
-def _facts(config: Config) -> dict[str, Any]:
+def _facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
+    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in quantities]
     return {
+        **({"internals": internals} if internals else {}),
         "name": config.name,
         "identity": config.identity,
         "seed": config.seed,

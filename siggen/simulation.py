@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd, pi
 
+import numpy as np
+
 from siggen.config import Config
 from siggen.damage_table import damage_rows
-from siggen.dataset.plan import PlannedRecord, planned_record
+from siggen.dataset.plan import PlannedRecord, has_internals, planned_record
 from siggen.dataset.record import Record, RecordFailure
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.dynamics.response import Response, response_of
@@ -18,6 +20,7 @@ from siggen.errors import SolverFailure
 from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import StiffnessOptions
+from siggen.internal_quantities import internal_quantities
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
@@ -29,7 +32,15 @@ from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
 from siggen.state_damage import state_damage
 
-__all__ = ["damage_rows", "record_response", "simulate", "simulate_specimen", "specimen_state", "start_angle_rad"]
+__all__ = [
+    "damage_rows",
+    "limits_of",
+    "record_response",
+    "simulate",
+    "simulate_specimen",
+    "specimen_state",
+    "start_angle_rad",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +63,14 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         If what was drawn cannot be built (named in the reason).
     """
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    with _limits_of("impossible_damage"):
+    with limits_of("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
         teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
         labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
-    with _limits_of("outside_model"):
+    with limits_of("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
@@ -70,7 +81,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
 
 
 @contextmanager
-def _limits_of(status: str) -> Iterator[None]:
+def limits_of(status: str) -> Iterator[None]:
     """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
     try:
         yield
@@ -97,7 +108,7 @@ def record_response(
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
-    with _limits_of("outside_model"):
+    with limits_of("outside_model"):
         driven = _driven(config, specimen, state, record)
         response = response_of(
             specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
@@ -121,7 +132,8 @@ def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: Pl
 
 
 def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned: PlannedRecord) -> Record:
-    response, point = record_response(config, specimen, state, planned)
+    with_internals = has_internals(config, planned)
+    response, point = record_response(config, specimen, state, planned, internals=with_internals)
     channels, channel_labels = measured_channels(config, specimen, planned, response)
     labels = {
         **state.labels,
@@ -132,7 +144,9 @@ def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned
         "status": response.status,
         **channel_labels,
     }
-    return Record(planned=planned, labels=labels, channels=channels, tacho_s=response.tacho_s)
+    found = internal_quantities(specimen, response) if with_internals else {}
+    internals = {name: values.astype(np.float32) for name, values in found.items()}
+    return Record(planned, labels, channels, response.tacho_s, internals if with_internals else None)
 
 
 def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:

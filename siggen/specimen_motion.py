@@ -60,7 +60,7 @@ def specimen_motion(
             mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
             backlash_m=1e-6 * constant(dynamics.backlash_um),
             step_s=step_s,
-            integrator=dynamics.integrator,
+            integrator=dynamics.method,
             input_vectors=vectors,
         )
     rubbing = dynamics.friction.model != "off"

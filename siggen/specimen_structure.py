@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 
+from siggen.config import Caps as CapsSection
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Dynamics, Rotor, Sensor, constant
+from siggen.dynamics.bearing_caps import Caps
 from siggen.dynamics.casing_structure import Bolts, Casing, Point, casing_structure, torsional
 from siggen.dynamics.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure import Rotor as RotorNumbers
@@ -84,6 +86,16 @@ def _casing(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -
         ),
         pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
         sensor_places_m={s.name: _metres(s.position_mm) for s in sensors if s.position_mm is not None},
+        caps=None if section.caps is None else _caps(section.caps),
+    )
+
+
+def _caps(section: CapsSection) -> Caps:
+    return Caps(
+        mass_kg=constant(section.mass_kg),
+        horizontal_stiffness_n_per_m=constant(section.horizontal_stiffness_n_per_m),
+        vertical_stiffness_n_per_m=constant(section.vertical_stiffness_n_per_m),
+        damping_ratio=constant(section.damping_ratio),
     )
 
 

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from siggen.dataset.chunk import Chunk, ChunkSimulation, Simulate
+from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate
 from siggen.dataset.environment import environment
+from siggen.dataset.internals import FOLDER as INTERNALS_FOLDER
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, MANIFEST, METADATA_FOLDER, RUN, read_manifest, unsealed
-from siggen.dataset.reading import Dataset, as_record
+from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.record import signal_column
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
@@ -27,7 +28,7 @@ from siggen.errors import ConfigError, DatasetError, VerificationError
 if TYPE_CHECKING:
     from siggen.config import Config
 
-OWN_FOLDERS = (DATA_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SIDECAR_FOLDER)
+OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SIDECAR_FOLDER)
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
@@ -153,13 +154,15 @@ def _simulate_again(
     engine: Engine = ProcessEngine(workers) if workers else SerialEngine()
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
-    with closing(engine.map(ChunkSimulation(config, simulate or _physics()), tasks)) as results:
+    function = ChunkSimulation(config, simulate or _physics(), dataset.internal_columns)
+    with closing(engine.map(function, tasks)) as results:
         for index, result in results:
             record_id, batch = ids[index], result.batch()
             if result.failures:
                 problem = f"now fails: {result.failures[0].status} ({result.failures[0].reason})"
             else:
                 problem = _difference(config, dataset.record(record_id), as_record(batch), exact=exact[record_id])
+                problem = problem or _internal_difference(dataset, record_id, result, exact=exact[record_id])
             mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
     comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
@@ -210,6 +213,21 @@ def _difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, A
                 return f"{name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
         elif not _same_label(before, now, exact=exact):
             return f"{name} is {now} instead of {before}"
+    return ""
+
+
+def _internal_difference(dataset: Dataset, record_id: int, result: ChunkResult, *, exact: bool) -> str:
+    """Return in which internal quantity two versions of a record differ, or an empty string."""
+    batch = result.internals_batch()
+    stored = dataset.record_internals(record_id) if dataset.internal_columns else None
+    again = as_internals(batch) if batch is not None and batch.num_rows else None
+    if stored is None or again is None:
+        return "" if stored is again else "its internal quantities are stored but not asked for, or missing"
+    for name, now in again.items():
+        largest = float(np.abs(stored[name].astype(float) - now).max())
+        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(now).max())
+        if largest > tolerance or (exact and stored[name].tobytes() != now.tobytes()):
+            return f"internal quantity {name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
     return ""
 
 

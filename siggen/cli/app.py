@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from siggen.cli.errors import errors
+from siggen.cli.export_model import export_model
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.modes import modes
@@ -23,7 +24,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (plan, generate, verify, show, simulate, tvms, flank, errors, modes, schema)
+COMMANDS = (plan, generate, verify, show, simulate, export_model, tvms, flank, errors, modes, schema)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",

@@ -15,21 +15,20 @@ def simulate(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override a key, such as duration_s=0.5.")
     ] = None,
+    internals: Annotated[
+        bool, typer.Option("--internals/--signals", help="With what no sensor sees, or what is stored alone.")
+    ] = True,
 ) -> None:
     """Simulate one record again and write it with mesh force, mesh stiffness, transmission error and bearing forces.
 
     Example: siggen simulate configs/paper_a.yaml --record 3 --out record.parquet
     """
+    from siggen.cli.record_choice import chosen_config
     from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.errors import UsageError
-    from siggen.loading import load_config
 
     check_table_file(out)
-    config = load_config(source / "config.yaml" if source.is_dir() else source, overrides or ())
-    count = config.specimens * config.records_per_specimen
-    if record >= count:
-        raise UsageError(f"--record {record}: {source} has {count} records, 0 to {count - 1}")
+    config = chosen_config(source, record, overrides or ())
     from siggen.record_internals import internals_table
 
-    write_table_file(internals_table(config, record), out)
+    write_table_file(internals_table(config, record, internals=internals), out)
     typer.echo(str(out))

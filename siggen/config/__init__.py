@@ -1,6 +1,6 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
-from siggen.config.casing import Bolts, Casing
+from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
@@ -9,6 +9,7 @@ from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.manufacture import Manufacture
+from siggen.config.internals import Internals
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
@@ -26,6 +27,7 @@ __all__ = [
     "SCHEMA_VERSION",
     "BearingTones",
     "Bolts",
+    "Caps",
     "Casing",
     "Choice",
     "ClusteredPits",
@@ -35,6 +37,7 @@ __all__ = [
     "Dynamics",
     "Friction",
     "Gears",
+    "Internals",
     "LayeredPits",
     "ListedPit",
     "ListedPits",

@@ -10,8 +10,10 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from siggen.config.dynamics import Dynamics
+from siggen.config.first_default import uncounted
 from siggen.config.gears import Gears
 from siggen.config.manufacture import Manufacture
+from siggen.config.internals import Internals
 from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
 from siggen.config.problems import refusal
 from siggen.config.section import Real, Section, Whole
@@ -71,6 +73,7 @@ class Config(Section):
     sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
+    internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
 
     @property
     def samples(self) -> int:
@@ -97,9 +100,10 @@ class Config(Section):
 
     @cached_property
     def identity(self) -> str:
-        """SHA-256 (hexadecimal) of what differs from the defaults, without `specimens`: what the records follow from.
+        """SHA-256 (hexadecimal) of what differs from the first defaults, without `specimens`: what records follow from.
 
-        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist.
+        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist;
+        where a default has changed, its first value is what does not count (`first_default`).
         """
         content = {**_told(self), "schema_version": SCHEMA_VERSION}
         del content["specimens"]
@@ -108,14 +112,19 @@ class Config(Section):
 
 
 def _told(value: Any) -> Any:
-    """Return a value as plain mappings and lists without the keys that are at their defaults; `kind` always counts."""
+    """Return a value as plain mappings and lists without the keys that are at first defaults; `kind` always counts."""
     match value:
         case Section():
-            fields = type(value).model_fields.items()
-            items = {
-                name: (getattr(value, name), field.get_default(call_default_factory=True)) for name, field in fields
-            }
-            return {name: _told(item) for name, (item, default) in items.items() if name == "kind" or item != default}
+            found: dict[str, Any] = {}
+            for name, field in type(value).model_fields.items():
+                item, first = getattr(value, name), uncounted(field)
+                told = _told(item)
+                # A section that has always been there counts by its keys, whose defaults may have changed.
+                counts = (
+                    bool(told) if isinstance(item, Section) and isinstance(first[0], Section) else item not in first
+                )
+                found |= {name: told} if counts or name == "kind" else {}
+            return found
         case tuple():
             return [_told(item) for item in value]
     return _plain(value)

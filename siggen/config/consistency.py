@@ -74,9 +74,11 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
+    with_caps = model == "casing" and sections["dynamics"].casing.caps is not None
+    places = (*PLACES[model], "pinion_cap", "gear_cap") if with_caps else PLACES[model]
     for index, sensor in sections.get("sensors", {}).items():
-        if sensor.place not in PLACES[model]:
-            allowed = f"allowed: one of {', '.join(PLACES[model])} (dynamics.model: {model})"
+        if sensor.place not in places:
+            allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
             yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
 
 
@@ -84,8 +86,8 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if "dynamics" not in sections:
         return
     dynamics = sections["dynamics"]
-    if dynamics.mesh.law == "pairs" and dynamics.integrator != "runge_kutta":
-        allowed = "allowed: runge_kutta (dynamics.mesh.law: pairs)"
+    if dynamics.mesh.law == "pairs" and dynamics.method != "runge_kutta":
+        allowed = "allowed: auto or runge_kutta (dynamics.mesh.law: pairs)"
         yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
     if dynamics.mesh.law == "linear" and dynamics.friction.model != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"

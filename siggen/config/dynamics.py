@@ -8,6 +8,7 @@ from pydantic import Field
 
 from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
+from siggen.config.first_default import Was
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
@@ -42,10 +43,10 @@ class Dynamics(Section):
         default="8dof",
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
-    integrator: Literal["product", "runge_kutta"] = Field(
-        default="product",
+    integrator: Annotated[Literal["auto", "product", "runge_kutta"], Was("product", "auto")] = Field(
+        default="auto",
         description="product integrates the tabulated stiffness exactly, with the linear mesh law alone; runge_kutta "
-        "is plain, of first order where teeth enter and leave contact",
+        "is plain, of first order where teeth enter and leave contact; auto: product where it can be",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample"
@@ -72,3 +73,10 @@ class Dynamics(Section):
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
     bearing_tones: BearingTones = Field(default=BearingTones(), description="forces of rolling bearings")
+
+    @property
+    def method(self) -> str:
+        """The integrator that `integrator` stands for: product or runge_kutta."""
+        if self.integrator != "auto":
+            return self.integrator
+        return "product" if self.mesh.law == "linear" else "runge_kutta"

@@ -52,9 +52,11 @@ class Sensor(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$"), SENSOR_NAME] = Field(
         description="part of the channel's name"
     )
-    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
-        default="pinion_bearing",
-        description="where it is mounted; casing needs the model casing, rims the torsional one",
+    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim", "pinion_cap", "gear_cap"] = (
+        Field(
+            default="pinion_bearing",
+            description="where it is mounted; casing needs the model casing, caps its caps, rims the torsional model",
+        )
     )
     position_mm: tuple[Real, Real] | None = Field(
         default=None, description="horizontal and vertical distance from the casing's centre of gravity (place: casing)"

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 import yaml
 
+from siggen.dataset.internals import internals_schema
 from siggen.dataset.manifest import SPLITS
-from siggen.dataset.record import SCHEMA_VERSION, channels, damage_schema, record_schema
+from siggen.dataset.record import SCHEMA_VERSION, Column, channels, damage_schema, record_schema
 from siggen.dataset.sidecar import Sidecar
 
 if TYPE_CHECKING:
@@ -47,12 +48,12 @@ OWNERS = {
 }
 
 
-def card(config: Config, sidecars: Sequence[Sidecar]) -> str:
+def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Column] = ()) -> str:
     """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
     splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
     rows = sum(sidecar.data.rows for sidecar in sidecars)
     sections = (
-        _front_matter(config, splits, rows),
+        _front_matter(config, splits, rows, with_internals=bool(quantities)),
         _summary(config, rows),
         _contents(config, sidecars, splits),
         _making(config),
@@ -60,13 +61,15 @@ def card(config: Config, sidecars: Sequence[Sidecar]) -> str:
         _failures(sidecars),
         _columns("Columns of `data/`", record_schema(config)),
         _columns("Columns of `damage/`", damage_schema(config)),
+        _internals(config, quantities),
         _loading(config, splits),
         _identity(config, sidecars),
     )
     return "\n".join(section for section in sections if section)
 
 
-def _front_matter(config: Config, splits: Sequence[str], rows: int) -> str:
+def _front_matter(config: Config, splits: Sequence[str], rows: int, *, with_internals: bool) -> str:
+    internals = [_view("internals", {split: f"internals/{split}-*.parquet" for split in splits})]
     facts = {
         "pretty_name": f"{config.name}: synthetic gearbox vibration with tooth pitting",
         "license": LICENSE,
@@ -76,6 +79,7 @@ def _front_matter(config: Config, splits: Sequence[str], rows: int) -> str:
             _view("signals", {split: f"data/{split}-*.parquet" for split in splits}, default=True),
             _view("labels", {split: f"metadata/{split}.parquet" for split in splits}),
             _view("damage", {split: f"damage/{split}.parquet" for split in splits}),
+            *(internals if with_internals else []),
         ],
     }
     return f"---\n{yaml.safe_dump(facts, sort_keys=False, allow_unicode=True)}---\n"
@@ -165,6 +169,20 @@ def _failures(sidecars: Sequence[Sidecar]) -> str:
     more = [f"\nThe remaining {len(failures) - 50} are in `manifest.json`."] if len(failures) > 50 else []
     head = f"## Failed records\n\n{len(failures)} planned records could not be simulated and are not among the rows.\n"
     return "\n".join([head, "| record | status | reason |", "|---|---|---|", *listed, *more, ""])
+
+
+def _internals(config: Config, quantities: Sequence[Column]) -> str:
+    """Say which records have internal quantities, and how to join them."""
+    if config.internals is None or not quantities:
+        return ""
+    chosen, every = config.internals.records, config.internals.every_specimen
+    which = "every record" if chosen == "all" else "the first operating point and repeat of every state"
+    whose = "" if every == 1 else f" of specimens 0, {every}, {2 * every}, ..."
+    table = _columns("Columns of `internals/`", internals_schema(config, quantities))
+    return f"""{table}
+What no sensor sees, of {which}{whose}, at the instants of the samples; join by `record_id`. Accelerations and bearing
+forces are low-passed like the signals, everything else is taken at the instant.
+"""
 
 
 def _columns(title: str, schema: pa.Schema) -> str:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.dataset.record import Record, RecordFailure, non_finite, record_batch
+from siggen.dataset.internals import internals_batch
+from siggen.dataset.record import Column, Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
 
 if TYPE_CHECKING:
@@ -31,15 +32,19 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True)
 class ChunkResult:
-    """Rows as an Arrow IPC stream, and the records that failed."""
+    """Rows as an Arrow IPC stream, the records that failed, and the internal quantities of a set that stores some."""
 
     rows: bytes
     failures: tuple[RecordFailure, ...]
+    internals: bytes | None = None
 
     def batch(self) -> pa.RecordBatch:
         """Return the rows without copying them; there may be none."""
-        with pa.ipc.open_stream(pa.py_buffer(self.rows)) as stream:
-            return stream.read_next_batch()
+        return _batch(self.rows)
+
+    def internals_batch(self) -> pa.RecordBatch | None:
+        """Return the rows of internal quantities, or None in a set without them."""
+        return None if self.internals is None else _batch(self.internals)
 
 
 def chunks(shard: str, specimens: Sequence[range], group_rows: int) -> Iterator[Chunk]:
@@ -59,6 +64,7 @@ class ChunkSimulation:
 
     config: Config
     simulate: Simulate
+    quantities: tuple[Column, ...] = ()
 
     def __call__(self, chunk: Chunk) -> ChunkResult:
         """Simulate a chunk.
@@ -77,7 +83,11 @@ class ChunkSimulation:
                 failures.append(RecordFailure(result.planned.record_id, "not_finite", reason))
             else:
                 records.append(result)
-        return ChunkResult(_stream(record_batch(self.config, records)), tuple(failures))
+        rows = _stream(record_batch(self.config, records))
+        if not self.quantities:
+            return ChunkResult(rows, tuple(failures))
+        internals = _stream(internals_batch(self.config, self.quantities, records))
+        return ChunkResult(rows, tuple(failures), internals)
 
     def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
         try:
@@ -97,6 +107,11 @@ class ChunkSimulation:
             except Exception:
                 return f"record {record_id}"
         return f"one of the records {ids[0]} to {ids[-1]} (none of them alone)"
+
+
+def _batch(rows: bytes) -> pa.RecordBatch:
+    with pa.ipc.open_stream(pa.py_buffer(rows)) as stream:
+        return stream.read_next_batch()
 
 
 def _stream(batch: pa.RecordBatch) -> bytes:

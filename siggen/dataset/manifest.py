@@ -66,7 +66,7 @@ def build_manifest(
         Names of the files that are neither rows nor sidecars; hashed here.
     """
     environments = sorted({json.dumps(dict(sidecar.environment), sort_keys=True) for sidecar in sidecars})
-    files = {sidecar.data.name: {"bytes": sidecar.data.bytes, "sha256": sidecar.data.sha256} for sidecar in sidecars}
+    files = {file.name: {"bytes": file.bytes, "sha256": file.sha256} for sidecar in sidecars for file in sidecar.files}
     for name in (*written, *(sidecar.name for sidecar in sidecars)):
         files[name] = {"bytes": storage.size(name), "sha256": sha256(storage, name)}
     return {
@@ -84,6 +84,7 @@ def build_manifest(
 
 def _shard(sidecar: Sidecar, environments: Sequence[str]) -> dict[str, Any]:
     return {
+        **({} if sidecar.internals is None else {"internals": sidecar.internals.name}),
         "shard": sidecar.shard,
         "split": sidecar.split,
         "file": sidecar.data.name,

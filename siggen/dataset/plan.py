@@ -27,6 +27,9 @@ DISK_SHARE_PERCENT = 45
 UNQUANTISED_SHARE_PERCENT = 81
 """The same for readings that are not quantised, or finer than 16 bits (measured 0.76 to 0.81)."""
 
+MANY_QUANTITIES = 30
+"""Assumed number of internal quantities where all are stored: 14 with the linear mesh law, 41 with pairs and casing."""
+
 GROUP_CHANNEL_BYTES = 8_000_000
 """Most raw bytes of one channel in a row group of several rows."""
 
@@ -187,7 +190,7 @@ def shards(config: Config, split: str) -> tuple[ShardPlan, ...]:
 
 def specimens_per_shard(config: Config) -> int:
     """Return the number of specimens in a full shard, from the raw bytes of a specimen's signals."""
-    specimen_bytes = _row_bytes(config) * len(config.channels) * config.records_per_specimen
+    specimen_bytes = _row_bytes(config) * len(config.channels) * config.records_per_specimen + _internal_bytes(config)
     return max(1, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT))
 
 
@@ -198,7 +201,9 @@ def estimated_bytes(config: Config) -> int:
         for sensor in config.sensors
         for _ in sensor.axes
     ]
-    return config.specimens * config.records_per_specimen * _row_bytes(config) * sum(percents) // 100
+    every = 1 if config.internals is None else config.internals.every_specimen
+    internals = -(-config.specimens // every) * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
+    return config.specimens * config.records_per_specimen * _row_bytes(config) * sum(percents) // 100 + internals
 
 
 def rows_per_group(config: Config) -> int:
@@ -209,6 +214,24 @@ def rows_per_group(config: Config) -> int:
     row_bytes = _row_bytes(config)
     rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * len(config.channels)))
     return 1 << (max(1, rows).bit_length() - 1)
+
+
+def has_internals(config: Config, record: PlannedRecord) -> bool:
+    """Tell whether the set stores the internal quantities of a record; depends on configuration and index alone."""
+    chosen = config.internals
+    if chosen is None or record.specimen_id % chosen.every_specimen:
+        return False
+    return chosen.records == "all" or (record.operating_point_id, record.repeat) == (0, 0)
+
+
+def _internal_bytes(config: Config) -> int:
+    """Return about how many raw bytes of internal quantities a specimen with some has."""
+    chosen = config.internals
+    if chosen is None:
+        return 0
+    records = config.records_per_specimen if chosen.records == "all" else len(config.states)
+    series = MANY_QUANTITIES if chosen.stores_all else len(chosen.quantities)
+    return records * series * _row_bytes(config)
 
 
 def _row_bytes(config: Config) -> int:

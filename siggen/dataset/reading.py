@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import yaml
 
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
-from siggen.dataset.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
+from siggen.dataset.record import TACHO_COLUMN, Channel, Column, signal_channels, signal_matrix
 from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.errors import DatasetError, UsageError
@@ -34,6 +34,8 @@ class Dataset:
         Splits that have records, in the order train, validation, test.
     channels : tuple of Channel
     fs_hz, duration_s : float
+    internal_columns : tuple of Column
+        Quantities that no sensor sees, in sets that store some (`internals` in the configuration).
     """
 
     def __init__(self, storage: Storage) -> None:
@@ -45,6 +47,9 @@ class Dataset:
         self.channels: tuple[Channel, ...] = tuple(Channel(**channel) for channel in self.manifest["channels"])
         self.fs_hz: float = self.manifest["fs_hz"]
         self.duration_s: float = self.manifest["duration_s"]
+        self.internal_columns: tuple[Column, ...] = tuple(
+            Column(type=pa.float32(), **column) for column in self.manifest.get("internals", ())
+        )
 
     def __repr__(self) -> str:
         rows = ", ".join(f"{split}: {self.manifest['splits'][split]['rows']}" for split in self.splits)
@@ -83,8 +88,49 @@ class Dataset:
         UsageError
             If the split or a column does not exist.
         """
+        yield from self._batches("file", split, columns, batch_rows)
+
+    def internals(
+        self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
+    ) -> Iterator[pa.RecordBatch]:
+        """Yield rows of internal quantities with the ids of their records; as `records`, but only where stored.
+
+        Raises
+        ------
+        UsageError
+            If the set stores none, or the split or a column does not exist.
+        """
+        self._check_internals()
+        yield from self._batches("internals", split, columns, batch_rows)
+
+    def record_internals(self, record_id: int) -> dict[str, np.ndarray] | None:
+        """Return name -> float32 (n,) of one record, or None if the set does not store those of this record.
+
+        Raises
+        ------
+        UsageError
+            If the set stores none at all.
+        """
+        self._check_internals()
+        for shard in self._shards(None):
+            if in_ranges(record_id, shard["records"]):
+                row = self._row(shard["internals"], record_id)
+                return None if row is None else as_internals(row)
+        return None
+
+    def _check_internals(self) -> None:
+        if not self.internal_columns:
+            raise UsageError(
+                f"{self.path} stores no internal quantities; `internals` in its configuration would ask for them, "
+                "and `siggen simulate` computes those of one record"
+            )
+
+    def _batches(
+        self, kind: str, split: str | None, columns: Sequence[str] | None, batch_rows: int | None
+    ) -> Iterator[pa.RecordBatch]:
+        """Yield the rows of all files of a kind, a row group at a time."""
         for shard in self._shards(split):
-            with self._parquet(shard["file"]) as file:
+            with self._parquet(shard[kind]) as file:
                 self._check_columns(file.schema_arrow, columns)
                 for group in range(file.num_row_groups):
                     table = file.read_row_group(group, columns=_as_list(columns), use_threads=False).combine_chunks()
@@ -180,6 +226,12 @@ def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
         else:
             record[name] = column[0].as_py()
     return record
+
+
+def as_internals(row: pa.Table | pa.RecordBatch) -> dict[str, np.ndarray]:
+    """Return the first row of internal quantities: name -> float32 (n,)."""
+    series = [field.name for field in row.schema if pa.types.is_fixed_size_list(field.type)]
+    return {name: signal_matrix(row.column(name))[0] for name in series}
 
 
 def _as_list(columns: Sequence[str] | None) -> list[str] | None:

@@ -49,12 +49,15 @@ class Record:
         Channel name (`<sensor>_<axis>`) to float32 signal (n,) in m/s^2.
     tacho_s
         Times of the shaft pulses (k,), seconds from the first sample.
+    internals
+        Name -> (n,) of what no sensor sees, where the set stores it.
     """
 
     planned: PlannedRecord
     labels: Mapping[str, object]
     channels: Mapping[str, np.ndarray]
     tacho_s: np.ndarray
+    internals: Mapping[str, np.ndarray] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +69,7 @@ class RecordFailure:
     reason: str
 
 
-def _list_of(value: pa.DataType, size: int = -1) -> pa.DataType:
+def list_of(value: pa.DataType, size: int = -1) -> pa.DataType:
     """Return a list type whose elements are not null; 'element' is the name Parquet gives them."""
     return pa.list_(pa.field("element", value, nullable=False), size)
 
@@ -84,8 +87,8 @@ LABEL_COLUMNS = (
     Column("fault", pa.string(), "", "kind of fault: healthy, pitting or spalling"),
     Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
     Column("faulty_gear", pa.string(), "", "which gear carries damage: none, pinion, gear or both"),
-    Column("faulty_teeth_pinion", _list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
-    Column("faulty_teeth_gear", _list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
+    Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
+    Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
     Column("damage_count", pa.int32(), "", "number of pits and spalls on all teeth"),
     Column("damaged_area_mm2", pa.float64(), "mm^2", "area of the union of all damage, all teeth"),
     Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
@@ -116,9 +119,7 @@ VARIATION_COLUMNS = (
     Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
 )
 """Columns of sets in which speed or torque varies within a record."""
-TACHO_COLUMN = Column(
-    "tacho_s", _list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample"
-)
+TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
 
 DAMAGE_COLUMNS = (
     Column("record_id", pa.int64(), "", "record that shows the damage"),
@@ -144,11 +145,11 @@ DAMAGE_COLUMNS = (
     Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
     Column(
         "polygon_face_mm",
-        _list_of(pa.float64()),
+        list_of(pa.float64()),
         MILLIMETRE,
         "corners (rectangle, v, polygon) across the face; else empty",
     ),
-    Column("polygon_height_mm", _list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
+    Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
 """Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
 
@@ -231,7 +232,7 @@ def _signal_field(config: Config, channel: Channel) -> pa.Field:
         "unit": channel.unit,
         "fs_hz": repr(float(config.fs_hz)),
     }
-    signal = _list_of(pa.float32(), config.samples)
+    signal = list_of(pa.float32(), config.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
 
 
@@ -259,7 +260,7 @@ def record_batch(config: Config, records: Sequence[Record]) -> pa.RecordBatch:
         _check_record(config, record)
     columns: dict[str, pa.Array] = {}
     for column in (*ID_COLUMNS, *label_columns(config)):
-        columns[column.name] = pa.array([_value(record, column.name) for record in records], column.type)
+        columns[column.name] = pa.array([record_value(record, column.name) for record in records], column.type)
     for channel in channels(config):
         signals = [record.channels[channel.name] for record in records]
         columns[channel.column] = _signal_array(signals, schema.field(channel.column).type)
@@ -281,7 +282,8 @@ def _signal_array(signals: Sequence[np.ndarray], signal_type: pa.DataType) -> pa
     return pa.FixedSizeListArray.from_arrays(pa.array(values, pa.float32()), type=signal_type)
 
 
-def _value(record: Record, name: str) -> object:
+def record_value(record: Record, name: str) -> object:
+    """Return a label of a record, or an id from its place in the plan."""
     return record.labels[name] if name in record.labels else getattr(record.planned, name)
 
 
@@ -308,6 +310,9 @@ def non_finite(record: Record) -> str:
     for name, label in record.labels.items():
         if isinstance(label, float) and np.isnan(label):
             return f"label {name} is NaN"
+    for name, values in (record.internals or {}).items():
+        if not np.isfinite(values).all():
+            return f"internal quantity {name} has {int((~np.isfinite(values)).sum())} values that are not finite"
     return "" if np.isfinite(record.tacho_s).all() else "tacho_s is not finite"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,41 +30,74 @@ class FileFacts:
     rows: int
 
 
+class TableFile:
+    """One Parquet object with `group_rows` rows per row group, written batch by batch.
+
+    At most one row group and one batch are in memory. The bytes depend on the rows alone, not on how the batches
+    cut them.
+    """
+
+    def __init__(self, path: Path, name: str, schema: pa.Schema, group_rows: int) -> None:
+        self._path, self._name, self._schema, self._group_rows = path, name, schema, group_rows
+        self._pending = schema.empty_table()
+        self._rows = 0
+        self._writer = pq.ParquetWriter(path, schema, **_options(schema))
+
+    def add(self, batch: pa.RecordBatch) -> None:
+        """Write the row groups that a batch completes."""
+        self._pending = pa.concat_tables([self._pending, pa.Table.from_batches([batch], self._schema)])
+        while self._pending.num_rows >= self._group_rows:
+            self._write(self._pending.slice(0, self._group_rows))
+            self._pending = self._pending.slice(self._group_rows)
+
+    def finish(self) -> FileFacts:
+        """Write the rest and return what the file holds.
+
+        Raises
+        ------
+        DatasetError
+            If the footer is not what was asked for.
+        """
+        if self._pending.num_rows:
+            self._write(self._pending)
+        self.close()
+        check_footer(self._path, self._schema, self._rows)
+        with self._path.open("rb") as file:
+            return FileFacts(self._name, self._path.stat().st_size, file_sha256(file), self._rows)
+
+    def close(self) -> None:
+        """Close the file, whole or not."""
+        self._writer.close()
+
+    def _write(self, group: pa.Table) -> None:
+        # one contiguous piece: page borders would otherwise follow the borders of the batches
+        self._writer.write_table(group.combine_chunks(), row_group_size=self._group_rows)
+        self._rows += group.num_rows
+
+
+@contextmanager
+def table_draft(storage: Storage, name: str, schema: pa.Schema, group_rows: int) -> Iterator[TableFile]:
+    """Give a table to fill and finish; nothing is committed if the block raises."""
+    with storage.draft(name) as path, closing(TableFile(path, name, schema, group_rows)) as table:
+        yield table
+
+
 def write_table(
     storage: Storage, name: str, schema: pa.Schema, batches: Iterable[pa.RecordBatch], group_rows: int
 ) -> FileFacts:
-    """Write batches as one Parquet object with `group_rows` rows per row group.
+    """Write batches as one Parquet object, see `TableFile`.
 
-    At most one row group and one batch are in memory. The bytes depend on the rows alone, not on how the batches
-    cut them. Nothing is committed if the batches raise, or if the footer shows other encodings than asked for.
+    Nothing is committed if the batches raise, or if the footer shows other encodings than asked for.
 
     Raises
     ------
     DatasetError
         If the footer is not what was asked for.
     """
-    with storage.draft(name) as path:
-        rows = 0
-        with pq.ParquetWriter(path, schema, **_options(schema)) as writer:
-            for group in _groups(schema, batches, group_rows):
-                writer.write_table(group, row_group_size=group_rows)
-                rows += group.num_rows
-        check_footer(path, schema, rows)
-        with path.open("rb") as file:
-            facts = FileFacts(name, path.stat().st_size, file_sha256(file), rows)
-    return facts
-
-
-def _groups(schema: pa.Schema, batches: Iterable[pa.RecordBatch], group_rows: int) -> Iterator[pa.Table]:
-    pending = schema.empty_table()
-    for batch in batches:
-        pending = pa.concat_tables([pending, pa.Table.from_batches([batch], schema)])
-        while pending.num_rows >= group_rows:
-            # one contiguous piece: page borders would otherwise follow the borders of the batches
-            yield pending.slice(0, group_rows).combine_chunks()
-            pending = pending.slice(group_rows)
-    if pending.num_rows:
-        yield pending.combine_chunks()
+    with table_draft(storage, name, schema, group_rows) as table:
+        for batch in batches:
+            table.add(batch)
+        return table.finish()
 
 
 def _options(schema: pa.Schema) -> dict[str, object]:

@@ -31,6 +31,8 @@ class Sidecar:
         Rows by the state's name.
     environment
         Versions and CPU family that made the rows.
+    internals
+        The shard's rows of internal quantities, in sets that store them.
     """
 
     shard: str
@@ -42,11 +44,17 @@ class Sidecar:
     rows_per_state: Mapping[str, int]
     failures: tuple[RecordFailure, ...]
     environment: Mapping[str, str]
+    internals: FileFacts | None = None
 
     @property
     def name(self) -> str:
         """The sidecar's own object name."""
         return sidecar_name(self.shard)
+
+    @property
+    def files(self) -> tuple[FileFacts, ...]:
+        """The files that the sidecar commits."""
+        return (self.data,) if self.internals is None else (self.data, self.internals)
 
 
 def data_name(shard: str) -> str:
@@ -82,7 +90,10 @@ def json_bytes(content: Mapping[str, object]) -> bytes:
 
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
     """Commit a shard whose rows are already stored."""
-    storage.put(sidecar.name, json_bytes({"schema_version": SCHEMA_VERSION, **asdict(sidecar)}))
+    content = {"schema_version": SCHEMA_VERSION, **asdict(sidecar)}
+    if sidecar.internals is None:
+        del content["internals"]  # as in sets that were made before internals could be stored
+    storage.put(sidecar.name, json_bytes(content))
 
 
 def read_sidecar(storage: Storage, shard: str) -> Sidecar:
@@ -110,6 +121,7 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
             rows_per_state=content["rows_per_state"],
             failures=tuple(RecordFailure(**failure) for failure in content["failures"]),
             environment=content["environment"],
+            internals=FileFacts(**content["internals"]) if "internals" in content else None,
         )
     except (ValueError, KeyError, TypeError) as error:
         raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error!r})") from error
@@ -128,5 +140,9 @@ def committed(storage: Storage, shard: str, identity: str, specimens: Ranges) ->
     except DatasetError:
         return None
     is_planned = (sidecar.shard, sidecar.identity, sidecar.specimens) == (shard, identity, specimens)
-    is_whole = is_planned and storage.size(sidecar.data.name) == sidecar.data.bytes
-    return sidecar if is_whole and sha256(storage, sidecar.data.name) == sidecar.data.sha256 else None
+    return sidecar if is_planned and all(_is_whole(storage, facts) for facts in sidecar.files) else None
+
+
+def _is_whole(storage: Storage, facts: FileFacts) -> bool:
+    has_size = storage.exists(facts.name) and storage.size(facts.name) == facts.bytes
+    return has_size and sha256(storage, facts.name) == facts.sha256

@@ -9,12 +9,13 @@ pitch-line velocity of the pinion at the mesh).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.dynamics.bearing_caps import Caps, capped, uncapped
 from siggen.dynamics.structure import (
     Element,
     Rotor,
@@ -43,13 +44,14 @@ class Bolts:
 
 @dataclass(frozen=True, slots=True)
 class Casing:
-    """A rigid casing, and where pinion and sensors stand on it."""
+    """A rigid casing, where pinion and sensors stand on it, and bearing caps that move by themselves, if any."""
 
     mass_kg: float
     inertia_kg_m2: float
     bolts: Bolts
     pinion_place_m: Point
     sensor_places_m: Mapping[str, Point]
+    caps: Caps | None = None
 
 
 def torsional(stage: SpurStage) -> Structure:
@@ -71,6 +73,7 @@ def casing_structure(stage: SpurStage, casing: Casing) -> Structure:
     """Return the gears in a bolted casing, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, x_c, y_c, φ_c].
 
     Sensors at the bearings sit on the casing. A sensor of another name is seen as `casing_<name>`.
+    With caps, x and y of four of them come behind.
 
     Raises
     ------
@@ -89,21 +92,30 @@ def casing_structure(stage: SpurStage, casing: Casing) -> Structure:
         **_bearings("1", "pinion_bearing", stage.pinion, casing.pinion_place_m, angle),
         **_bearings("2", "gear_bearing", stage.gear, gear_place, angle),
     }
+    held = uncapped(bearings) if casing.caps is None else capped(bearings, casing.caps)
     places = {**seats, **{f"casing_{name}": place for name, place in casing.sensor_places_m.items()}}
-    inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing)}
+    inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing), **held.masses}
     coordinates = tuple(inertias)
-    stiffness, damping = assemble(coordinates, (*shafts(stage), *bearings.values(), *bolt_elements(casing, angle)))
+    stiffness, damping = assemble(coordinates, (*shafts(stage), *held.elements, *bolt_elements(casing, angle)))
     motions = {
         f"{name}/{axis}": vector(coordinates, _on_casing(place, axis, angle))
         for name, place in places.items()
         for axis in ("vertical", "horizontal")
     }
+    motions |= {name: vector(coordinates, direction) for name, direction in held.motions.items()}
     line_of_action = {"y_1": 1.0, "y_2": -1.0}
     across = {"x_1": 1.0, "x_2": -1.0}
-    directions = {name: vector(coordinates, element.direction) for name, element in bearings.items()}
-    forces = {name: (directions[name] * e.stiffness, directions[name] * e.damping) for name, e in bearings.items()}
+    forces = {name: _force_rows(coordinates, elements) for name, elements in held.seats.items()}
     structure = _structure(stage, inertias, stiffness, damping, line_of_action, motions, across)
     return replace(structure, bearing_forces=forces)
+
+
+def _force_rows(coordinates: tuple[str, ...], elements: Sequence[Element]) -> tuple[FloatArray, FloatArray]:
+    """Return what the elements together press with, per displacement and per velocity, each (n,)."""
+    directions = [vector(coordinates, element.direction) for element in elements]
+    pairs = list(zip(elements, directions, strict=True))
+    stiffness, damping = [e.stiffness * v for e, v in pairs], [e.damping * v for e, v in pairs]
+    return np.add.reduce(stiffness), np.add.reduce(damping)
 
 
 def bolt_elements(casing: Casing, angle_rad: float) -> tuple[Element, ...]:

@@ -14,13 +14,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from siggen.dynamics.free_rotation import static_solution
 from siggen.dynamics.mesh_force import MeshLaw, mesh_force, mesh_stiffness
 from siggen.dynamics.structure import Structure
 
 FloatArray = NDArray[np.float64]
-
-RIGID_SHARE = 1e-9
-"""Eigenvalues of M⁻¹K below this share of the largest one are rigid-body modes (rounding leaves about 1e-16)."""
 
 
 class Equations(NamedTuple):
@@ -78,11 +76,11 @@ def equations_about(
     """
     p = structure.mesh_vector
     loaded = structure.stiffness + reference_stiffness * p[:, None] * p[None, :]
-    elastic = static_solution(structure.mass, loaded, structure.torque_vector * torque_nm)
+    elastic = static_solution(structure, loaded, structure.torque_vector * torque_nm)
     force = float(reference_stiffness * (p * elastic).sum())
     side = 1.0 if force >= 0.0 else -1.0
     touching = drive_gap_m if side > 0.0 else back_gap_m
-    gap = static_solution(structure.mass, loaded, p * (reference_stiffness * touching))
+    gap = static_solution(structure, loaded, p * (reference_stiffness * touching))
     vectors = np.empty((0, p.size)) if input_vectors is None else input_vectors
     return Equations(
         stiffness_by_mass=inverse_times(structure.mass, structure.stiffness),
@@ -103,34 +101,13 @@ def inverse_times(matrix: FloatArray, right: FloatArray) -> FloatArray:
     return np.ascontiguousarray(np.linalg.solve(matrix, right), dtype=np.float64)
 
 
-def static_solution(mass: FloatArray, stiffness: FloatArray, force: FloatArray) -> FloatArray:
-    """Return the displacement (n,) under a balanced force (n,) without any rigid-body part (orthogonal in M).
-
-    Raises
-    ------
-    ValueError
-        If the force does work on a rigid-body mode: then no equilibrium exists.
-    """
-    root = np.linalg.cholesky(mass)
-    scaled = np.linalg.solve(root, np.linalg.solve(root, stiffness).T)
-    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    modal = vectors.T @ np.linalg.solve(root, force)
-    rigid = values < RIGID_SHARE * values[-1]
-    if np.abs(modal[rigid]).sum() > 1e-9 * np.abs(modal).sum():
-        raise ValueError(
-            f"static load: received an unbalanced force {force}; allowed are torques that balance the load"
-        )
-    modal = np.where(rigid, 0.0, modal / np.where(rigid, 1.0, values))
-    return np.linalg.solve(root.T, vectors @ modal)
-
-
 def start_state(structure: Structure, law: MeshLaw, equations: Equations, pitches: float) -> FloatArray:
     """Return z (2n,) at rest in the static equilibrium at the actual mesh stiffness, rigid rotation zero."""
     p = equations.mesh_vector
     actual = mesh_stiffness(law, pitches)
     loaded = structure.stiffness + actual * p[:, None] * p[None, :]
     penetration = equations.static_force / equations.reference_stiffness
-    deviation = static_solution(structure.mass, loaded, -p * ((actual - equations.reference_stiffness) * penetration))
+    deviation = static_solution(structure, loaded, -p * ((actual - equations.reference_stiffness) * penetration))
     return np.concatenate([deviation, np.zeros_like(deviation)])
 
 

@@ -106,6 +106,11 @@ class LinearMotion:
         self.base_pitch_m = tables.base_pitch_m
         self._integrator = INTEGRATORS[integrator](self.equations, self._law, step_s)
 
+    @property
+    def law(self) -> MeshLaw:
+        """The mesh law with its tables."""
+        return self._law
+
     def start(self, pitches: float) -> FloatArray:
         """Return the static state (2n,) at a pinion angle in base pitches."""
         return start_state(self.structure, self._law, self.equations, pitches)

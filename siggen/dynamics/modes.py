@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.dynamics.equations import Equations, state_matrix
+from siggen.dynamics.free_rotation import elastic_basis, free_rotations
 from siggen.dynamics.structure import Structure
 
 FloatArray = NDArray[np.float64]
@@ -35,19 +36,26 @@ class Modes:
 def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
     """Return the modes of the structure with a constant mesh stiffness [N/m]."""
     p = structure.mesh_vector
-    root = np.linalg.cholesky(structure.mass)
     stiffness = structure.stiffness + mesh_stiffness_n_per_m * p[:, None] * p[None, :]
-    scaled = np.linalg.solve(root, np.linalg.solve(root, stiffness).T)
-    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    rigid = values < 1e-12 * values[-1]
-    values = np.where(rigid, 0.0, values)
-    shapes = np.linalg.solve(root.T, vectors).T
+    basis = elastic_basis(structure, stiffness)
+    scaled = basis.T @ stiffness @ basis
+    elastic, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    free = _orthonormal(free_rotations(structure, stiffness), structure.mass)
+    values = np.concatenate([np.zeros(free.shape[1]), elastic])
+    shapes = np.hstack([free, basis @ vectors]).T
+    rigid = np.arange(values.size) < free.shape[1]
     largest = shapes[np.arange(len(shapes)), np.argmax(np.abs(shapes), axis=1)]
     shapes = shapes * np.sign(largest)[:, None]
     # Mass-normalised, so the strain energy of a mode is half its eigenvalue.
     mesh = mesh_stiffness_n_per_m * (shapes @ p) ** 2
     share = np.where(rigid, 0.0, mesh / np.where(rigid, 1.0, values))
     return Modes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
+
+
+def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
+    """Return vectors (n, r) of the same space that are orthonormal in M."""
+    root = np.linalg.cholesky(mass)
+    return np.linalg.solve(root.T, np.linalg.qr(root.T @ vectors)[0])
 
 
 def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> FloatArray:
@@ -60,15 +68,24 @@ def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping
 
     The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
     """
-    n = equations.mesh_vector.size
-    values, right = np.linalg.eig(state_matrix(equations, equations.reference_stiffness, mesh_damping_n_s_per_m))
-    scale = np.abs(values).max()
-    moving = np.abs(values) > 1e-6 * scale
-    motions = np.array(list(structure.motions.values()))
-    inputs = np.concatenate([np.zeros(n), equations.mesh_input])
-    # Least squares instead of an inverse: the rigid mode leaves the matrix of eigenvectors without one.
+    p, k = structure.mesh_vector, equations.reference_stiffness
+    basis = elastic_basis(structure, structure.stiffness + k * p[:, None] * p[None, :])
+    n, m = basis.shape
+    # In this basis the mass is the identity, and no free rotation is left.
+    matrix = np.zeros((2 * m, 2 * m))
+    full = state_matrix(equations, k, mesh_damping_n_s_per_m)[n:]
+    matrix[:m, m:] = np.eye(m)
+    matrix[m:, :m], matrix[m:, m:] = (basis.T @ structure.mass @ full[:, half] @ basis for half in _halves(n))
+    values, right = np.linalg.eig(matrix)
+    motions = np.array(list(structure.motions.values())) @ basis
+    inputs = np.concatenate([np.zeros(m), basis.T @ p])
+    # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
     participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
-    seen = np.abs(motions @ right[:n]).max(axis=0)
-    residue = np.where(moving, seen * np.abs(participation), 0.0)
+    residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
     excited = residue > EXCITED_SHARE * residue.max()
     return float(max(0.0, (-values.real[excited]).min()))
+
+
+def _halves(n: int) -> tuple[slice, slice]:
+    """Return where displacements and velocities stand in a state (2n,)."""
+    return slice(0, n), slice(n, 2 * n)

@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.dynamics.equations import Equations, equations_about, external_push, inverse_times, static_solution
+from siggen.dynamics.equations import Equations, equations_about, external_push, inverse_times
+from siggen.dynamics.free_rotation import static_solution
 from siggen.dynamics.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.pair_law import PairLaw
@@ -87,7 +88,7 @@ class PairMotion:
         stiffness = equations.reference_stiffness
         loaded = self.structure.stiffness + stiffness * p[:, None] * p[None, :]
         moved = p * (stiffness * (approach - equations.static_approach))
-        deviation = static_solution(self.structure.mass, loaded, moved)
+        deviation = static_solution(self.structure, loaded, moved)
         return np.concatenate([deviation, np.zeros_like(deviation)])
 
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
@@ -35,6 +35,10 @@ class Motion(Protocol):
     base_pitch_m: float
     largest_approach_m: float
     internal_names: tuple[str, ...]
+
+    @property
+    def law(self) -> NamedTuple:
+        """The mesh law: tables and numbers."""
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state at the start, at a pinion angle in base pitches."""
@@ -204,12 +208,17 @@ def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
         )
 
 
+def first_step(motion: Motion, fs_hz: float, steps_per_sample: int) -> int:
+    """Return the step at which the integration starts: before sample 0 by the transient and half the filter."""
+    return -half_length(steps_per_sample) - math.ceil(motion.transient_s * fs_hz * steps_per_sample)
+
+
 def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool) -> Response:
     """Step through transient and record block by block; keep only the filtered outputs and what was asked for."""
     half = half_length(run.steps_per_sample)
-    settle = math.ceil(run.motion.transient_s * run.fs_hz * run.steps_per_sample)
-    state = run.motion.start(run.pitches(-half - settle, 1)[0])
-    for _ in _blocks(run, state, -half - settle, -half):
+    first = first_step(run.motion, run.fs_hz, run.steps_per_sample)
+    state = run.motion.start(run.pitches(first, 1)[0])
+    for _ in _blocks(run, state, first, -half):
         pass
     accelerations = _acceleration_decimator(run, samples)
     forces = _force_decimator(run, samples) if bearing_forces else None

@@ -42,7 +42,10 @@ def siggen_command(*arguments: str, **environment: str) -> subprocess.CompletedP
     )
 
 
-@pytest.mark.parametrize("name", [command.__name__ for command in COMMANDS])
+NAMES = [command.__name__.replace("_", "-") for command in COMMANDS]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_every_command_shows_an_example(name):
     for flag in ("--help", "-h"):
         result = CliRunner().invoke(app, [name, flag])
@@ -54,7 +57,7 @@ def test_every_command_shows_an_example(name):
 def test_no_command_shows_the_help_and_is_a_slip():
     result = CliRunner().invoke(app, [])
     assert result.exit_code == 2
-    assert all(command.__name__ in result.output for command in COMMANDS)
+    assert all(name in result.output for name in NAMES)
 
 
 def test_the_version_is_printed():

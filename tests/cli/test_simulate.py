@@ -54,3 +54,18 @@ def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_pa
     assert error > 1e-6  # some 30 N m press 1 kN on 2e8 to 4e8 N/m
     # The mean of F/K is not the quotient of the means, as K swings by 30 % about its own; tip relief adds a little.
     assert error == pytest.approx(force / stiffness, rel=0.3)
+
+
+def test_internals_can_be_left_out(tmp_path: Path) -> None:
+    run("configs/quickstart.yaml", "--record", 0, "--signals", "--out", tmp_path / "signals.parquet")
+    run("configs/quickstart.yaml", "--record", 0, "--internals", "--out", tmp_path / "all.parquet")
+    signals, everything = (pyarrow.parquet.read_table(tmp_path / f"{name}.parquet") for name in ("signals", "all"))
+    assert signals.column_names == [
+        "time_s",
+        "angle_rad",
+        "accel_bearing_vertical_m_s2",
+        "accel_bearing_horizontal_m_s2",
+    ]
+    assert set(signals.column_names) < set(everything.column_names)
+    for name in signals.column_names:
+        assert signals[name].equals(everything[name])

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import pickle
+from typing import Annotated
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.config import Config, parse, parse_yaml, yaml_text
+from siggen.config.first_default import Was
+from siggen.config.section import Section
 from tests.config.minimal import config, minimal
 
 
@@ -141,7 +144,7 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
     )
     known = {
         "model": "8dof",
-        "integrator": "product",
+        "integrator": "auto",
         "steps_per_sample": 4,
         "mesh_damping_ratio": 0.07,
         "backlash_um": 80.0,
@@ -151,3 +154,26 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
     }
     assert canonical["dynamics"] | known == canonical["dynamics"]
     assert canonical["sensors"][0] | {"gain": 1.0, "range_m_s2": 500.0, "bits": 16} == canonical["sensors"][0]
+
+
+@pytest.mark.parametrize("integrator", ["auto", "product"])
+def test_naming_the_integrator_of_the_linear_law_leaves_the_identity(integrator):
+    assert config(dynamics__integrator=integrator).identity == GOLDEN
+    assert config(dynamics__integrator="runge_kutta").identity != GOLDEN
+
+
+def test_identities_count_from_the_first_defaults():
+    # as if a later version had changed the default of a key in a section that may be left out
+    class LaterWheel(Section):
+        width_mm: Annotated[float, Was(20.0)] = 30.0
+
+    class Later(Config):
+        wheel: LaterWheel = LaterWheel()
+
+    named = Later.model_validate({**minimal(), "wheel": {"width_mm": 20.0}})
+    assert named.identity == GOLDEN
+    assert Later.model_validate(minimal()).identity not in (GOLDEN, named.identity)
+    assert (
+        Later.model_validate({**minimal(), "wheel": {"width_mm": 30.0}}).identity
+        == Later.model_validate(minimal()).identity
+    )

@@ -73,7 +73,12 @@ MISTAKES = [
         "-80000000.0",
         "a number above 0",
     ),
-    ({"dynamics__mesh__law": "pairs"}, "dynamics.integrator", "'product'", "runge_kutta (dynamics.mesh.law: pairs)"),
+    (
+        {"dynamics__mesh__law": "pairs", "dynamics__integrator": "product"},
+        "dynamics.integrator",
+        "'product'",
+        "auto or runge_kutta (dynamics.mesh.law: pairs)",
+    ),
     ({"dynamics__friction__model": "constant"}, "dynamics.friction.model", "'constant'", "dynamics.mesh.law: pairs"),
     ({"dynamics__mesh__squeeze_film": "on"}, "dynamics.mesh.squeeze_film", "'on'", "dynamics.mesh.law: pairs"),
     ({"dynamics__mesh__tip_relief_um": -8}, "dynamics.mesh.tip_relief_um", "-8.0", "a number of at least 0"),

@@ -12,11 +12,12 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+import pyarrow as pa
 
 from siggen.config import Config, parse
 from siggen.dataset import plan
-from siggen.dataset.plan import PlannedRecord, planned_record
-from siggen.dataset.record import Record, RecordFailure
+from siggen.dataset.plan import PlannedRecord, has_internals, planned_record
+from siggen.dataset.record import Column, Record, RecordFailure
 from siggen.generation import Generation, generate
 
 STEP_M_S2 = 2.0**-6
@@ -92,7 +93,23 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
         accel = 20.0 * np.sin(2 * np.pi * 540.0 * t_s) + rng.normal(scale=0.5, size=config.samples)
         signals[name] = (np.round(accel / STEP_M_S2) * STEP_M_S2).astype(np.float32)
         labels |= {f"noise_floor_{name}_m_s2": 0.5, f"snr_{name}_db": 29.0, f"clipped_share_{name}": 0.0}
-    return Record(planned, labels, signals, np.arange(3) / 30.0)
+    return Record(planned, labels, signals, np.arange(3) / 30.0, fake_internals(config, planned))
+
+
+QUANTITIES = (Column("mesh_force_n", pa.float32(), "N", "force"), Column("pair_1_force_n", pa.float32(), "N", "of one"))
+
+
+def quantities(config: Config) -> tuple[Column, ...]:
+    """Stand in for `siggen.record_internals.stored_quantities`."""
+    return QUANTITIES
+
+
+def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarray] | None:
+    """Return a force that tells the record; odd specimens have no second pair."""
+    if not has_internals(config, planned):
+        return None
+    force = np.linspace(0.0, 1.0, config.samples) + planned.record_id
+    return {"mesh_force_n": force} if planned.specimen_id % 2 else {"mesh_force_n": force, "pair_1_force_n": -force}
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
@@ -175,7 +192,8 @@ def write_fake_set(
     with patch.multiple(
         plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096
     ):  # row groups of 2: several chunks per shard
-        return generate(config or fake_config(), path, workers, simulate=simulation, damage_rows=damage_rows)
+        chosen = config or fake_config()
+        return generate(chosen, path, workers, simulate=simulation, damage_rows=damage_rows, quantities=quantities)
 
 
 FAKE_FILES = sorted(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.casing_structure import Bolts, bolt_elements, casing_structure, torsional
-from siggen.dynamics.equations import static_solution
+from siggen.dynamics.free_rotation import static_solution
 from siggen.dynamics.modes import natural_frequencies_hz, natural_modes
 from siggen.dynamics.structure import eight_dof, vector
 from tests.dynamics.casing_stage import (
@@ -25,7 +25,7 @@ def static(torque_nm: float = 30.0) -> np.ndarray:
     """Return the displacement under a torque at the mean mesh stiffness."""
     structure = make_structure()
     loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh_vector, structure.mesh_vector)
-    return static_solution(structure.mass, loaded, torque_nm * structure.torque_vector)
+    return static_solution(structure, loaded, torque_nm * structure.torque_vector)
 
 
 def test_natural_frequencies_of_the_standard_gearbox() -> None:

@@ -1,0 +1,28 @@
+"""The configuration behind a YAML file or a set's folder, checked to have the record that a command asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+
+def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config:
+    """Return the configuration of a file or folder.
+
+    Raises
+    ------
+    UsageError
+        If it has no such record.
+    """
+    from siggen.errors import UsageError
+    from siggen.loading import load_config
+
+    config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
+    count = config.specimens * config.records_per_specimen
+    if record >= count:
+        raise UsageError(f"--record {record}: {source} has {count} records, 0 to {count - 1}")
+    return config

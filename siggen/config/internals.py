@@ -1,0 +1,33 @@
+"""Section `internals`: which quantities that no sensor sees a set stores beside its records."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from siggen.config.section import Section, Whole
+from siggen.config.wording import Said
+
+ALL = "all"
+NAMES = Said("[all], or a list of names such as mesh_force_n")
+
+
+class Internals(Section):
+    """A second table of the set, `internals/`, joined by `record_id`; series at the rate of the signals, as float32."""
+
+    quantities: Annotated[tuple[str, ...], Field(min_length=1), NAMES] = Field(
+        default=(ALL,), description="columns of `siggen simulate`; [all], or a list of names"
+    )
+    records: Literal["all", "first_of_state"] = Field(
+        default="all",
+        description="first_of_state: of every specimen and state the first operating point and repeat alone",
+    )
+    every_specimen: Annotated[Whole, Field(ge=1)] = Field(
+        default=1, description="10: those of specimens 0, 10, 20, ... alone"
+    )
+
+    @property
+    def stores_all(self) -> bool:
+        """Whether all quantities of the model are stored."""
+        return ALL in self.quantities

@@ -1,0 +1,63 @@
+"""Which internal quantities a set stores follows from its configuration; every record then has them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.dataset.record import Record
+from siggen.errors import ConfigError
+from siggen.loading import load_config
+from siggen.record_internals import internals_table, stored_quantities
+from siggen.simulation import simulate
+
+SHORT = ["duration_s=0.05", "specimens=2"]
+
+
+@pytest.mark.parametrize("name", ["quickstart", "paper_b"])
+def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None:
+    config = load_config(f"configs/{name}.yaml", [*SHORT, "internals.records=all"])
+    names = {column.name for column in stored_quantities(config)}
+    last = config.records_per_specimen * 2 - 1
+    for record in simulate(config, [0, last]):
+        assert isinstance(record, Record)
+        assert set(record.internals) == names
+        assert all(values.dtype == np.float32 and len(values) == config.samples for values in record.internals.values())
+
+
+def test_stored_series_are_those_of_the_command(tmp_path) -> None:
+    config = load_config("configs/quickstart.yaml", [*SHORT, "internals.records=first_of_state"])
+    stored, unchosen = simulate(config, [2, 3])
+    table = internals_table(config, 2)
+    assert unchosen.internals is None
+    for name, values in stored.internals.items():
+        if name != "pinion_angle_rad":
+            np.testing.assert_array_equal(values, table[name].to_numpy().astype(np.float32))
+    turns = (table["angle_rad"].to_numpy() - stored.internals["pinion_angle_rad"]) / (2.0 * np.pi)
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-6)  # float32 of an angle below 2 pi
+
+
+def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
+    with_them, without = (
+        simulate(load_config("configs/quickstart.yaml", [*SHORT, *extra]), [1])[0]
+        for extra in (["internals.records=all"], [])
+    )
+    for channel, signal in without.channels.items():
+        assert signal.tobytes() == with_them.channels[channel].tobytes()
+
+
+def test_units_follow_from_the_names() -> None:
+    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    units = {column.name: column.unit for column in stored_quantities(config)}
+    expected = {
+        "mesh_force_n": "N", "mesh_stiffness_n_per_m": "N/m", "mesh_damping_n_s_per_m": "N s/m", "approach_m": "m",
+        "approach_rate_m_s": "m/s", "pair_0_load_share": "", "phi_c_rad": "rad", "friction_moment_gear_nm": "N m",
+        "clean_accel_casing_lid_vertical_m_s2": "m/s^2",
+    }  # fmt: skip
+    assert {name: units[name] for name in expected} == expected
+
+
+def test_only_quantities_that_the_model_has_can_be_stored() -> None:
+    config = load_config("configs/quickstart.yaml", [*SHORT, "internals.quantities=[mesh_force_n, x_c_m]"])
+    with pytest.raises(ConfigError, match=r"internals\.quantities: received x_c_m; .*transmission_error_m"):
+        stored_quantities(config)
