@@ -55,6 +55,20 @@ def _spring(
     return whole * penetration_m, whole, 1.0
 
 
+@njit(cache=True)
+def least_sink(numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int) -> float:
+    """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
+    groups = index[at.GROUPS]
+    if groups == 0:
+        return 0.0
+    cell, weight = int(pairs[i, CELL]), pairs[i, WEIGHT]
+    corner = int(pairs[i, ROW]) * index[at.POINTS] + cell
+    if between(numbers, index[at.FLUSH_AT], corner, weight) > 0.0:
+        return 0.0
+    low = index[at.SINK_AT] + corner * groups
+    return numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
+
+
 @njit(cache=True, inline="always")
 def spring_of_flank(
     numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int, penetration_m: float
