@@ -1,16 +1,16 @@
-"""Integration of the severe state of paper A: cost per second of signal, and error, of every integrator."""
+"""Integration: cost per second of signal, and error, of every integrator for paper A, and cost of tooth pairs."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from unittest.mock import patch
 
 import numpy as np
 
 from benchmarks.row import Row, cost_row, duration_text
-from benchmarks.shipped import PAPER_A, shipped
+from benchmarks.shipped import PAPER_A, PAPER_B, shipped
 from benchmarks.solve_ivp import RELATIVE_TOLERANCE, Method, solve_ivp_integrators
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config, constant
@@ -22,6 +22,7 @@ from siggen.dynamics.mesh_force import mean_mesh_stiffness, mesh_law
 from siggen.dynamics.response import simulate_response
 from siggen.dynamics.transient import transient_s
 from siggen.simulation import SpecimenState, specimen_state, start_angle_rad
+from siggen.specimen_motion import specimen_motion
 
 SEVERE = 3
 STEPS, REFERENCE_STEPS = 4, 64
@@ -93,6 +94,44 @@ def rows(*, quick: bool) -> Iterator[Row]:
             other_error = _error(case, integrator, steps, SHORT_S)
         scaled = per_second * (duration_s + transient) / duration_s
         yield _row(what, cost["product"], error["product"], name, scaled, other_error)
+    yield from _pair_rows(duration_s=1.0, rounds=rounds)
+
+
+PAIR_CASES = {
+    "friction off": ("dynamics.friction.model=off",),
+    "mixed friction": (),
+    "mixed friction, damping by asperities": ("dynamics.mesh.damping=asperity_share",),
+}
+PAIR_GOAL_S = 0.13
+"""Per second of signal: 410 000 evaluations of 11 accelerations and two tooth pairs, some 300 ns of arithmetic each."""
+
+
+def _pair_rows(duration_s: float, rounds: int) -> Iterator[Row]:
+    """Yield the cost of the time loop alone, for tooth pairs in a casing with the severe damage of paper_b."""
+    loops = {name: _pair_loop(shipped(PAPER_B, *overrides), duration_s) for name, overrides in PAIR_CASES.items()}
+    for loop in loops.values():
+        loop(0)  # compiles
+    for name, cost_s in medians({name: Candidate(loop) for name, loop in loops.items()}, rounds).items():
+        what = f"time loop of law pairs, {PAIR_STEPS} steps per sample, 11 coordinates, {name}, per s of signal"
+        per_second = cost_s / duration_s
+        yield Row(what, duration_text(per_second), goal=f"<= {PAIR_GOAL_S:g} s", met=per_second <= PAIR_GOAL_S)
+
+
+PAIR_STEPS = 2
+
+
+def _pair_loop(config: Config, duration_s: float) -> Callable[[int], object]:
+    """Return what steps the severe state through time once."""
+    specimen = draw_specimen(config, 0)
+    planned = planned_record(config, SEVERE * len(config.operating_points))
+    point = draw_operating_point(config, 0, planned.operating_point_id)
+    step_s = 1.0 / (config.fs_hz * PAIR_STEPS)
+    motion = specimen_motion(specimen.dynamics, specimen_state(config, specimen, planned.state_id).mesh, point, step_s)
+    steps = round(duration_s / step_s)
+    pitches = np.arange(steps + 1, dtype=np.float64) * (motion.teeth * point.speed_hz * step_s)
+    trajectory = np.empty((steps + 1, 2 * len(motion.structure.coordinates)))
+    trajectory[0] = motion.start(pitches[0])
+    return lambda _: motion.advance(pitches, trajectory)
 
 
 def _costs(case: _Case, duration_s: float, rounds: int) -> dict[str, float]:

@@ -10,6 +10,7 @@ from siggen.loading import load_config
 ROOT = Path(__file__).resolve().parents[1]
 QUICKSTART = ROOT / "configs" / "quickstart.yaml"
 PAPER_A = ROOT / "configs" / "paper_a.yaml"
+PAPER_B = ROOT / "configs" / "paper_b.yaml"
 
 
 def shipped(path: Path, *overrides: str) -> Config:

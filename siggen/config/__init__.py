@@ -8,8 +8,8 @@ from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
-from siggen.config.manufacture import Manufacture
 from siggen.config.internals import Internals
+from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange

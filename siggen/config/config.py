@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 from siggen.config.dynamics import Dynamics
 from siggen.config.first_default import uncounted
 from siggen.config.gears import Gears
-from siggen.config.manufacture import Manufacture
 from siggen.config.internals import Internals
+from siggen.config.manufacture import Manufacture
 from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
 from siggen.config.problems import refusal
 from siggen.config.section import Real, Section, Whole

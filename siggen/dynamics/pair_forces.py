@@ -34,7 +34,7 @@ from siggen.dynamics.pair_places import (
     pair_table,
     place_pairs,
 )
-from siggen.dynamics.pair_springs import share_coupled, spring_of_flank
+from siggen.dynamics.pair_springs import least_sink, share_coupled, spring_of_flank
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
@@ -146,7 +146,8 @@ def write_forces(
             pairs[i, NORMAL] = 0.0
             _load(scalars, numbers, index, pairs, i, elastic, damping, rate_m_s)
         elif scalars[at.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
-            pairs[i, NORMAL] = _film_force(scalars, pairs[i, POSITION], -pairs[i, PENETRATION], rate_m_s)
+            gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
+            pairs[i, NORMAL] = _film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
 
 
 @njit(cache=True)

@@ -242,9 +242,7 @@ def _pack_damping(packed: PackedTables, scalars: FloatArray, ratio: float | Damp
         scalars[DAMPING_ROOT] = 2.0 * float(ratio) * root
         return
     if packed.index[ROUGHNESSES] == 0:
-        raise ValueError(
-            "damping_ratio: received parts by asperity share without friction; allowed: with a table of it"
-        )
+        raise ValueError("damping_ratio: received parts by asperity share without a friction law; allowed: with one")
     packed.head(SHARE_DAMPS, 1)
     scalars[DAMPING_STRUCTURE], scalars[DAMPING_FILM] = 2.0 * ratio.structure * root, 2.0 * ratio.film * root
     scalars[DAMPING_ASPERITIES] = 2.0 * ratio.asperities * root

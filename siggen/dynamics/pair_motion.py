@@ -188,6 +188,7 @@ def _load_pairs(
     return normal, friction, moment
 
 
+# Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
 @njit(cache=True, inline="always")
 def pair_rate(
     model: tuple[PairEquations, PairLaw, FloatArray], state: FloatArray, pitches: float, rate: FloatArray
@@ -201,10 +202,12 @@ def pair_rate(
     for i in range(n):
         rate[i] = state[n + i]
         rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
-    # Column by column, so that the inner loop has no sum to carry and runs on several rates at once.
-    for j in range(2 * n):
+    # Columns outside, so that the inner loop carries no sum and runs on several rates at once; displacement and
+    # velocity of a coordinate together, which halves the traffic to memory.
+    for j in range(n):
+        displacement, velocity = state[j], state[n + j]
         for i in range(n):
-            rate[n + i] += rows[j, i] * state[j]
+            rate[n + i] += rows[j, i] * displacement + rows[n + j, i] * velocity
 
 
 @njit(cache=True)

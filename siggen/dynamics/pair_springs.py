@@ -29,6 +29,8 @@ from siggen.dynamics.slice_law import grouped_force
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int64]
 
+ALONE, FORCE, SLOPE, RIGHT, MATRIX = range(5)
+"""Columns of the solution: penetration by itself, force, slope, right side; the matrix, and behind it the coupling."""
 MOST_STEPS = 50
 """Beyond half of these, pairs are solved one at a time; Newton's method was never seen to need more than 5."""
 
@@ -55,6 +57,20 @@ def _spring(
     return whole * penetration_m, whole, 1.0
 
 
+@njit(cache=True)
+def least_sink(numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int) -> float:
+    """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
+    groups = index[at.GROUPS]
+    if groups == 0:
+        return 0.0
+    cell, weight = int(pairs[i, CELL]), pairs[i, WEIGHT]
+    corner = int(pairs[i, ROW]) * index[at.POINTS] + cell
+    if between(numbers, index[at.FLUSH_AT], corner, weight) > 0.0:
+        return 0.0
+    low = index[at.SINK_AT] + corner * groups
+    return numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
+
+
 @njit(cache=True, inline="always")
 def spring_of_flank(
     numbers: FloatArray, index: IndexArray, pairs: FloatArray, i: int, penetration_m: float
@@ -78,59 +94,54 @@ def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int
 
 
 @njit(cache=True)
-def _solve(matrix: FloatArray, right: FloatArray) -> None:
-    """Write the solution of a system with a dominant diagonal into `right`, without pivoting."""
-    n = right.size
+def _solve(work: FloatArray) -> None:
+    """Write the solution of the system in the first columns into column RIGHT; dominant diagonal, without pivoting."""
+    n = work.shape[0]
     for k in range(n):
         for i in range(k + 1, n):
-            factor = matrix[i, k] / matrix[k, k]
+            factor = work[i, MATRIX + k] / work[k, MATRIX + k]
             for j in range(k + 1, n):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
+                work[i, MATRIX + j] -= factor * work[k, MATRIX + j]
+            work[i, RIGHT] -= factor * work[k, RIGHT]
     for k in range(n - 1, -1, -1):
         for j in range(k + 1, n):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
+            work[k, RIGHT] -= work[k, MATRIX + j] * work[j, RIGHT]
+        work[k, RIGHT] /= work[k, MATRIX + k]
 
 
 @njit(cache=True)
 def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IndexArray, pairs: FloatArray) -> None:
     """Replace the penetration of every pair by itself with that under the forces of the others."""
     slots, apart = pairs.shape[0], min(index[at.APART], MOST_APART)
-    coupling, matrix = np.zeros((slots, slots)), np.empty((slots, slots))
-    alone, force, change, slope = np.zeros(slots), np.zeros(slots), np.zeros(slots), np.full(slots, -1.0)
+    coupling = MATRIX + slots
+    work = np.zeros((slots, coupling + slots))  # one array: each costs as much as half a solution
     for i in range(slots):
-        alone[i] = pairs[i, PENETRATION]
+        work[i, ALONE], work[i, SLOPE] = pairs[i, PENETRATION], -1.0
         for j in range(slots):
             if i != j and pairs[i, WHOLE] > 0.0 and pairs[j, WHOLE] > 0.0:
-                coupling[i, j] = _coupling(scalars, pairs, apart, i, j)
+                work[i, coupling + j] = _coupling(scalars, pairs, apart, i, j)
     for step in range(MOST_STEPS):
         settled = True
         for i in range(slots):
-            if pairs[i, WHOLE] == 0.0:
-                found, tangent = 0.0, 0.0
-            else:
-                pairs[i, PENETRATION] = alone[i] - _dot(coupling[i], force)
+            found, tangent = 0.0, 0.0
+            if pairs[i, WHOLE] > 0.0:
+                others = 0.0
+                for j in range(slots):
+                    others += work[i, coupling + j] * work[j, FORCE]
+                pairs[i, PENETRATION] = work[i, ALONE] - others
                 found, tangent, _ = spring_of_flank(numbers, index, pairs, i, pairs[i, PENETRATION])
-            settled = settled and tangent == slope[i]
-            slope[i], change[i] = tangent, found - force[i]
+            settled = settled and tangent == work[i, SLOPE]
+            work[i, SLOPE], work[i, RIGHT] = tangent, found - work[i, FORCE]
             if step > MOST_STEPS // 2:
                 # Pieces that alternate, which strong couplings could make: one pair at a time always ends.
-                force[i], change[i] = found, 0.0
-        if settled:
+                work[i, FORCE], work[i, RIGHT] = found, 0.0
+        # One at a time, the same pieces twice are no proof: all steps are taken, each far nearer than the one before.
+        if settled and step <= MOST_STEPS // 2:
             return
         for i in range(slots):
             for j in range(slots):
-                matrix[i, j] = slope[i] * coupling[i, j]
-            matrix[i, i] += 1.0
-        _solve(matrix, change)
+                work[i, MATRIX + j] = work[i, SLOPE] * work[i, coupling + j]
+            work[i, MATRIX + i] += 1.0
+        _solve(work)
         for i in range(slots):
-            force[i] += change[i]
-
-
-@njit(cache=True)
-def _dot(first: FloatArray, second: FloatArray) -> float:
-    total = 0.0
-    for j in range(first.size):
-        total += first[j] * second[j]
-    return total
+            work[i, FORCE] += work[i, RIGHT]

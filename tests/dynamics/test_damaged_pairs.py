@@ -11,7 +11,7 @@ from siggen.dynamics.contact_kinematics import relative_radius
 from siggen.dynamics.drive import Drive
 from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.pair_forces import pair_forces, static_approach_m, static_force
-from siggen.dynamics.pair_law import PairLaw, pair_law
+from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.pair_places import CARRYING, FLANK, NORMAL, pair_table
 from siggen.dynamics.response import response_of
 from siggen.dynamics.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_pair_force, slice_tables
@@ -181,3 +181,14 @@ def test_the_casing_over_a_spall_through_the_face_shakes_as_computed_independent
     # 11.1 m/s² of a prototype whose layout and sensor were not recorded in full; found are 10.3.
     assert runs[1] == pytest.approx(11.1, rel=0.15)
     assert runs[0] == pytest.approx(runs[1], rel=1e-3)
+
+
+def test_a_film_between_a_sunk_flank_and_its_edges_is_as_thick_as_their_distance() -> None:
+    film = SqueezeFilm(0.112, 0.02, 0.8e-6)
+    wet = damaged(*WIDE, slices=WIDE_SLICES, film=film)
+    alone = (PITCH_POINT - PAIR.contact_start_m) / PAIR.base_pitch_m
+    radius = relative_radius(PITCH_POINT, PAIR.line_of_action_m)
+    force = loaded(wet, 5e-6, alone, 1e-3)[0, NORMAL]
+    gap = float(WIDE_SLICES.sink_m[1, :, 0].max()) - 5e-6
+    # The position lies within a cell of the deepest one: 1 % of the sink, 1.5 % of the force.
+    assert force == pytest.approx(12.0 * np.pi * 0.112 * 0.02 * (0.5 * radius / gap) ** 1.5 * 1e-3, rel=0.03)

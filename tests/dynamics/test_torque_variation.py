@@ -12,8 +12,8 @@ from siggen.dynamics.excitation import Excitation, SpeedDeviation, turning_of
 from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_places import FRICTION, SLIDING
 from siggen.dynamics.pair_motion import PairMotion
+from siggen.dynamics.pair_places import FRICTION, SLIDING
 from siggen.dynamics.response import Response, response_of
 from siggen.dynamics.slow_variation import slow_variation
 from siggen.dynamics.speed_ramp import SpeedRamp
