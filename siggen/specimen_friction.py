@@ -73,7 +73,7 @@ def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) ->
 
 def roughness_problem(section: Friction) -> str:
     """Return what the friction of the oil is allowed where the roughness is beyond its data, else nothing."""
-    if section.model != "mixed_ehl":
+    if section.model in {"off", "constant"}:
         return ""
     roughest_m = 1e-6 * bounds(section.roughness_um)[1]
     probe = LubricatedMesh(0.03, 200.0, 80.0, 0.02, 2.26e11, 0.1, 2e-8, 7e9)  # any: only the roughness is judged

@@ -89,8 +89,8 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "pairs" and dynamics.method != "runge_kutta":
         allowed = "allowed: auto or runge_kutta (dynamics.mesh.law: pairs)"
         yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
-    if dynamics.mesh.law == "linear" and dynamics.friction.model != "off":
-        allowed = "allowed: off, or dynamics.mesh.law: pairs"
+    if dynamics.mesh.law == "linear" and dynamics.friction.model not in {"auto", "off"}:
+        allowed = "allowed: auto or off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"

@@ -23,24 +23,47 @@ class Rotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8.5e7, description="horizontal")
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8.5e7, description="vertical")
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=2134.0, description="horizontal")
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=2134.0, description="vertical")
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), Was(8.5e7)] = Field(
+        default=2e8, description="both bearings of the shaft, horizontal"
+    )
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), Was(8.5e7)] = Field(
+        default=2e8, description="both bearings of the shaft, vertical"
+    )
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0), Was(2134.0)] = Field(
+        default=1000.0, description="horizontal; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+    )
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0), Was(2134.0)] = Field(
+        default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+    )
 
 
 class Coupling(Section):
     """Torsional spring and damper between a gear and the machine on its shaft."""
 
-    stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=330.0, description="torsional stiffness")
-    damping_nm_s_per_rad: Annotated[Number, Within(least=0)] = Field(default=0.231, description="torsional damping")
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0), Was(330.0)] = Field(
+        default=6300.0, description="torsional stiffness"
+    )
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0), Was(0.231)] = Field(
+        default=0.0984, description="torsional damping"
+    )
+
+
+class OutputCoupling(Coupling):
+    """The same for the longer shaft to the driven machine; 5 % of critical between the inertias of a small stage."""
+
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0), Was(330.0)] = Field(
+        default=2100.0, description="torsional stiffness"
+    )
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0), Was(0.231)] = Field(
+        default=0.286, description="torsional damping"
+    )
 
 
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
-        default="8dof",
+    model: Annotated[Literal["8dof", "6dof", "torsional", "casing"], Was("8dof")] = Field(
+        default="casing",
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
     integrator: Annotated[Literal["auto", "product", "runge_kutta"], Was("product", "auto")] = Field(
@@ -57,16 +80,16 @@ class Dynamics(Section):
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
     )
-    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(
-        default=0.016107, description="of the driving machine"
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0), Was(0.016107)] = Field(
+        default=4e-3, description="of the driving machine"
     )
-    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(
-        default=0.005153, description="of the driven machine"
+    load_inertia_kg_m2: Annotated[Number, Within(above=0), Was(0.005153)] = Field(
+        default=1e-2, description="of the driven machine"
     )
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
-    output_coupling: Coupling = Field(default=Coupling(), description="between gear and load")
+    output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between gear and load")
     # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
     casing: Casing = Field(default=Casing(), description="used by the model casing alone")
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from siggen.config.first_default import Was
 from siggen.config.number import Number, Within
 from siggen.config.section import Section
 
@@ -13,8 +14,8 @@ from siggen.config.section import Section
 class Mesh(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
 
-    law: Literal["linear", "pairs"] = Field(
-        default="linear", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
+    law: Annotated[Literal["linear", "pairs"], Was("linear")] = Field(
+        default="pairs", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
         default=8.0, description="parabolic relief at the tips of both gears"
@@ -58,8 +59,10 @@ class Mesh(Section):
 class Friction(Section):
     """Friction between the flanks; needs the law pairs."""
 
-    model: Literal["off", "constant", "mixed_ehl"] = Field(
-        default="off", description="mixed_ehl: asperities and oil film share the load by speed, load and roughness"
+    model: Annotated[Literal["auto", "off", "constant", "mixed_ehl"], Was("off")] = Field(
+        default="auto",
+        description="mixed_ehl: asperities and oil film share the load by speed, load and roughness; auto: mixed_ehl "
+        "with the law pairs, off with the law linear",
     )
     coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the model constant")
     regular_speed_m_s: Annotated[Number, Within(above=0)] = Field(

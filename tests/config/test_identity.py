@@ -118,12 +118,43 @@ def test_a_configuration_cannot_be_changed_and_travels_between_processes():
     assert isinstance(travelled, Config)
 
 
-GOLDEN = "36cde563b6a956719c5b3e55e7b0c5f504abd4e091e4710529d9c00d61512e84"
+GOLDEN = "df31554f2d4f0fa6fd71e4978d19ae8d3f569a4a040cfa4befcec63fb0759649"
 """Of the minimal configuration. If it changes, every set that exists is orphaned."""
+
+FIRST_GOLDEN = "36cde563b6a956719c5b3e55e7b0c5f504abd4e091e4710529d9c00d61512e84"
+"""Of the minimal configuration with the first defaults written out, as the config.yaml of the first sets has them."""
+
+FIRST_ROTOR = {
+    f"bearing_{what}_{axis}_{unit}": value
+    for what, unit, value in (("stiffness", "n_per_m", 8.5e7), ("damping", "n_s_per_m", 2134.0))
+    for axis in "xy"
+}
+FIRST_DYNAMICS = {
+    "model": "8dof",
+    "integrator": "product",
+    "motor_inertia_kg_m2": 0.016107,
+    "load_inertia_kg_m2": 0.005153,
+    "pinion": FIRST_ROTOR,
+    "gear": FIRST_ROTOR,
+    "input_coupling": {"stiffness_nm_per_rad": 330.0, "damping_nm_s_per_rad": 0.231},
+    "output_coupling": {"stiffness_nm_per_rad": 330.0, "damping_nm_s_per_rad": 0.231},
+    "mesh": {"law": "linear"},
+    "friction": {"model": "off"},
+}
 
 
 def test_the_identity_of_a_given_configuration_never_changes():
     assert config().identity == GOLDEN
+    assert config(dynamics=FIRST_DYNAMICS).identity == FIRST_GOLDEN
+
+
+@pytest.mark.parametrize("key", FIRST_DYNAMICS)
+def test_a_first_default_that_is_not_named_is_another_set(key):
+    if key != "integrator":  # which auto stands for
+        named = {name: value for name, value in FIRST_DYNAMICS.items() if name != key} | (
+            {"integrator": "auto"} if key == "mesh" else {}
+        )
+        assert config(dynamics=named).identity != FIRST_GOLDEN
 
 
 def test_a_key_at_its_default_does_not_count_wherever_it_stands(monkeypatch):
@@ -143,14 +174,15 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
         == canonical["stiffness"]
     )
     known = {
-        "model": "8dof",
+        "model": "casing",
         "integrator": "auto",
         "steps_per_sample": 4,
         "mesh_damping_ratio": 0.07,
         "backlash_um": 80.0,
-        "motor_inertia_kg_m2": 0.016107,
-        "load_inertia_kg_m2": 0.005153,
-        "input_coupling": {"stiffness_nm_per_rad": 330.0, "damping_nm_s_per_rad": 0.231},
+        "motor_inertia_kg_m2": 4e-3,
+        "load_inertia_kg_m2": 1e-2,
+        "input_coupling": {"stiffness_nm_per_rad": 6300.0, "damping_nm_s_per_rad": 0.0984},
+        "output_coupling": {"stiffness_nm_per_rad": 2100.0, "damping_nm_s_per_rad": 0.286},
     }
     assert canonical["dynamics"] | known == canonical["dynamics"]
     assert canonical["sensors"][0] | {"gain": 1.0, "range_m_s2": 500.0, "bits": 16} == canonical["sensors"][0]
@@ -158,8 +190,8 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
 
 @pytest.mark.parametrize("integrator", ["auto", "product"])
 def test_naming_the_integrator_of_the_linear_law_leaves_the_identity(integrator):
-    assert config(dynamics__integrator=integrator).identity == GOLDEN
-    assert config(dynamics__integrator="runge_kutta").identity != GOLDEN
+    assert config(dynamics={**FIRST_DYNAMICS, "integrator": integrator}).identity == FIRST_GOLDEN
+    assert config(dynamics={**FIRST_DYNAMICS, "integrator": "runge_kutta"}).identity != FIRST_GOLDEN
 
 
 def test_identities_count_from_the_first_defaults():

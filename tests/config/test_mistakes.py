@@ -54,7 +54,7 @@ MISTAKES = [
     ({"sensors__0__axes": ["tangential"]}, "sensors.0.axes", "tangential", "vertical, horizontal at place"),
     ({"dynamics__model": "torsional"}, "sensors.0.place", "'pinion_bearing'", "one of pinion_rim, gear_rim"),
     (
-        {"sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
+        {"dynamics__model": "8dof", "sensors__0__place": "casing", "sensors__0__position_mm": [60.0, 50.0]},
         "sensors.0.place",
         "'casing'",
         "one of pinion_bearing, gear_bearing (dynamics.model: 8dof)",
@@ -79,8 +79,18 @@ MISTAKES = [
         "'product'",
         "auto or runge_kutta (dynamics.mesh.law: pairs)",
     ),
-    ({"dynamics__friction__model": "constant"}, "dynamics.friction.model", "'constant'", "dynamics.mesh.law: pairs"),
-    ({"dynamics__mesh__squeeze_film": "on"}, "dynamics.mesh.squeeze_film", "'on'", "dynamics.mesh.law: pairs"),
+    (
+        {"dynamics__mesh__law": "linear", "dynamics__friction__model": "constant"},
+        "dynamics.friction.model",
+        "'constant'",
+        "dynamics.mesh.law: pairs",
+    ),
+    (
+        {"dynamics__mesh__law": "linear", "dynamics__mesh__squeeze_film": "on"},
+        "dynamics.mesh.squeeze_film",
+        "'on'",
+        "dynamics.mesh.law: pairs",
+    ),
     ({"dynamics__mesh__tip_relief_um": -8}, "dynamics.mesh.tip_relief_um", "-8.0", "a number of at least 0"),
     ({"sensors__0__bits": 64}, "sensors.0.bits", "64", "from 4 to 24, or null"),
     ({"name": "Bad Name"}, "name", "the text 'Bad Name'", "lower-case letters"),
@@ -186,7 +196,7 @@ def test_valid_sections_are_handed_on_when_others_fail():
     assert parsed.config is None
     assert parsed.sections["gears"].pinion.teeth == 18
     assert list(parsed.sections["states"]) == [1]
-    assert parsed.sections["dynamics"].model == "8dof"  # left out: its default
+    assert parsed.sections["dynamics"].model == "casing"  # left out: its default
     assert "seed" not in parsed.sections
 
 
