@@ -21,6 +21,8 @@ class Stage(IntEnum):
     DAMAGE = 7
     START = 8
     NOISE = 9
+    PATH = 11
+    FORCE_NOISE = 13
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -33,6 +35,8 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.DAMAGE: 2,
     Stage.START: 4,
     Stage.NOISE: 4,
+    Stage.PATH: 1,
+    Stage.FORCE_NOISE: 4,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -23,6 +23,7 @@ from siggen.gears.tables import mesh_tables
 from siggen.record_labels import damage_labels, operating_labels
 from siggen.seeding import Stage, generator
 from siggen.sensor_channels import measured_channels
+from siggen.specimen_instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
@@ -97,16 +98,20 @@ def record_response(
             samples=config.samples,
             steps_per_sample=steps,
             internals=internals,
-            bearing_forces=internals,
+            bearing_forces=internals or needs_forces(config),
+            settle_s=settle_s(config),
+            history_s=history_s(config),
         )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
 
 
-def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned: PlannedRecord) -> Record:
+def _simulated(
+    config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
+) -> Record:
     response, point = record_response(config, specimen, state, planned)
-    channels, channel_labels = measured_channels(config, specimen, planned, response)
+    channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     labels = {
         **state.labels,
         **operating_labels(state.pair, point, response),
@@ -120,10 +125,11 @@ def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned
 
 def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
     specimen = draw_specimen(config, records[0].specimen_id)
+    instrument = specimen_instrument(config, specimen)
     state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
     for record in records:
         try:
-            yield _simulated(config, specimen, state_of(record.state_id), record)
+            yield _simulated(config, specimen, instrument, state_of(record.state_id), record)
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 

@@ -64,6 +64,8 @@ def test_integers_of_stages_are_part_of_every_identity():
         "DAMAGE": 7,
         "START": 8,
         "NOISE": 9,
+        "PATH": 11,
+        "FORCE_NOISE": 13,
     }
 
 

@@ -7,11 +7,14 @@ from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.gears import Gears, Wheel
+from siggen.config.housing import ForceNoise, Housing
+from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
+from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
@@ -29,20 +32,28 @@ __all__ = [
     "Coupling",
     "DamageModel",
     "Dynamics",
+    "ForceNoise",
     "Friction",
     "Gears",
+    "Housing",
+    "Inverter",
     "LayeredPits",
     "ListedPit",
     "ListedPits",
     "ListedSpall",
     "LogUniform",
+    "Mains",
+    "MeasuredPath",
     "Mesh",
+    "ModalPath",
     "NoiseFloor",
     "NoiseRatio",
     "Normal",
     "Number",
     "OperatingRange",
     "ParsedConfig",
+    "PinkNoise",
+    "Resonance",
     "Rotor",
     "Sensor",
     "SpallSize",
@@ -50,6 +61,8 @@ __all__ = [
     "Splits",
     "State",
     "Stiffness",
+    "Tones",
+    "TransferPath",
     "Uniform",
     "Wheel",
     "apply_overrides",

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
+from siggen.config.housing import Housing
 from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
 from siggen.config.problems import refusal
 from siggen.config.section import Real, Section, Whole
@@ -67,6 +68,7 @@ class Config(Section):
     operating_points: Annotated[OperatingRanges, OPERATING_POINTS] = Field(description="speeds and torques")
     states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
     sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
+    housing: Housing | None = Field(default=None, description="what lies between the bearings and sensors with a path")
 
     @property
     def samples(self) -> int:

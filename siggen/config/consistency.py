@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config.damage import ClusteredPits, LayeredPits, ListedPits
 from siggen.config.number import bounds
+from siggen.config.path import MeasuredPath
 from siggen.config.spall import Spalls
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
@@ -30,6 +31,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _tooth_indices,
         _sensor_places,
         _mesh_law,
+        _paths,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -57,6 +59,9 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
 
 
+SETTLED_DECAYS = 7.0
+"""Decay times after which a mode of the housing has forgotten how it was started: 1e-3 of it is left."""
+
 PLACES = {
     "torsional": ("pinion_rim", "gear_rim"),
     "6dof": ("pinion_bearing", "gear_bearing"),
@@ -71,9 +76,34 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         return
     model = sections["dynamics"].model
     for index, sensor in sections.get("sensors", {}).items():
+        if sensor.path is not None and model != "torsional":
+            continue  # checked by _paths
         if sensor.place not in PLACES[model]:
             allowed = f"allowed: one of {', '.join(PLACES[model])} (dynamics.model: {model})"
             yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
+
+
+def _paths(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield paths without what they need, and modes that ring longer than the history that is kept for them."""
+    if "dynamics" not in sections or "housing" not in sections:
+        return
+    model, housing = sections["dynamics"].model, sections["housing"]
+    for index, sensor in sections.get("sensors", {}).items():
+        if sensor.path is None or model == "torsional":
+            continue
+        if housing is None:
+            yield Problem(f"sensors.{index}.path", f"kind: {sensor.path.kind}", "allowed: null, or a section housing")
+        if isinstance(sensor.path, MeasuredPath) and sensor.cross_axis != 0.0:
+            allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
+            yield Problem(f"sensors.{index}.cross_axis", str(sensor.cross_axis), allowed)
+        if sensor.sees_model and model != "casing":
+            allowed = f"allowed: false (dynamics.model: {model} has no casing that moves)"
+            yield Problem(f"sensors.{index}.path.rigid", "true", allowed)
+    if housing is not None:
+        decay_per_s = 2.0 * math.pi * bounds(housing.frequency_hz)[0] * bounds(housing.damping_ratio)[0]
+        if housing.settle_s * decay_per_s < SETTLED_DECAYS:
+            allowed = f"allowed: at least {SETTLED_DECAYS / decay_per_s:.3g} s for the lowest, least damped mode"
+            yield Problem("housing.settle_s", repr(housing.settle_s), allowed)
 
 
 def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

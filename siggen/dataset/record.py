@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
+from siggen.dataset.column import Column
+from siggen.dataset.instrument_columns import instrument_columns
 from siggen.errors import DatasetError
 
 if TYPE_CHECKING:
@@ -20,21 +22,6 @@ SCHEMA_VERSION = "1"
 
 ACCELERATION_UNIT = "m/s^2"
 MILLIMETRE, HERTZ, DECIBEL = "mm", "Hz", "dB"
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """Name, Arrow type, unit and meaning of one column."""
-
-    name: str
-    type: pa.DataType
-    unit: str
-    meaning: str
-
-    def field(self) -> pa.Field:
-        """Return the Arrow field; no column of a set holds nulls."""
-        metadata = {"unit": self.unit, "meaning": self.meaning}
-        return pa.field(self.name, self.type, nullable=False, metadata={k: v for k, v in metadata.items() if v})
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,8 +168,8 @@ def signal_column(channel: str) -> str:
 def channel_label_columns(channel: str) -> tuple[Column, ...]:
     """Return the columns that describe one channel of one record."""
     return (
-        Column(f"noise_floor_{channel}_m_s2", pa.float64(), ACCELERATION_UNIT, f"RMS of the noise in {channel}"),
-        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the noise in {channel}"),
+        Column(f"noise_floor_{channel}_m_s2", pa.float64(), ACCELERATION_UNIT, f"RMS of the white noise in {channel}"),
+        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the white noise in {channel}"),
         Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}"),
     )
 
@@ -190,7 +177,7 @@ def channel_label_columns(channel: str) -> tuple[Column, ...]:
 def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, and the labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
-    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *per_channel)
+    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *per_channel, *instrument_columns(config))
 
 
 def label_names(config: Config) -> tuple[str, ...]:

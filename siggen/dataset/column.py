@@ -1,0 +1,22 @@
+"""Column: name, Arrow type, unit and meaning of one column of a set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pyarrow as pa
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Name, Arrow type, unit and meaning of one column."""
+
+    name: str
+    type: pa.DataType
+    unit: str
+    meaning: str
+
+    def field(self) -> pa.Field:
+        """Return the Arrow field; no column of a set holds nulls."""
+        metadata = {"unit": self.unit, "meaning": self.meaning}
+        return pa.field(self.name, self.type, nullable=False, metadata={k: v for k, v in metadata.items() if v})
