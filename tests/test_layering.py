@@ -35,6 +35,7 @@ FLOORS = {
     "siggen.specimen_instrument": 5.1,
     "siggen.channel_disturbance": 5.2,
     "siggen.record_forces": 5.2,
+    "siggen.path_curves": 5.45,
     "siggen.sensor_channels": 5.35,
     "siggen.stiffness_curves": 5.35,
     "siggen.natural_modes": 5.35,

@@ -83,15 +83,15 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
 
 
-def _paths(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+def _paths(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
     """Yield paths without what they need, and modes that ring longer than the history that is kept for them."""
-    if "dynamics" not in sections or "housing" not in sections:
+    if "dynamics" not in sections:
         return
-    model, housing = sections["dynamics"].model, sections["housing"]
+    model, housing = sections["dynamics"].model, sections.get("housing")
     for index, sensor in sections.get("sensors", {}).items():
         if sensor.path is None or model == "torsional":
             continue
-        if housing is None:
+        if raw.get("housing") is None:
             yield Problem(f"sensors.{index}.path", f"kind: {sensor.path.kind}", "allowed: null, or a section housing")
         if isinstance(sensor.path, MeasuredPath) and sensor.cross_axis != 0.0:
             allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"

@@ -42,9 +42,10 @@ def record_spectrum(history: FloatArray, record: FloatArray, length: int) -> Com
 
 def frequencies(length: int, fs_hz: float) -> FloatArray:
     """Return the frequencies (length // 2 + 1,) [Hz] of a spectrum."""
-    return np.arange(length // 2 + 1) * (fs_hz / length)
+    return np.arange(length // 2 + 1, dtype=np.float64) * (fs_hz / length)
 
 
 def record_of(spectrum: ComplexArray, length: int, samples: int) -> FloatArray:
     """Return the last `samples` values of the signal with this spectrum: the record without its history."""
-    return np.asarray(np.fft.irfft(spectrum, length)[length - samples :], dtype=np.float64)
+    signal: FloatArray = np.fft.irfft(spectrum, length)
+    return signal[length - samples :]
