@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -37,6 +38,7 @@ def measured_channels(
     instrument = instrument or specimen_instrument(config, specimen)
     owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
     forces = record_forces(config, specimen, record, response, instrument)
+    motions = _motion_spectra(instrument, response)
     signals: dict[str, np.ndarray] = {}
     labels: dict[str, object] = {}
     for channel in instrument.channels:
@@ -50,7 +52,7 @@ def measured_channels(
             channel, draws, fs_hz=config.fs_hz, length=instrument.length, samples=config.samples
         )
         rng = named_generator(config.seed, Stage.NOISE, *owner, name=channel.name)
-        clean = _sensed(channel, response, forces, instrument.length)
+        clean = _sensed(channel, response, motions, forces, instrument.length)
         measured = _measured(channel, clean, disturbance.signal_m_s2, rng)
         signals[channel.name] = measured.accel_m_s2
         labels |= {**_labels(channel, measured), **disturbance.labels}
@@ -61,14 +63,26 @@ def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.ran
     return named_generator(seed, Stage.NOISE, *owner, name=f"{channel} {part}")
 
 
-def _sensed(channel: ChannelInstrument, response: Response, forces: RecordForces, length: int) -> FloatArray:
+def _motion_spectra(instrument: Instrument, response: Response) -> dict[str, ComplexArray]:
+    """Return place/axis -> spectrum (k,) of every motion that a filtered channel sees; axes of a sensor share them."""
+    seen = {motion for channel in instrument.channels if not channel.is_plain for motion in channel.motions}
+    before, during = response.history.acceleration_m_s2, response.acceleration_m_s2
+    return {motion: record_spectrum(before[motion], during[motion], instrument.length) for motion in seen}
+
+
+def _sensed(
+    channel: ChannelInstrument,
+    response: Response,
+    motions: Mapping[str, ComplexArray],
+    forces: RecordForces,
+    length: int,
+) -> FloatArray:
     """Return the acceleration (n,) that the sensor shows, before its gain."""
     if channel.is_plain:
         return response.acceleration_m_s2[next(iter(channel.motions))]
     spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
     for motion, weight in channel.motions.items():
-        history = response.history.acceleration_m_s2[motion]
-        spectrum += weight * record_spectrum(history, response.acceleration_m_s2[motion], length)
+        spectrum += weight * motions[motion]
     if channel.accelerance is not None:
         for row, force in zip(channel.accelerance, forces.spectra, strict=True):
             spectrum += row * force

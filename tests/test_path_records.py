@@ -215,3 +215,74 @@ def test_the_bytes_do_not_depend_on_workers(tmp_path: Path) -> None:
     assert files
     for file in files:
         assert (tmp_path / "1" / file).read_bytes() == (tmp_path / "2" / file).read_bytes()
+
+
+def line_ratio(first: np.ndarray, second: np.ndarray, cycles: int) -> complex:
+    """Return the ratio of two signals at a line with whole cycles in the record."""
+    turn = np.exp(-2j * np.pi * cycles * np.arange(first.size) / first.size)
+    return complex((first.astype(float) @ turn) / (second.astype(float) @ turn))
+
+
+def test_mounting_sensor_and_coupling_act_on_the_lines_of_the_gears() -> None:
+    filtered = {
+        **RIGID,
+        "name": "filtered",
+        "mounting": {"frequency_hz": 2000.0, "damping_ratio": 0.1},
+        "high_pass_hz": 200.0,
+    }
+    channels = record(loaded(RIGID, filtered, housing=None)).channels
+    # 0.1 s hold 54 periods of the mesh at 18 teeth and 30 Hz: its harmonics are lines of the record
+    for harmonic in (1, 2, 4):
+        f = 540.0 * harmonic
+        x, y = f / 2000.0, 1j * f / 200.0
+        expected = 1.0 / (1.0 - x**2 + 0.2j * x) * y / (1.0 + y)
+        found = line_ratio(channels["filtered_vertical"], channels["lid_vertical"], round(f / 10.0))
+        # float32 channels
+        assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_sensor_leaks_a_share_of_the_motion_across_its_axis() -> None:
+    both = {**RIGID, "axes": ["vertical", "horizontal"]}
+    channels = record(loaded(both, {**both, "name": "leaky", "cross_axis": 0.05}, housing=None)).channels
+    leak = channels["leaky_vertical"].astype(float) - channels["lid_vertical"] + channels["lid_vertical"].mean()
+    across = channels["lid_horizontal"].astype(float)
+    share = (leak @ across) / (across @ across)
+    assert 0.0 < abs(share) <= 0.05
+    # what is left is rounding to float32, and the mean, which is not passed on
+    assert (leak - share * across).std() < 1e-5 * across.std()
+
+
+def test_force_noise_reaches_the_sensor_through_its_path() -> None:
+    density = 0.05
+    quiet, loud = loaded(FLEXIBLE), loaded(FLEXIBLE, housing={"force_noise": {"density_n_per_sqrt_hz": density}})
+    added = record(loud).channels["lid_vertical"].astype(float) - record(quiet).channels["lid_vertical"]
+    instrument = specimen_instrument(loud, draw_specimen(loud, 0))
+    path = instrument.channels[0].accelerance
+    assert path is not None
+    variance = (density**2 * np.abs(path) ** 2).sum() * loud.fs_hz / instrument.length
+    # the lowest mode is 15 Hz wide, so 0.1 s hold few independent values of it: 3 standard errors are about 80 %
+    assert 0.2 < added.var() / variance < 2.5
+    assert record(loud).labels["force_noise_n_per_sqrt_hz"] == density
+
+
+def test_force_noise_follows_the_torque_and_not_the_record() -> None:
+    config = loaded(FLEXIBLE, housing={"force_noise": {"share_per_sqrt_hz": 1e-4}})
+    base_radius_m = 0.5 * 3e-3 * 18 * np.cos(np.radians(20.0))
+    for record_id in (0, 1):
+        density = record(config, record_id).labels["force_noise_n_per_sqrt_hz"]
+        assert density == pytest.approx(1e-4 * 60.0 / base_radius_m, rel=1e-12)
+
+
+def test_other_machines_and_hum_are_where_the_labels_say() -> None:
+    sensor = {
+        **RIGID,
+        "mains": {"amplitude_m_s2": 5.0, "frequency_hz": 50.0, "harmonics": 1},
+        "inverter": {"carrier_hz": 4000.0, "amplitude_m_s2": 2.0, "sidebands": 0},
+    }
+    channels, labels = record(loaded(sensor, housing=None)).channels, record(loaded(sensor, housing=None)).labels
+    added = channels["lid_vertical"].astype(float) - record(loaded(RIGID, housing=None)).channels["lid_vertical"]
+    spectrum = np.abs(np.fft.rfft(added)) * 2.0 / added.size
+    assert spectrum[5] == pytest.approx(5.0, rel=1e-5)
+    assert spectrum[400] == pytest.approx(2.0, rel=1e-5)
+    assert labels["mains_lid_vertical_m_s2"] == pytest.approx(5.0 / np.sqrt(2.0))
+    assert added.var() == pytest.approx(0.5 * (25.0 + 4.0), rel=1e-5)
