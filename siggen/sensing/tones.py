@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-RESTART_SAMPLES = 256
-"""Samples after which the rotation of a phasor begins anew from its phase: rounding stays at 1e-14."""
+BLOCK_SAMPLES = 256
+"""Samples whose cosines are taken once; about the square root of a record's length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +67,15 @@ def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: in
 
 @njit(cache=True)
 def _add_line(signal: FloatArray, step_rad: float, amplitude: float, phase_rad: float) -> None:
-    """Add a cos(step i + phase) by turning a phasor, which is an eighth of the cost of cosines."""
-    turn = complex(np.cos(step_rad), np.sin(step_rad))
-    for first in range(0, signal.size, RESTART_SAMPLES):
-        angle = step_rad * first + phase_rad
-        phasor = complex(amplitude * np.cos(angle), amplitude * np.sin(angle))
-        for i in range(first, min(first + RESTART_SAMPLES, signal.size)):
-            signal[i] += phasor.real
-            phasor *= turn
+    """Add a cos(step i + phase), as a cos(p) cos(step k) - a sin(p) sin(step k) with the phase p at a block's start."""
+    cosine, sine = np.empty(BLOCK_SAMPLES), np.empty(BLOCK_SAMPLES)
+    for k in range(BLOCK_SAMPLES):
+        cosine[k], sine[k] = np.cos(step_rad * k), np.sin(step_rad * k)
+    for first in range(0, signal.size, BLOCK_SAMPLES):
+        phase = step_rad * first + phase_rad
+        real, imaginary = amplitude * np.cos(phase), amplitude * np.sin(phase)
+        for k in range(min(BLOCK_SAMPLES, signal.size - first)):
+            signal[first + k] += real * cosine[k] - imaginary * sine[k]
 
 
 def _phases(count: int, rng: np.random.Generator) -> FloatArray:
