@@ -120,8 +120,9 @@ def _making(config: Config) -> str:
    state then keeps the pits of the earlier one (`grows_from` in `config.yaml`). Outlines are in `damage/`.
 3. **Dynamics.** A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and a mesh with backlash,
    time-varying stiffness and damping. Bearing accelerations are low-pass filtered before they are sampled.
-4. **Sensing.** {_path_text(config)}Gain, noise, clipping at the sensor's range, and rounding to the converter's step, which is a power of
-   two and therefore exact in float32 (each sensor's noise and bits are in `config.yaml`).
+4. **Sensing.** {_path_text(config)}Gain, noise,
+   clipping at the sensor's range, and rounding to the converter's step, which is a power of two and therefore exact in
+   float32 (each sensor's noise and bits are in `config.yaml`).
 
 States:
 

@@ -218,7 +218,7 @@ def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, se
             decimator.take(states)
         recorded = slice(max(0, -first), max(0, samples * steps - first))
         lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
-        if internals:
+        if internals and first + len(states) > 0:  # nothing of the history
             inner.append(_inner_values(run, first, states, samples))
     return _finished(run, [d.values for d in decimators], inner, lost / (samples * steps), history)
 

@@ -22,14 +22,16 @@ def respond(
 
 
 def test_asking_for_history_changes_nothing_else(structure: Structure, ramp_tables: MeshTables) -> None:
-    plain = respond(structure, ramp_tables)
-    asked = respond(structure, ramp_tables, history_s=0.05)
+    plain = respond(structure, ramp_tables, internals=True)
+    asked = respond(structure, ramp_tables, internals=True, history_s=0.12)
     for name, values in plain.acceleration_m_s2.items():
         assert asked.acceleration_m_s2[name].tobytes() == values.tobytes()
-        assert asked.history.acceleration_m_s2[name].size == 1280
+        assert asked.history.acceleration_m_s2[name].size == 3072
         assert plain.history.acceleration_m_s2[name].size == 0
     for name, values in plain.bearing_force_n.items():
         assert asked.bearing_force_n[name].tobytes() == values.tobytes()
+    for name, values in plain.internals.items():
+        assert asked.internals[name].tobytes() == values.tobytes()
     assert asked.contact_loss_share == plain.contact_loss_share
     assert asked.tacho_s.tobytes() == plain.tacho_s.tobytes()
 
