@@ -15,7 +15,7 @@ from siggen.dynamics.response import Response
 from siggen.measured_response import INPUTS
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.spectral_filter import record_spectrum
+from siggen.sensing.spectral_filter import frequencies, record_spectrum
 from siggen.specimen_instrument import Instrument
 from siggen.specimen_physics import gear_pair
 
@@ -40,6 +40,7 @@ def record_forces(
     labels: dict[str, object] = {} if noise is None else {"force_noise_n_per_sqrt_hz": density}
     if not instrument.has_path:
         return RecordForces((), labels)
+    rolled_off = _roll_off(config, noise, owner, instrument)
     spectra = []
     for name in INPUTS:
         spectrum = record_spectrum(
@@ -47,9 +48,20 @@ def record_forces(
         )
         if density > 0.0:
             rng = named_generator(config.seed, Stage.FORCE_NOISE, *owner, name=name)
-            spectrum += noise_spectrum(density, instrument.length, config.fs_hz, rng)
+            spectrum += rolled_off * noise_spectrum(density, instrument.length, config.fs_hz, rng)
         spectra.append(spectrum)
     return RecordForces(tuple(spectra), labels)
+
+
+def _roll_off(
+    config: Config, noise: ForceNoise | None, owner: tuple[int, ...], instrument: Instrument
+) -> NDArray[np.float64] | float:
+    """Return the factor (k,) on the amplitude of the noise: first-order low-pass, 1 if it is white."""
+    if noise is None or noise.corner_hz is None:
+        return 1.0
+    corner_hz = at(noise.corner_hz, named_uniforms(config.seed, Stage.FORCE_NOISE, *owner)("corner_hz"))
+    factor: NDArray[np.float64] = 1.0 / np.hypot(1.0, frequencies(instrument.length, config.fs_hz) / corner_hz)
+    return factor
 
 
 def _density(config: Config, noise: ForceNoise, specimen: Specimen, owner: tuple[int, ...]) -> float:

@@ -265,6 +265,24 @@ def test_force_noise_reaches_the_sensor_through_its_path() -> None:
     assert record(loud).labels["force_noise_n_per_sqrt_hz"] == density
 
 
+def test_force_noise_falls_above_its_corner() -> None:
+    level = {"density_n_per_sqrt_hz": 1.0}
+    quiet, white = record(loaded(FLEXIBLE)), record(loaded(FLEXIBLE, housing={"force_noise": level}))
+    soft = record(loaded(FLEXIBLE, housing={"force_noise": {**level, "corner_hz": 1500.0}}))
+    spectra = [
+        np.abs(
+            np.fft.rfft((r.channels["lid_vertical"].astype(float) - quiet.channels["lid_vertical"]) * np.hanning(5120))
+        )
+        for r in (soft, white)
+    ]
+    for low, high in ((400, 450), (1400, 1600), (9000, 11000)):
+        # the same noise, so that the ratio is the response; windowed, since the record is a cut-out
+        bins = slice(low // 10, high // 10)
+        middle = 0.5 * (low + high)
+        found = spectra[0][bins].sum() / spectra[1][bins].sum()
+        assert found == pytest.approx(1.0 / np.hypot(1.0, middle / 1500.0), rel=0.05)
+
+
 def test_force_noise_follows_the_torque_and_not_the_record() -> None:
     config = loaded(FLEXIBLE, housing={"force_noise": {"share_per_sqrt_hz": 1e-4}})
     base_radius_m = 0.5 * 3e-3 * 18 * np.cos(np.radians(20.0))

@@ -20,6 +20,9 @@ class ForceNoise(Section):
     share_per_sqrt_hz: Annotated[Number, Within(least=0, most=1)] = Field(
         default=0.0, description="density as a share of the mean mesh force; both densities add as powers"
     )
+    corner_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="frequency from which the power falls as 1/f², drawn per record; null: white"
+    )
 
 
 class Housing(Section):

@@ -12,7 +12,9 @@ from siggen.dataset.column import Column
 if TYPE_CHECKING:
     from siggen.config import Config, Sensor
 
-FORCE_NOISE_COLUMN = Column("force_noise_n_per_sqrt_hz", pa.float64(), "N/sqrt(Hz)", "noise on each bearing force")
+FORCE_NOISE_COLUMN = Column(
+    "force_noise_n_per_sqrt_hz", pa.float64(), "N/sqrt(Hz)", "noise on each bearing force, below its corner"
+)
 
 
 def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
