@@ -28,7 +28,7 @@ def contact_notes(config: Config) -> tuple[str, ...]:
     set has any that counts as geometry, with a remark of their own.
     """
     section = config.dynamics.friction
-    if section.model != "mixed_ehl":
+    if config.dynamics.rubbing != "mixed_ehl":
         return ()
     healthy, pitted = zip(*_groups(config), strict=True)
     fluid = (section.fluid, max(composite_roughness_m(corner)[0] for corner in corners(section)))

@@ -18,11 +18,14 @@ from siggen.config import Config
 from siggen.dataset.plan import planned_record
 from siggen.dataset.specimen import draw_operating_point, draw_specimen
 from siggen.dataset.storage import LocalFolder
+from siggen.dynamics.decimation import half_length
 from siggen.dynamics.equations import Equations
-from siggen.dynamics.response import Motion, first_step
+from siggen.dynamics.motion import Motion
 from siggen.dynamics.structure import Structure
+from siggen.dynamics.transient import settling_steps
 from siggen.errors import UsageError
 from siggen.simulation import limits_of, specimen_state, start_angle_rad
+from siggen.specimen_instrument import settle_s
 from siggen.specimen_motion import specimen_motion
 
 FORMAT_VERSION = 1
@@ -140,7 +143,8 @@ def _static_part(equations: Equations) -> dict[str, Any]:
 def _time_grid(config: Config, motion: Motion, speed_hz: float, angle_rad: float, steps: int) -> dict[str, Any]:
     """Return rate, steps and the phase of the mesh; the transient lies before time 0."""
     step_s = 1.0 / (config.fs_hz * steps)
-    start_s = first_step(motion, config.fs_hz, steps) * step_s
+    settling = settling_steps(motion.transient_s, settle_s(config), config.fs_hz * steps)
+    start_s = -(half_length(steps) + settling) * step_s
     per_radian = motion.teeth / (2.0 * np.pi)
     return {
         "fs_hz": config.fs_hz,

@@ -20,12 +20,16 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     ConfigError
         If anything is wrong with the configuration; names every problem of form and physics at once.
     """
-    from siggen.physical_problems import physical_problems  # compiles nothing, but loads the gear physics
+    # compile nothing, but load the physics
+    from siggen.measured_response import response_problems, with_measured_responses
+    from siggen.physical_problems import physical_problems
 
     is_file = isinstance(source, (str, Path))
     raw = read_yaml(source) if isinstance(source, (str, Path)) else source
-    parsed = parse(apply_overrides(raw, overrides))
-    problems = [*parsed.problems, *physical_problems(parsed)]
+    folder = Path(source).parent if isinstance(source, (str, Path)) else Path()
+    filled, unread = with_measured_responses(apply_overrides(raw, overrides), folder)
+    parsed = parse(filled)
+    problems = [*parsed.problems, *physical_problems(parsed), *unread, *response_problems(parsed.sections)]
     if parsed.config is None or problems:
         raise ConfigError(problems, str(source) if is_file else "configuration")
     return parsed.config

@@ -24,6 +24,8 @@ class Stage(IntEnum):
     MANUFACTURE = 10
     DRIVE = 12
     BEARING_TONES = 14
+    PATH = 11
+    FORCE_NOISE = 13
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -39,6 +41,8 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.MANUFACTURE: 2,
     Stage.DRIVE: 4,
     Stage.BEARING_TONES: 1,
+    Stage.PATH: 1,
+    Stage.FORCE_NOISE: 4,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

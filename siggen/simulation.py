@@ -27,6 +27,7 @@ from siggen.sensor_channels import measured_channels
 from siggen.specimen_contact import mean_line_load_n_per_m, tooth_tables
 from siggen.specimen_drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen_errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen_instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.specimen_structure import structure
@@ -117,8 +118,10 @@ def record_response(
             samples=config.samples,
             steps_per_sample=steps,
             internals=internals,
-            bearing_forces=internals,
+            bearing_forces=internals or needs_forces(config),
             excitation=driven.excitation,
+            settle_s=settle_s(config),
+            history_s=history_s(config),
         )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
@@ -131,10 +134,12 @@ def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: Pl
     return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
 
 
-def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned: PlannedRecord) -> Record:
+def _simulated(
+    config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
+) -> Record:
     with_internals = has_internals(config, planned)
     response, point = record_response(config, specimen, state, planned, internals=with_internals)
-    channels, channel_labels = measured_channels(config, specimen, planned, response)
+    channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     labels = {
         **state.labels,
         **operating_labels(state.pair, point, response),
@@ -151,10 +156,11 @@ def _simulated(config: Config, specimen: Specimen, state: SpecimenState, planned
 
 def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
     specimen = draw_specimen(config, records[0].specimen_id)
+    instrument = specimen_instrument(config, specimen)
     state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
     for record in records:
         try:
-            yield _simulated(config, specimen, state_of(record.state_id), record)
+            yield _simulated(config, specimen, instrument, state_of(record.state_id), record)
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 

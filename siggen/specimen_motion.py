@@ -11,10 +11,10 @@ from siggen.dynamics.damping import DampingLaw
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.load_lock import locked_load
 from siggen.dynamics.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.motion import Motion
 from siggen.dynamics.pair_internals import PairContact
 from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.pair_motion import PairMotion
-from siggen.dynamics.response import Motion
 from siggen.dynamics.slice_law import SliceLaw
 from siggen.dynamics.structure import Structure
 from siggen.gears.geometry import GearPair
@@ -63,7 +63,7 @@ def specimen_motion(
             integrator=dynamics.method,
             input_vectors=vectors,
         )
-    rubbing = dynamics.friction.model != "off"
+    rubbing = dynamics.rubbing != "off"
     return PairMotion(
         locked_load(mesh.structure) if rubbing else mesh.structure,
         _law(dynamics, mesh, point),
@@ -79,7 +79,7 @@ def specimen_motion(
 
 def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairContact:
     modulus, friction = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio), dynamics.friction
-    if friction.model != "mixed_ehl":
+    if dynamics.rubbing != "mixed_ehl":
         return PairContact(modulus, pair.face_width_m)
     oil = lubricated_mesh(friction, pair, point)
     return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(friction))

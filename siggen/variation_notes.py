@@ -44,7 +44,7 @@ def _forces(config: Config) -> Iterator[str]:
 
 
 def _limits(config: Config) -> Iterator[str]:
-    if config.variation.active and config.dynamics.friction.model == "mixed_ehl":
+    if config.variation.active and config.dynamics.rubbing == "mixed_ehl":
         yield "the oil film stays that of the operating point's speed and torque while they vary"
 
 

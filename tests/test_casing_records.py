@@ -59,6 +59,16 @@ def test_internals_name_what_no_sensor_sees(config: Config) -> None:
     assert set(expected) <= set(table.column_names)
 
 
+def test_internals_of_a_record_behind_a_transfer_path_hold_what_the_set_does() -> None:
+    overrides = [*SHORT, *STIFF, "dynamics.steps_per_sample=1"]
+    config = load_config("configs/transfer_path.yaml", overrides)
+    table = internals_table(config, 0)
+    result = simulate(config, [0])[0]
+    assert isinstance(result, Record)
+    assert table["accel_side_axial_m_s2"].to_numpy().tobytes() == result.channels["side_axial"].tobytes()
+    assert table.num_rows == config.samples
+
+
 @pytest.mark.parametrize("model", ["8dof", "torsional"])
 def test_tooth_pairs_work_with_every_structure(model: str) -> None:
     sensor = (

@@ -67,6 +67,8 @@ def test_integers_of_stages_are_part_of_every_identity():
         "MANUFACTURE": 10,
         "DRIVE": 12,
         "BEARING_TONES": 14,
+        "PATH": 11,
+        "FORCE_NOISE": 13,
     }
 
 

@@ -13,6 +13,7 @@ from siggen.cli.export_model import export_model
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.modes import modes
+from siggen.cli.path import path
 from siggen.cli.plan import plan
 from siggen.cli.schema import schema
 from siggen.cli.show import show
@@ -24,7 +25,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (plan, generate, verify, show, simulate, export_model, tvms, flank, errors, modes, schema)
+COMMANDS = (plan, generate, verify, show, simulate, export_model, tvms, flank, errors, modes, path, schema)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",

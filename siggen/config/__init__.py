@@ -8,6 +8,8 @@ from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
+from siggen.config.housing import ForceNoise, Housing
+from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
@@ -15,6 +17,7 @@ from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
+from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
@@ -35,22 +38,30 @@ __all__ = [
     "Coupling",
     "DamageModel",
     "Dynamics",
+    "ForceNoise",
     "Friction",
     "Gears",
+    "Housing",
     "Internals",
+    "Inverter",
     "LayeredPits",
     "ListedPit",
     "ListedPits",
     "ListedSpall",
     "LogUniform",
+    "Mains",
     "Manufacture",
+    "MeasuredPath",
     "Mesh",
+    "ModalPath",
     "NoiseFloor",
     "NoiseRatio",
     "Normal",
     "Number",
     "OperatingRange",
     "ParsedConfig",
+    "PinkNoise",
+    "Resonance",
     "Rotor",
     "Sensor",
     "SpallSize",
@@ -59,7 +70,9 @@ __all__ = [
     "Splits",
     "State",
     "Stiffness",
+    "Tones",
     "TorqueVariation",
+    "TransferPath",
     "Unbalance",
     "Uniform",
     "Variation",

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from siggen.config.dynamics import Dynamics
 from siggen.config.first_default import uncounted
 from siggen.config.gears import Gears
+from siggen.config.housing import Housing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
 from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
@@ -74,6 +75,7 @@ class Config(Section):
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
+    housing: Housing | None = Field(default=None, description="what lies between the bearings and sensors with a path")
 
     @property
     def samples(self) -> int:

@@ -8,6 +8,7 @@ from typing import Any
 
 from siggen.config.damage import ClusteredPits, LayeredPits, ListedPits
 from siggen.config.number import bounds
+from siggen.config.path import MeasuredPath
 from siggen.config.spall import Spalls
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
@@ -32,6 +33,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _mesh_law,
         _manufacture,
         _forces_at_bearings,
+        _paths,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -61,6 +63,9 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
 
 
+SETTLED_DECAYS = 7.0
+"""Decay times after which a mode of the housing has forgotten how it was started: 1e-3 of it is left."""
+
 PLACES = {
     "torsional": ("pinion_rim", "gear_rim"),
     "6dof": ("pinion_bearing", "gear_bearing"),
@@ -77,9 +82,34 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     with_caps = model == "casing" and sections["dynamics"].casing.caps is not None
     places = (*PLACES[model], "pinion_cap", "gear_cap") if with_caps else PLACES[model]
     for index, sensor in sections.get("sensors", {}).items():
+        if sensor.path is not None and model != "torsional":
+            continue  # checked by _paths
         if sensor.place not in places:
             allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
             yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
+
+
+def _paths(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield paths without what they need, and modes that ring longer than the history that is kept for them."""
+    if "dynamics" not in sections:
+        return
+    model, housing = sections["dynamics"].model, sections.get("housing")
+    for index, sensor in sections.get("sensors", {}).items():
+        if sensor.path is None or model == "torsional":
+            continue
+        if raw.get("housing") is None:
+            yield Problem(f"sensors.{index}.path", f"kind: {sensor.path.kind}", "allowed: null, or a section housing")
+        if isinstance(sensor.path, MeasuredPath) and sensor.cross_axis != 0.0:
+            allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
+            yield Problem(f"sensors.{index}.cross_axis", str(sensor.cross_axis), allowed)
+        if sensor.sees_model and model != "casing":
+            allowed = f"allowed: false (dynamics.model: {model} has no casing that moves)"
+            yield Problem(f"sensors.{index}.path.rigid", "true", allowed)
+    if housing is not None:
+        decay_per_s = 2.0 * math.pi * bounds(housing.frequency_hz)[0] * bounds(housing.damping_ratio)[0]
+        if housing.settle_s * decay_per_s < SETTLED_DECAYS:
+            allowed = f"allowed: at least {SETTLED_DECAYS / decay_per_s:.3g} s for the lowest, least damped mode"
+            yield Problem("housing.settle_s", repr(housing.settle_s), allowed)
 
 
 def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -95,7 +125,7 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
-    if dynamics.mesh.damping == "asperity_share" and dynamics.friction.model != "mixed_ehl":
+    if dynamics.mesh.damping == "asperity_share" and dynamics.rubbing != "mixed_ehl":
         allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
         yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
 

@@ -103,3 +103,10 @@ class Dynamics(Section):
         if self.integrator != "auto":
             return self.integrator
         return "product" if self.mesh.law == "linear" else "runge_kutta"
+
+    @property
+    def rubbing(self) -> str:
+        """The friction that `friction.model` stands for: off, constant or mixed_ehl."""
+        if self.friction.model != "auto":
+            return self.friction.model
+        return "off" if self.mesh.law == "linear" else "mixed_ehl"

@@ -16,7 +16,7 @@ from siggen.errors import Problem
 REFUSAL = "refusal"
 MISSING = "nothing"
 
-BRANCHES = frozenset({"layered", "clustered", "spall", "list", "noise_floor", "noise_ratio"})
+BRANCHES = frozenset({"layered", "clustered", "spall", "list", "noise_floor", "noise_ratio", "modal", "measured"})
 """Tags by which pydantic names the branch of a union it took; no key of the file has such a name (tested)."""
 
 Location = tuple[int | str, ...]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.number import Number, Within, at
+from siggen.config.path import PATH, ModalPath, TransferPath
 from siggen.config.problems import received_text, refusal
 from siggen.config.section import Real, Section, Whole
 from siggen.config.wording import Said
@@ -43,10 +45,11 @@ Noise = Annotated[
 
 
 class Sensor(Section):
-    """An accelerometer with one or two axes.
+    """An accelerometer with up to three axes.
 
     Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a
     casing; vertical along the pitch-line velocity of the pinion. Tangential is the motion of a gear's base circle.
+    Axial is along the shafts, where only a transfer path leads.
     """
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$"), SENSOR_NAME] = Field(
@@ -55,13 +58,16 @@ class Sensor(Section):
     place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim", "pinion_cap", "gear_cap"] = (
         Field(
             default="pinion_bearing",
-            description="where it is mounted; casing needs the model casing, caps its caps, rims the torsional model",
+            description="where it is mounted; casing needs the model casing or a path, caps its caps, rims the model "
+            "torsional",
         )
     )
     position_mm: tuple[Real, Real] | None = Field(
-        default=None, description="horizontal and vertical distance from the casing's centre of gravity (place: casing)"
+        default=None,
+        description="horizontal and vertical distance from the casing's centre of gravity (place: casing); needed "
+        "where the motion of the rigid casing is measured",
     )
-    axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential"], ...], Field(min_length=1)] = Field(
+    axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="directions it measures, one channel each"
     )
     gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
@@ -77,6 +83,22 @@ class Sensor(Section):
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
         default=16, description="of the converter; null: not quantised"
     )
+    path: Annotated[Annotated[TransferPath, Field(discriminator="kind")] | None, PATH] = Field(
+        default=None,
+        description="from the bearing forces to the sensor (place: casing); null: it moves as the model does",
+    )
+    high_pass_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=None, description="corner of the coupling capacitor (first order); null: none"
+    )
+    mounting: Resonance | None = Field(default=None, description="of the sensor on its stud or magnet; null: rigid")
+    resonance: Resonance | None = Field(default=None, description="of the sensor itself; null: none")
+    cross_axis: Annotated[Number, Within(least=0, most=0.2)] = Field(
+        default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
+    )
+    pink_noise: PinkNoise | None = Field(default=None, description="of the electronics; null: none")
+    mains: Mains | None = Field(default=None, description="null: none")
+    tones: Tones | None = Field(default=None, description="null: none")
+    inverter: Inverter | None = Field(default=None, description="null: none")
 
     @model_validator(mode="after")
     def _axes_agree(self) -> Sensor:
@@ -88,16 +110,38 @@ class Sensor(Section):
             problems.append(
                 Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
             )
-        if (self.position_mm is None) == (self.place == "casing"):
-            allowed = "allowed: a position [horizontal, vertical] with place: casing, and only there"
-            problems.append(Problem("position_mm", received_text(self.position_mm), allowed))
-        on_rim = self.place.endswith("_rim")
-        if any((axis == "tangential") != on_rim for axis in self.axes):
-            axes = "tangential" if on_rim else "vertical, horizontal"
-            problems.append(Problem("axes", ", ".join(self.axes), f"allowed: {axes} at place {self.place}"))
+        problems += self._place_problems()
         if problems:
             raise refusal(problems)
         return self
+
+    def _place_problems(self) -> Iterator[Problem]:
+        """Yield what does not go with the place: position, axes, path."""
+        on_casing = self.place == "casing"
+        if self.path is not None and not on_casing:
+            yield Problem("path", f"kind: {self.path.kind} at place {self.place}", "allowed: null, or place: casing")
+        if self.position_mm is None and self.sees_model and on_casing:
+            allowed = (
+                "allowed: a position [horizontal, vertical] with place: casing, and only there; or a path without "
+                "rigid motion"
+            )
+            yield Problem("position_mm", received_text(None), allowed)
+        if self.position_mm is not None and not on_casing:
+            allowed = "allowed: a position [horizontal, vertical] with place: casing, and only there"
+            yield Problem("position_mm", received_text(self.position_mm), allowed)
+        if self.place.endswith("_rim") and self.cross_axis != 0.0:
+            yield Problem("cross_axis", str(self.cross_axis), f"allowed: 0 at place {self.place}, which has one axis")
+        axes = "tangential" if self.place.endswith("_rim") else "vertical, horizontal"
+        if on_casing and self.path is not None:
+            axes += ", axial"
+        if any(axis not in axes.split(", ") for axis in self.axes):
+            with_path = "; axial with a path" if on_casing and self.path is None else ""
+            yield Problem("axes", ", ".join(self.axes), f"allowed: {axes} at place {self.place}{with_path}")
+
+    @property
+    def sees_model(self) -> bool:
+        """Whether it sees the motion of the model itself, alone or beside what a path adds."""
+        return self.path is None or (isinstance(self.path, ModalPath) and self.path.rigid)
 
     @property
     def motion_place(self) -> str:

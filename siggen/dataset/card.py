@@ -135,8 +135,9 @@ def _making(config: Config) -> str:
    state then keeps the pits of the earlier one (`grows_from` in `config.yaml`). Outlines are in `damage/`.
 3. **Dynamics.** A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and a mesh with backlash,
    time-varying stiffness and damping. Bearing accelerations are low-pass filtered before they are sampled.
-4. **Sensing.** Gain, noise, clipping at the sensor's range, and rounding to the converter's step, which is a power of
-   two and therefore exact in float32 (each sensor's noise and bits are in `config.yaml`).
+4. **Sensing.** {_path_text(config)}Gain, noise,
+   clipping at the sensor's range, and rounding to the converter's step, which is a power of two and therefore exact in
+   float32 (each sensor's noise and bits are in `config.yaml`).
 
 States:
 
@@ -144,12 +145,24 @@ States:
 """
 
 
+def _path_text(config: Config) -> str:
+    """Say how vibrations come to the sensors, if any of them stands behind a transfer path."""
+    kinds = sorted({sensor.path.kind for sensor in config.sensors if sensor.path is not None})
+    if not kinds:
+        return ""
+    behind = {
+        "modal": "random flexible modes of a housing, new for every specimen",
+        "measured": "a measured accelerance",
+    }
+    return f"Bearing forces reach sensors through {' or '.join(behind[kind] for kind in kinds)} (`housing`, `path`). "
+
+
 def _limits(config: Config) -> str:
     """Say what follows from the gears being perfect, or how far they are from it."""
     gears = _tolerances(config)
     return f"""## What it can teach, and what it cannot
 
-{gears}* No casing, no transfer path beyond the model above, no wear of other parts, no temperature.
+{gears}* No casing and no transfer path beyond the model above, no wear of other parts, no temperature.
 * A model that is trained here has to be tested on measurements before it is trusted on them.
 """
 

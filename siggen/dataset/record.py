@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.dataset.column import DECIBEL, HERTZ, MILLIMETRE, Column
+from siggen.dataset.instrument_columns import instrument_columns
 from siggen.dataset.manufacture_columns import manufacture_columns
 from siggen.errors import DatasetError
 
@@ -178,8 +179,8 @@ def signal_column(channel: str) -> str:
 def channel_label_columns(channel: str) -> tuple[Column, ...]:
     """Return the columns that describe one channel of one record."""
     return (
-        Column(f"noise_floor_{channel}_m_s2", pa.float64(), ACCELERATION_UNIT, f"RMS of the noise in {channel}"),
-        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the noise in {channel}"),
+        Column(f"noise_floor_{channel}_m_s2", pa.float64(), ACCELERATION_UNIT, f"RMS of the white noise in {channel}"),
+        Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the white noise in {channel}"),
         Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}"),
     )
 
@@ -188,7 +189,8 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
     varying = VARIATION_COLUMNS if config.variation.active else ()
-    return (*LABEL_COLUMNS, *OPERATING_COLUMNS, *varying, *manufacture_columns(config), *per_channel)
+    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *varying, *manufacture_columns(config))
+    return (*common, *per_channel, *instrument_columns(config))
 
 
 def label_names(config: Config) -> tuple[str, ...]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
@@ -15,42 +14,17 @@ from siggen.dynamics.decimation import Decimator, half_length, second_difference
 from siggen.dynamics.drive import Drive, Rotation
 from siggen.dynamics.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.excitation import Excitation
+from siggen.dynamics.history import History
 from siggen.dynamics.linear_motion import LinearMotion
+from siggen.dynamics.motion import Motion
 from siggen.dynamics.structure import Structure
+from siggen.dynamics.transient import settling_steps
 from siggen.errors import SolverFailure
 
 if TYPE_CHECKING:
     from siggen.gears.tables import MeshTables
 
 FloatArray = NDArray[np.float64]
-
-
-class Motion(Protocol):
-    """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,)."""
-
-    structure: Structure
-    equations: Equations
-    transient_s: float
-    teeth: int
-    base_pitch_m: float
-    largest_approach_m: float
-    internal_names: tuple[str, ...]
-
-    @property
-    def law(self) -> NamedTuple:
-        """The mesh law: tables and numbers."""
-
-    def start(self, pitches: float) -> FloatArray:
-        """Return the state at the start, at a pinion angle in base pitches."""
-
-    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
-        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
-
-    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
-        """Return at how many states no teeth touch."""
-
-    def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
-        """Return the values named in `internal_names` (k, names)."""
 
 
 APPROACH_LIMIT_PITCHES = 0.1
@@ -73,6 +47,7 @@ class Response:
     contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
     status, reason : "ok" and "", or what went wrong, with numbers
     internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
+    history : the samples before sample 0 of accelerations and bearing forces; (0,) arrays unless asked for
     """
 
     fs_hz: float
@@ -84,6 +59,7 @@ class Response:
     status: str
     reason: str
     internals: Mapping[str, FloatArray]
+    history: History
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,12 +148,15 @@ def response_of(
     internals: bool = False,
     bearing_forces: bool = True,
     excitation: Excitation | None = None,
+    settle_s: float = 0.0,
+    history_s: float = 0.0,
 ) -> Response:
     """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
 
-    Starts from the static equilibrium and discards the transient that the motion states. Filtering bearing forces costs
-    about a fifth of a response; without `bearing_forces` there are none. The motion must hold the vectors of
-    `excitation`.
+    Starts from the static equilibrium and discards the transient that the motion states, or `settle_s` if that is
+    longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else.
+    Filtering bearing forces costs about a fifth of a response; without `bearing_forces` there are none. The motion must
+    hold the vectors of `excitation`.
 
     Raises
     ------
@@ -187,7 +166,9 @@ def response_of(
     check_grid(fs_hz, samples, steps_per_sample)
     run = _Run(motion, drive, fs_hz, steps_per_sample, excitation)
     try:
-        return _simulate(run, samples, internals, bearing_forces)
+        settle = settling_steps(motion.transient_s, settle_s, fs_hz * steps_per_sample)
+        history = min(round(history_s * fs_hz), settle // steps_per_sample)
+        return _simulate(run, samples, internals, bearing_forces, settle, history)
     except SolverFailure as failure:
         return _failed(run, failure)
 
@@ -208,32 +189,25 @@ def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
         )
 
 
-def first_step(motion: Motion, fs_hz: float, steps_per_sample: int) -> int:
-    """Return the step at which the integration starts: before sample 0 by the transient and half the filter."""
-    return -half_length(steps_per_sample) - math.ceil(motion.transient_s * fs_hz * steps_per_sample)
-
-
-def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool) -> Response:
+def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, settle: int, history: int) -> Response:
     """Step through transient and record block by block; keep only the filtered outputs and what was asked for."""
-    half = half_length(run.steps_per_sample)
-    first = first_step(run.motion, run.fs_hz, run.steps_per_sample)
-    state = run.motion.start(run.pitches(first, 1)[0])
-    for _ in _blocks(run, state, first, -half):
+    half, steps = half_length(run.steps_per_sample), run.steps_per_sample
+    state = run.motion.start(run.pitches(-half - settle, 1)[0])
+    begin = -half - history * steps
+    for _ in _blocks(run, state, -half - settle, begin):
         pass
-    accelerations = _acceleration_decimator(run, samples)
-    forces = _force_decimator(run, samples) if bearing_forces else None
+    decimators = [_acceleration_decimator(run, history + samples)]
+    decimators += [_force_decimator(run, history + samples)] if bearing_forces else []
     inner: list[FloatArray] = []
     lost = 0
-    for first, states in _blocks(run, state, -half, (samples - 1) * run.steps_per_sample + half + 1):
-        accelerations.take(states)
-        if forces is not None:
-            forces.take(states)
-        recorded = slice(max(0, -first), max(0, samples * run.steps_per_sample - first))
+    for first, states in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
+        for decimator in decimators:
+            decimator.take(states)
+        recorded = slice(max(0, -first), max(0, samples * steps - first))
         lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
-        if internals:
+        if internals and first + len(states) > 0:  # nothing of the history
             inner.append(_inner_values(run, first, states, samples))
-    share = lost / (samples * run.steps_per_sample)
-    return _finished(run, accelerations.values, None if forces is None else forces.values, inner, share)
+    return _finished(run, [d.values for d in decimators], inner, lost / (samples * steps), history)
 
 
 def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tuple[int, FloatArray]]:
@@ -302,19 +276,23 @@ def _force_decimator(run: _Run, samples: int) -> Decimator:
 
 
 def _finished(
-    run: _Run, accelerations: FloatArray, forces: FloatArray | None, inner: list[FloatArray], contact_loss_share: float
+    run: _Run, values: list[FloatArray], inner: list[FloatArray], contact_loss_share: float, history: int
 ) -> Response:
-    """Name the columns of accelerations and forces (n, channels) and of the internals."""
+    """Name the columns of accelerations and forces (history + n, channels), forces if there are any, and internals."""
+    motions, count = run.motion.structure.motions, len(values[0]) - history
+    forces = [_with_static_part(run, part) for filtered in values[1:] for part in np.split(filtered, [history])]
+    before, recorded = forces or ({}, {})
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=_named(run.motion.structure.motions, accelerations.T),
-        bearing_force_n={} if forces is None else _with_static_part(run, forces),
-        angle_rad=_frozen(run.drive.angle_rad(np.arange(len(accelerations)) / run.fs_hz)),
-        tacho_s=run.drive.tacho_s(len(accelerations) / run.fs_hz),
+        acceleration_m_s2=_named(motions, values[0][history:].T),
+        bearing_force_n=recorded,
+        angle_rad=_frozen(run.drive.angle_rad(np.arange(count) / run.fs_hz)),
+        tacho_s=run.drive.tacho_s(count / run.fs_hz),
         contact_loss_share=contact_loss_share,
         status="ok",
         reason="",
         internals=_named(run.motion.internal_names, np.concatenate(inner).T) if inner else {},
+        history=History(_named(motions, values[0][:history].T), before),
     )
 
 
@@ -343,6 +321,7 @@ def _failed(run: _Run, failure: SolverFailure) -> Response:
         status=failure.status,
         reason=failure.reason,
         internals={},
+        history=History({}, {}),
     )
 
 

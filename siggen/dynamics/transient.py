@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from siggen.dynamics.equations import Equations
 from siggen.dynamics.modes import slowest_decay_per_s
 from siggen.dynamics.structure import Structure
@@ -17,3 +19,8 @@ def transient_s(structure: Structure, equations: Equations, mesh_damping_n_s_per
     """Return the time [s] that is simulated and discarded before sample 0."""
     decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)
     return min(TRANSIENT_CAP_S, DECAY_TIMES / decay) if decay > 0.0 else TRANSIENT_CAP_S
+
+
+def settling_steps(transient_s: float, settle_s: float, rate_hz: float) -> int:
+    """Return the steps that are computed and discarded before sample 0: the transient's, or of `settle_s` if longer."""
+    return math.ceil(max(transient_s, settle_s) * rate_hz)

@@ -45,6 +45,7 @@ def measure(
     rng: np.random.Generator,
     noise_floor_m_s2: float | None = None,
     snr_db: float | None = None,
+    disturbance_m_s2: NDArray[np.float64] | None = None,
 ) -> Measurement:
     """Return the channel stored for an acceleration (n,).
 
@@ -54,6 +55,7 @@ def measure(
     range_m_s2 : values beyond ± this are clipped
     bits : of the converter, 2 to 24, or None for no quantisation
     noise_floor_m_s2, snr_db : standard deviation of white noise, or its level below the signal; neither: no noise
+    disturbance_m_s2 : (n,) what the surroundings and the electronics add besides, behind the gain; None: nothing
 
     Raises
     ------
@@ -65,6 +67,7 @@ def measure(
     rms = float(np.std(amplified))
     floor = noise_floor_m_s2 if snr_db is None else rms / 10.0 ** (snr_db / 20.0)
     noisy = amplified if floor is None else amplified + floor * rng.standard_normal(amplified.size)
+    noisy = noisy if disturbance_m_s2 is None else noisy + disturbance_m_s2
     step = 0.0 if bits is None else power_of_two_from(2.0 * range_m_s2 / 2.0**bits)
     limit = math.floor(range_m_s2 / step) * step if step else range_m_s2
     clipped = np.abs(noisy) > limit

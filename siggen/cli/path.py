@@ -1,0 +1,68 @@
+"""`siggen path`: what lies between the bearings and each channel of one gearbox, as a table and a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from siggen.path_curves import PathCurves
+
+
+def path(
+    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Override a key, such as housing.modal_mass_kg=30.")
+    ] = None,
+) -> None:
+    """Print the transfer paths from bearing forces to channels: modes, damping and level.
+
+    The table of --out has one row per frequency and two columns per channel and bearing force, in the form that a
+    sensor's path of kind measured reads.
+
+    Example: siggen path configs/casing_path.yaml --png path.png
+    """
+    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.loading import load_config
+
+    if out is not None:
+        check_table_file(out)
+    from siggen.path_curves import path_curves
+
+    found = path_curves(load_config(config, overrides or ()), specimen)
+    from rich.console import Console
+
+    Console().print(_printed(found))
+    if out is not None:
+        write_table_file(found.table, out)
+        typer.echo(str(out))
+    if png is not None:
+        from siggen.cli.path_figure import save_path_figure
+
+        save_path_figure(found, png)
+        typer.echo(str(png))
+
+
+def _printed(found: PathCurves) -> Table:
+    """Return number of modes, range of their frequencies and damping, and the level of every channel with a path."""
+    from rich.table import Table
+
+    table = Table(title=f"transfer paths of gearbox {found.specimen_id}", title_justify="left")
+    for name in ("channel", "modes", "rms accelerance [m/s2/N]", "largest [m/s2/N]", "at [Hz]"):
+        table.add_column(name, justify="left" if name == "channel" else "right")
+    for channel in found.channels:
+        largest, at_hz = found.peak(channel)
+        rms = f"{channel.path_rms_m_s2_per_n:.3g}"
+        table.add_row(channel.name, str(channel.path_modes or "-"), rms, f"{largest:.3g}", f"{at_hz:.0f}")
+    if found.modes is not None:
+        pairs = zip(found.modes.frequency_hz, found.modes.damping_ratio, strict=True)
+        table.caption = "modes of the housing: " + ", ".join(f"{f:.0f} Hz ({100 * d:.1f} %)" for f, d in pairs)
+        table.caption_justify = "left"
+    return table

@@ -1,0 +1,82 @@
+"""Lines that have nothing to do with the gears: mains hum, tones of other machines, inverter carriers.
+
+Carrier lines: f_c ± 2 k f_e around the switching frequency (reference: standard literature, pulse-width modulation).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+BLOCK_SAMPLES = 256
+"""Samples whose cosines are taken once; about the square root of a record's length."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """Sinusoids a cos(2π f t + φ); arrays are (lines,)."""
+
+    frequency_hz: FloatArray
+    amplitude_m_s2: FloatArray
+    phase_rad: FloatArray
+
+    @property
+    def rms_m_s2(self) -> float:
+        """Root mean square of all lines together, of different frequencies."""
+        return float(np.sqrt(0.5 * (self.amplitude_m_s2**2).sum()))
+
+
+def harmonic_lines(fundamental_hz: float, amplitude_m_s2: float, harmonics: int, rng: np.random.Generator) -> Lines:
+    """Return harmonics 1.. of amplitude 1/h, with random phases."""
+    order = np.arange(1.0, harmonics + 1.0)
+    return Lines(fundamental_hz * order, amplitude_m_s2 / order, _phases(harmonics, rng))
+
+
+def carrier_lines(
+    carrier_hz: float, modulation_hz: float, amplitude_m_s2: float, sidebands: int, rng: np.random.Generator
+) -> Lines:
+    """Return a carrier with sidebands ±2 k modulation_hz of amplitude 1/(1 + k), with random phases."""
+    order = np.arange(-sidebands, sidebands + 1.0)
+    frequency = carrier_hz + 2.0 * modulation_hz * order
+    return Lines(np.abs(frequency), amplitude_m_s2 / (1.0 + np.abs(order)), _phases(order.size, rng))
+
+
+def single_lines(frequency_hz: FloatArray, amplitude_m_s2: FloatArray, rng: np.random.Generator) -> Lines:
+    """Return tones with random phases."""
+    return Lines(frequency_hz, amplitude_m_s2, _phases(frequency_hz.size, rng))
+
+
+def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: int) -> FloatArray:
+    """Return the lines (samples,) after a filter with `response` (lines,) at their frequencies.
+
+    Lines from half the sampling rate on are left out, as the anti-aliasing filter of a recorder does.
+    """
+    signal = np.zeros(samples)
+    phasors = lines.amplitude_m_s2 * np.exp(1j * lines.phase_rad) * response
+    for frequency, phasor in zip(lines.frequency_hz, phasors, strict=True):
+        if frequency < 0.5 * fs_hz:
+            _add_line(signal, 2.0 * np.pi * frequency / fs_hz, abs(phasor), float(np.angle(phasor)))
+    return signal
+
+
+@njit(cache=True)
+def _add_line(signal: FloatArray, step_rad: float, amplitude: float, phase_rad: float) -> None:
+    """Add a cos(step i + phase), as a cos(p) cos(step k) - a sin(p) sin(step k) with the phase p at a block's start."""
+    cosine, sine = np.empty(BLOCK_SAMPLES), np.empty(BLOCK_SAMPLES)
+    for k in range(BLOCK_SAMPLES):
+        cosine[k], sine[k] = np.cos(step_rad * k), np.sin(step_rad * k)
+    for first in range(0, signal.size, BLOCK_SAMPLES):
+        phase = step_rad * first + phase_rad
+        real, imaginary = amplitude * np.cos(phase), amplitude * np.sin(phase)
+        for k in range(min(BLOCK_SAMPLES, signal.size - first)):
+            signal[first + k] += real * cosine[k] - imaginary * sine[k]
+
+
+def _phases(count: int, rng: np.random.Generator) -> FloatArray:
+    return rng.uniform(0.0, 2.0 * np.pi, count)

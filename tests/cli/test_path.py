@@ -1,0 +1,38 @@
+"""`siggen path` as a user calls it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from siggen.errors import UsageError
+
+runner = CliRunner()
+
+
+def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> None:
+    out, png = tmp_path / "path.parquet", tmp_path / "path.png"
+    arguments = ["path", "configs/transfer_path.yaml", "--out", str(out), "--png", str(png), "--specimen", "3"]
+    result = runner.invoke(app, arguments, catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    assert "lid_axial" in result.output
+    assert "modes of the housing" in result.output
+    table = pyarrow.parquet.read_table(out)
+    assert table.num_columns == 1 + 9 * 4 * 2
+    frequency = table["frequency_hz"].to_numpy()
+    curve = table["foot_axial_from_gear_bearing_vertical_real_m_s2_per_n"].to_numpy()
+    assert frequency[-1] == 25600.0
+    # about 10 modes of 20 kg: the mass line of a few of them, and nothing at frequency 0
+    assert curve[0] == 0.0
+    assert 1e-4 < np.abs(curve).max() < 10.0
+    assert png.stat().st_size > 10_000
+
+
+def test_a_set_without_paths_says_how_to_add_one() -> None:
+    result = runner.invoke(app, ["path", "configs/quickstart.yaml"])
+    assert isinstance(result.exception, UsageError)
+    assert "path: {kind: modal}" in str(result.exception)
