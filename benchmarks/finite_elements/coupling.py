@@ -87,7 +87,8 @@ def held_out_coupling_table() -> Iterator[str]:
         exact = equal_approach(coupled_bodies(pair, HELD_OUT_SHARES))
         plain, coupled = (model_stiffness(pair, HELD_OUT_SHARES, c) for c in ("none", "body"))
         largest = max(largest, float(np.abs(coupled / exact - 1).max()))
-        names = f"{one.teeth:g}/{two.teeth:g} | {one.radius_ratio:.2f}/{two.radius_ratio:.2f} | {one.profile_shift:g}/{two.profile_shift:g} | "
+        shifts = f"{one.profile_shift:g}/{two.profile_shift:g}"
+        names = f"{one.teeth:g}/{two.teeth:g} | {one.radius_ratio:.2f}/{two.radius_ratio:.2f} | {shifts} | "
         values = (exact / plain, plain / exact, coupled / exact)
         yield (
             f"| {names}{one.pressure_angle_deg:g} | "

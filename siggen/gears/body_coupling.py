@@ -1,12 +1,12 @@
 """Deflection at one tooth by the load on a neighbour of the same gear, along the line of action.
 
 Derived. The ring between bore and root circle twists under the moment F R_b and carries all its teeth along, which is
-exact (R_b^2 (1/r_int^2 - 1/R_f^2)/(4 pi G L)). The rest is local. A tooth without load moves as a rigid body and a
-loaded one acts on the body by its resultants at the root (Saint-Venant), so with p = (cos a, sin a, u) per tooth - a the slant
-of the force against the tooth's normal, u = R_b - R_f cos a its lever about the root circle in modules - the rest times
-E L is bilinear, p_lower' B p_upper. Mirroring the two teeth and reciprocity leave six entries of B free; one of their
-products is sin(a_upper - a_lower), the same all along the line of action, and is left to the others. The remaining five
-are Chebyshev polynomials of 1/z and ln h_f (root over bore radius), fitted to finite elements
+exact (R_b^2 (1/r_int^2 - 1/R_f^2)/(4 pi G L)). The rest is local. A tooth without load moves as a rigid body, and a
+loaded one acts on the body by its resultants at the root (Saint-Venant). Let p = (cos a, sin a, u) of each tooth: a the
+slant of the force against the tooth's normal, u = R_b - R_f cos a its lever about the root circle in modules. Then the
+rest times E L is bilinear, p_lower' B p_upper. Mirroring the two teeth and reciprocity leave six entries of B free; one
+of their products is sin(a_upper - a_lower), the same all along the line of action, and is left to the others. The other
+five are Chebyshev polynomials of 1/z and ln h_f (root over bore radius), fitted to finite elements
 (`siggen.gears.coupling_table`); two teeth apart have a table of their own, farther ones keep the ring's twist only.
 """
 
@@ -104,6 +104,17 @@ def ring_torsion(gear: SpurGear, poisson_ratio: float) -> float:
     """
     squares = gear.bore_radius_m**-2 - gear.root_radius_m**-2
     return float(gear.base_radius_m**2 * squares * (1.0 + poisson_ratio) / (2.0 * pi))
+
+
+def outside_coupling(gear: SpurGear) -> tuple[str, ...]:
+    """Return what lies outside the range of the fitted local rest, as sentences; empty inside it."""
+    ratio = gear.root_radius_m / gear.bore_radius_m
+    checks = (("teeth", gear.teeth, TEETH_RANGE), ("h_f = root radius / bore radius", ratio, RADIUS_RATIO_RANGE))
+    return tuple(
+        f"coupling: {name} is {value:.4g}; fitted range {low:g} to {high:g}"
+        for name, value, (low, high) in checks
+        if not low - 1e-9 <= value <= high + 1e-9
+    )
 
 
 def load_terms(gear: SpurGear, lower_roll: FloatArray, upper_roll: FloatArray) -> FloatArray:

@@ -10,7 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears import GearPair, SpurGear, StiffnessOptions, largest_stiffness_loss, mesh_stiffness, mesh_tables
+from siggen.gears import (
+    GearPair,
+    SpurGear,
+    StiffnessOptions,
+    largest_stiffness_loss,
+    mesh_stiffness,
+    mesh_tables,
+    stiffness_notes,
+)
 from siggen.gears.body_coupling import body_coupling, neighbour_compliance, ring_torsion
 from siggen.gears.compliance import tooth_compliance
 from siggen.gears.coupled_pairs import approach_forces
@@ -178,7 +186,7 @@ def test_without_coupling_contributions_are_the_pairs_stiffness():
 
 
 def test_interpolation_of_contributions_errs_at_the_zone_edges_only_a_little():
-    # Two kinks, each 0.27 of a pair's stiffness over 0.64 of a pitch: a quarter of the step of 1/1251 pitch leaves 8e-5.
+    # Two kinks, each 0.27 of a pair's stiffness over 0.64 of a pitch: a quarter of a step of 1/1251 pitch leaves 8e-5.
     assert table_error(PAIR, (), BODY, mesh_tables(PAIR, (), BODY)) < 1e-4
 
 
@@ -196,3 +204,11 @@ def test_coupling_needs_the_body_that_it_goes_through():
         StiffnessOptions("base_circle", "none", coupling="body")
     with pytest.raises(ValueError, match="coupling 'rigid'"):
         StiffnessOptions(coupling="rigid")
+
+
+def test_gears_outside_the_fit_are_named():
+    thin = pair_18_47(bores_m=(25.0e-3, 20e-3))
+    options = StiffnessOptions("rack_trochoid", foundation_angle="profile", coupling="body")
+    notes = stiffness_notes(thin, options)
+    assert any("coupling: h_f = root radius / bore radius is 1.085; fitted range 1.4 to 7" in note for note in notes)
+    assert not any("coupling" in note for note in stiffness_notes(PAIR, options))

@@ -112,6 +112,6 @@ def test_coupled_mesh_meets_two_tooth_finite_elements_of_gears_it_was_not_fitted
     pair, places = shape_pair(pinion, gear), np.array([0.05, 0.5, 0.95])
     exact = equal_approach(coupled_bodies(pair, places, 0.05))
     plain, coupled = (model_stiffness(pair, places, c) for c in ("none", "body"))
-    # The goal is 3 %; measured below 1 % on standard racks.
-    np.testing.assert_allclose(coupled, exact, rtol=0.015)
+    # The goal is 3 %; measured 0.2 % on standard racks and 0.6 % on shifted ones (docs/finite_elements.md).
+    np.testing.assert_allclose(coupled, exact, rtol=0.01)
     assert np.all(plain > 1.1 * exact)
