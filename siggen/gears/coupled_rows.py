@@ -74,6 +74,7 @@ def coupled_contributions(
     runs: IntArray,
     stiffness_of_kinds: Callable[[FloatArray], FloatArray],
     position_m: FloatArray,
+    own_n_per_m: FloatArray | None = None,
 ) -> FloatArray:
     """Return what the pair in the middle of each run adds to the mesh stiffness, (rows, k) [N/m].
 
@@ -87,6 +88,8 @@ def coupled_contributions(
         Positions (m,) -> stiffness of each kind of pair alone, (kinds, m) [N/m].
     position_m : (k,)
         Positions of the pair on the path of contact [m].
+    own_n_per_m : (kinds, k) or None
+        What `stiffness_of_kinds` returns for `position_m`, where it is known already.
 
     Source: derived, see this module.
     """
@@ -99,6 +102,9 @@ def coupled_contributions(
     inside = np.ones(places.shape, dtype=np.bool_)
     inside[reach] = full
     alone = np.zeros((int(runs.max()) + 1, *places.shape))
+    if own_n_per_m is not None:
+        alone[:, own, np.arange(own.size)] = own_n_per_m[: alone.shape[0]]
+        inside[own, np.arange(own.size)] = False
     alone[:, inside] = stiffness_of_kinds(places[inside])[: alone.shape[0]]
     out = np.empty((runs.shape[0], position_m.size))
     for index in range(reach + 1):

@@ -90,24 +90,30 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     kinds = pair_kinds(pair, damage)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     table_of_pair = _table_of_pair(pair, kinds)
+    alone = kind_stiffness(pair, damage, options, kinds, position)
+    coupled = None if options.coupling == "none" else _coupled(pair, damage, options, table_of_pair, position, alone)
     return MeshTables(
         start_m=pair.contact_start_m,
         end_m=pair.contact_end_m,
         step_m=(pair.contact_end_m - pair.contact_start_m) / (points - 1),
         base_pitch_m=pair.base_pitch_m,
-        pair_stiffness_n_per_m=kind_stiffness(pair, damage, options, kinds, position),
+        pair_stiffness_n_per_m=alone,
         table_of_pair=table_of_pair,
-        coupled=None if options.coupling == "none" else _coupled(pair, damage, options, table_of_pair, position),
+        coupled=coupled,
     )
 
 
 def _coupled(
-    pair: GearPair, damage: Damage, options: StiffnessOptions, table_of_pair: NDArray[np.int32], position_m: FloatArray
+    pair: GearPair,
+    damage: Damage,
+    options: StiffnessOptions,
+    table_of_pair: NDArray[np.int32],
+    position_m: FloatArray,
+    alone: FloatArray,
 ) -> CoupledRows:
-    kinds = pair_kinds(pair, damage)
     runs, row_of_pair = neighbour_runs(pair, table_of_pair)
-    alone = partial(kind_stiffness, pair, damage, options, kinds)
-    rows = coupled_contributions(pair, options, runs, alone, position_m)
+    of_kinds = partial(kind_stiffness, pair, damage, options, pair_kinds(pair, damage))
+    rows = coupled_contributions(pair, options, runs, of_kinds, position_m, alone)
     return CoupledRows(rows, row_of_pair, body_coupling(pair, options, position_m))
 
 
@@ -188,7 +194,7 @@ def table_error(pair: GearPair, damage: Damage, options: StiffnessOptions, table
     error = _middle_error(rows, direct)
     if tables.coupled is None:
         return error
-    coupled = _coupled(pair, damage, options, tables.table_of_pair, middle)
+    coupled = _coupled(pair, damage, options, tables.table_of_pair, middle, direct)
     return max(error, _middle_error(tables.coupled.stiffness_n_per_m, coupled.stiffness_n_per_m))
 
 
