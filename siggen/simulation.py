@@ -77,7 +77,11 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
         labels |= error_labels(config, errors)
     return SpecimenState(
-        pair, options, damage, SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices), labels
+        pair,
+        options,
+        damage,
+        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n),
+        labels,
     )
 
 

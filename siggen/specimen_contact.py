@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
+from siggen.gears.body_coupling import body_coupling
 from siggen.gears.damage import Damage
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness_options import StiffnessOptions
@@ -23,10 +24,14 @@ LEAST_LINE_LOAD_N_PER_M = 1e3
 
 @dataclass(frozen=True, slots=True)
 class ToothTables:
-    """Stiffness by kinds of pairs; with `slices` of the whole face, and the damage is in the slices."""
+    """Stiffness by kinds of pairs; with `slices` of the whole face, and the damage is in the slices.
+
+    `coupling_m_per_n` (apart, points): see `siggen.gears.body_coupling`; None without.
+    """
 
     tables: MeshTables
     slices: SliceLaw | None
+    coupling_m_per_n: FloatArray | None
 
     @property
     def sink_depth_m(self) -> float:
@@ -55,9 +60,11 @@ def tooth_tables(
     ValueError
         If the stiffness model does not know such damage.
     """
+    along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
     # Misaligned faces need slices in the healthy state too: states must not differ by it.
     if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
-        return ToothTables(mesh_tables(pair, damage, options, points=points), None)
+        return ToothTables(mesh_tables(pair, damage, options, points=points), None, coupling)
     section = dynamics.mesh
     sliced = SliceOptions(
         line_load_n_per_m,
@@ -65,7 +72,7 @@ def tooth_tables(
         section_loss=section.damage == "all",
     )
     slices = slice_law(pair, damage, options, sliced, points, lead_m=None if lead_m is None else lead_m(sliced.slices))
-    return ToothTables(slice_tables(pair, damage, slices), slices)
+    return ToothTables(slice_tables(pair, damage, slices), slices, coupling)
 
 
 def mean_line_load_n_per_m(points: Sequence[OperatingRange], pair: GearPair) -> float:

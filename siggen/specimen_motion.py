@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from siggen.config import Dynamics, constant
 from siggen.dataset.specimen import OperatingPoint
 from siggen.dynamics.contact_kinematics import effective_modulus
@@ -34,6 +37,7 @@ class SpecimenMesh:
     tables: MeshTables
     missing: MissingMaterial
     slices: SliceLaw | None = None
+    coupling_m_per_n: NDArray[np.float64] | None = None
 
 
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
@@ -100,6 +104,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=damage_is_geometry(dynamics)),
         film=film if section.squeeze_film == "on" else None,
         slices=mesh.slices,
+        coupling_m_per_n=mesh.coupling_m_per_n,
     )
 
 

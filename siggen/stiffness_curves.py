@@ -17,6 +17,7 @@ from siggen.gears.damage import Damage, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness_options import StiffnessOptions
+from siggen.gears.tables import mesh_tables, table_error
 from siggen.loading import load_config
 from siggen.specimen_physics import gear_pair, stiffness_options
 from siggen.state_damage import state_damage
@@ -140,6 +141,18 @@ def curve_table(curves: list[StiffnessCurve], *, parts: bool = False) -> pa.Tabl
             for name, values in curve.parts_m_per_n.items():
                 columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
+
+
+def worst_table_error(config: Config, specimen_id: int = 0) -> float:
+    """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
+
+    Source: `siggen.gears.tables.table_error`, half-way between the points of the tables that simulations use.
+    """
+    specimen = draw_specimen(config, specimen_id)
+    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
+    damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
+    points = specimen.stiffness.table_points
+    return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
 
 
 def mesh_stiffness_curves(

@@ -13,6 +13,7 @@ TABLES = {
     "convergence": comparison.convergence_table,
     "coupling": coupling.coupling_table,
     "double_contact": coupling.double_contact_table,
+    "held_out_coupling": coupling.held_out_coupling_table,
     "held_out": comparison.held_out_table,
     "variants": comparison.variants_table,
     "outside": comparison.outside_table,
@@ -23,7 +24,7 @@ TABLES = {
 def main() -> None:
     """Run what the command line asks for: `models` (about 5 s) without an argument."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.finite_elements", description=__doc__)
-    parser.add_argument("what", nargs="*", default=["models"], choices=[*TABLES, "figures", "calibrate"])
+    parser.add_argument("what", nargs="*", default=["models"], choices=[*TABLES, "figures", "calibrate", "couple"])
     for what in parser.parse_args().what:
         if what in TABLES:
             print(f"\n{what}\n", *TABLES[what](), sep="\n")
@@ -31,6 +32,10 @@ def main() -> None:
             from benchmarks.finite_elements.figures import write_figures
 
             print(*write_figures(), sep="\n")
+        elif what == "couple":
+            from benchmarks.finite_elements.coupling_fit import couple
+
+            print(*couple().items(), sep="\n")
         else:
             from benchmarks.finite_elements.calibration_file import calibrate
 

@@ -56,7 +56,7 @@ def compliance_matrix(gear: SpurGear, load_roll: np.ndarray, elasticity: PlaneEl
     """
     crossing, way = lines_of_action(gear, load_roll)
     basis, displacement = displacements(tooth_mesh(gear, load_roll, size), way, elasticity)
-    return np.asarray(_interior_functionals(basis, crossing.reshape(-1, 2), way.reshape(-1, 2)) @ displacement)
+    return np.asarray(interior_functionals(basis, crossing.reshape(-1, 2), way.reshape(-1, 2)) @ displacement)
 
 
 def tooth_compliance(
@@ -132,7 +132,7 @@ def displacements(mesh: ToothMesh, way: np.ndarray, elasticity: PlaneElasticity)
         If a load point is no node of the mesh.
     """
     basis = _basis(mesh)
-    load = _nodal_functionals(basis, mesh.load_points.reshape(-1, 2), way.reshape(-1, 2))
+    load = nodal_functionals(basis, mesh.load_points.reshape(-1, 2), way.reshape(-1, 2))
     free = _free_dofs(basis, mesh.bore_radius)
     # Symmetric positive definite: no pivoting, and a fill-reducing order of the symmetric pattern.
     factor = splu(
@@ -166,7 +166,7 @@ def _free_dofs(basis: Any, bore_radius: float) -> np.ndarray:
     return basis.complement_dofs(clamped)
 
 
-def _nodal_functionals(basis: Any, points: np.ndarray, ways: np.ndarray) -> sparse.csr_matrix:
+def nodal_functionals(basis: Any, points: np.ndarray, ways: np.ndarray) -> sparse.csr_matrix:
     """Rows that give the displacement at mesh nodes along `ways`."""
     distance, node = cKDTree(basis.mesh.p.T).query(points)
     if distance.max() > 1e-9:
@@ -176,7 +176,7 @@ def _nodal_functionals(basis: Any, points: np.ndarray, ways: np.ndarray) -> spar
     return sparse.csr_matrix((ways.ravel(), (rows, columns)), shape=(len(points), basis.N))
 
 
-def _interior_functionals(basis: Any, points: np.ndarray, ways: np.ndarray) -> sparse.csr_matrix:
+def interior_functionals(basis: Any, points: np.ndarray, ways: np.ndarray) -> sparse.csr_matrix:
     """Rows that give the displacement at interior points along `ways`."""
     probes = basis.probes(points.T).tocsr()
     count = len(points)

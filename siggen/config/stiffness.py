@@ -35,6 +35,11 @@ class Stiffness(Section):
     table_points: Annotated[Whole, Field(ge=65, le=1_000_000)] = Field(
         default=2049, description="points of a stiffness table over one path of contact"
     )
+    coupling: Literal["none", "body"] = Field(
+        default="none",
+        description="whether neighbouring teeth in contact deflect each other through the gear body; none: the mesh is "
+        "the plain sum of its pairs (paper A)",
+    )
 
     @model_validator(mode="after")
     def _goes_together(self) -> Stiffness:
@@ -42,6 +47,8 @@ class Stiffness(Section):
             *self._uncalibrated("foundation", self.foundation, ("sainsot",)),
             *self._uncalibrated("foundation_angle", self.foundation_angle, ("auto", "rack")),
         ]
+        if self.coupling == "body" and self.foundation == "none":
+            problems.append(Problem("coupling", "'body'", "allowed: none with foundation: none"))
         if self.hertz == "linear" and self.hertz_force_n is not None:
             allowed = "allowed: null with hertz: linear, which does not depend on a force"
             problems.append(Problem("hertz_force_n", repr(self.hertz_force_n), allowed))

@@ -2,9 +2,9 @@
 
 Equations: F = K f(δ) + c δ̇ in contact with f the centred backlash function (reference: standard literature);
 K = sum over the pairs in contact (paper A: Influence of Tooth Pitting on TVMS and Vibration Response of a Spur Gear
-Pair); phase by the global engagement counter n (derived): pair n is at s = s_A + R_b1 Θ - n p_b. Positions are carried
-in base pitches, φ = Θ z_1 / 2π: pair n is in contact while 0 <= φ - n < contact ratio, pinion tooth n mod z_1 on gear
-tooth n mod z_2.
+Pair), with coupled gear bodies the sum of their contributions (`siggen.gears.coupled_rows`, derived); phase by the
+global engagement counter n (derived): pair n is at s = s_A + R_b1 Θ - n p_b. Positions are carried in base pitches,
+φ = Θ z_1 / 2π: pair n is in contact while 0 <= φ - n < contact ratio, pinion tooth n mod z_1 on gear tooth n mod z_2.
 The tables act on both flanks: K is that of the drive flank also where the back flank carries the load.
 """
 
@@ -25,8 +25,8 @@ FloatArray = NDArray[np.float64]
 class MeshLaw(NamedTuple):
     """All that the compiled pair law needs (a named tuple, since compiled code takes no dataclass).
 
-    `stiffness` (tables, points) [N/m] over one engagement, `table_of_pair` (z_1, z_2) the row of each pair of teeth,
-    `contact_ratio` and `intervals_per_pitch` locate the rows in base pitches.
+    `stiffness` (rows, points) [N/m]: what a pair adds over its engagement, `table_of_pair` (z_1, z_2) the row of each
+    pair of teeth, `contact_ratio` and `intervals_per_pitch` locate the rows in base pitches.
     """
 
     stiffness: FloatArray
@@ -48,13 +48,13 @@ def mesh_law(tables: MeshTables, damping_n_s_per_m: float, backlash_m: float) ->
     for name, value in (("damping_n_s_per_m", damping_n_s_per_m), ("backlash_m", backlash_m)):
         if not (np.isfinite(value) and value >= 0.0):
             raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
-    stiffness = read_only(tables.pair_stiffness_n_per_m, np.float64)
+    stiffness = read_only(tables.contributions_n_per_m, np.float64)
     if not (np.isfinite(stiffness).all() and (stiffness > 0.0).all()):
         raise ValueError(f"pair stiffness: received minimum {stiffness.min()} N/m; allowed are finite values above 0")
     length = tables.end_m - tables.start_m
     return MeshLaw(
         stiffness=stiffness,
-        table_of_pair=read_only(tables.table_of_pair, np.int32),
+        table_of_pair=read_only(tables.row_of_pair, np.int32),
         contact_ratio=float(length / tables.base_pitch_m),
         intervals_per_pitch=float((stiffness.shape[1] - 1) * tables.base_pitch_m / length),
         damping_n_s_per_m=float(damping_n_s_per_m),
@@ -64,7 +64,7 @@ def mesh_law(tables: MeshTables, damping_n_s_per_m: float, backlash_m: float) ->
 
 def mean_mesh_stiffness(tables: MeshTables) -> float:
     """Return the mean over the angle of the healthy mesh stiffness [N/m]: the integral of row 0 over one base pitch."""
-    healthy = np.asarray(tables.pair_stiffness_n_per_m)[0]
+    healthy = np.asarray(tables.contributions_n_per_m)[0]
     step = (tables.end_m - tables.start_m) / (healthy.size - 1)
     return float((healthy.sum() - 0.5 * (healthy[0] + healthy[-1])) * step / tables.base_pitch_m)
 

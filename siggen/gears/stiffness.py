@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from siggen.gears import involute
 from siggen.gears.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
+from siggen.gears.coupled_pairs import coupled_sum
 from siggen.gears.damage import WHOLE_FACE, Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
@@ -199,7 +200,8 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
     ValueError
         If an angle is not finite, or the pits leave no contact or no section.
 
-    Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer).
+    Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer); with coupling 'body'
+    derived (`siggen.gears.coupled_pairs`).
     """
     angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
     if not np.all(np.isfinite(angle)):
@@ -210,12 +212,15 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
     # -1 stands for any healthy tooth: all such pairs are evaluated in one go.
     pinion_key = np.where(np.isin(pinion_tooth, pinion_bad), pinion_tooth, -1)
     gear_key = np.where(np.isin(gear_tooth, gear_bad), gear_tooth, -1)
-    total = np.zeros(angle.size)
+    total, stiffness = np.zeros(angle.size), np.empty(index.size)
     for first, second in sorted(set(zip(pinion_key.tolist(), gear_key.tolist(), strict=True))):
         chosen = (pinion_key == first) & (gear_key == second)
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        np.add.at(total, index[chosen], pair_stiffness(pair, position[chosen], options, pinion_pits, gear_pits))
-    return total
+        stiffness[chosen] = pair_stiffness(pair, position[chosen], options, pinion_pits, gear_pits)
+        np.add.at(total, index[chosen], stiffness[chosen])
+    if options.coupling == "none":
+        return total
+    return coupled_sum(pair, options, (index, count, position), stiffness, angle.size)
 
 
 def pairs_in_contact(pair: GearPair, angle_rad: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:

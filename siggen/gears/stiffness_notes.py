@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from siggen.gears.body_coupling import outside_coupling
 from siggen.gears.calibration import outside_calibration
 from siggen.gears.foundation import outside_foundation_fit
 from siggen.gears.geometry import GearPair
@@ -55,6 +56,9 @@ def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterat
     elif options.foundation == "sainsot":
         for sentence in outside_foundation_fit(gear, options.root_reading):
             yield f"{name}: {sentence}; the polynomials extrapolate"
+    if options.coupling == "body" and options.beam != "calibrated":
+        for sentence in outside_coupling(gear):
+            yield f"{name}: {sentence}; the local part of the nearest gear inside is used"
     if options.shape != "rack_trochoid":
         yield from (f"{name}: {sentence}" for sentence in _misplaced_root(gear, options))
 

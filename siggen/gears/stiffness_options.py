@@ -11,6 +11,7 @@ TOOTH_MODELS = (*BEAMS, "calibrated")
 FOUNDATIONS = ("sainsot", "none")
 FOUNDATION_ANGLES = ("auto", "profile", "rack")
 HERTZ_LAWS = ("linear", "weber_banaschek", "power_law")
+COUPLINGS = ("none", "body")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,9 @@ class StiffnessOptions:
         Contact law, see `siggen.gears.hertz`: 'linear', 'weber_banaschek' or 'power_law'.
     hertz_force_n : float or None
         Normal force at which a load-dependent contact law is taken [N]; None for 'linear'.
+    coupling : str
+        'none': pairs in contact are springs side by side; 'body': loaded teeth of one gear deflect each other
+        (`siggen.gears.body_coupling`), which needs the foundation.
 
     Raises
     ------
@@ -44,6 +48,7 @@ class StiffnessOptions:
     foundation_angle: str = "auto"
     hertz: str = "linear"
     hertz_force_n: float | None = None
+    coupling: str = "none"
 
     def __post_init__(self) -> None:
         """Refuse unknown names and combinations that mean nothing."""
@@ -52,6 +57,7 @@ class StiffnessOptions:
             ("foundation", FOUNDATIONS),
             ("foundation_angle", FOUNDATION_ANGLES),
             ("hertz", HERTZ_LAWS),
+            ("coupling", COUPLINGS),
         ):
             if getattr(self, name) not in allowed:
                 raise ValueError(f"received {name} {getattr(self, name)!r}; allowed: {', '.join(allowed)}")
@@ -74,6 +80,10 @@ class StiffnessOptions:
             raise ValueError(
                 f"received beam 'calibrated' with foundation {self.foundation!r}, foundation_angle "
                 f"{self.foundation_angle!r}; allowed: 'sainsot' with 'auto' or 'rack', which its factor belongs to"
+            )
+        if self.coupling == "body" and self.foundation == "none":
+            raise ValueError(
+                "received coupling 'body' with foundation 'none'; allowed: 'sainsot', the teeth's own body"
             )
         force = self.hertz_force_n
         if self.hertz == "linear" and force is not None:

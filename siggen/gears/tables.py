@@ -7,12 +7,16 @@ however many mates it meets; only the contact is evaluated pair by pair.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.gears.body_coupling import body_coupling
 from siggen.gears.compliance import tooth_compliance
+from siggen.gears.coupled_pairs import approach_forces
+from siggen.gears.coupled_rows import CoupledRows, coupled_contributions, neighbour_runs
 from siggen.gears.damage import Damage, damaged_teeth, flank_heights, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.stiffness import contact_compliance, rolls_at
@@ -37,6 +41,8 @@ class MeshTables:
         One row per distinct kind of pair; row 0 is the healthy one [N/m].
     table_of_pair : (z1, z2) int32
         Row for pinion tooth i with gear tooth j.
+    coupled : CoupledRows or None
+        What pairs add to the mesh stiffness when they deflect each other; None: their own stiffness.
     """
 
     start_m: float
@@ -45,11 +51,22 @@ class MeshTables:
     base_pitch_m: float
     pair_stiffness_n_per_m: FloatArray
     table_of_pair: NDArray[np.int32]
+    coupled: CoupledRows | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         self.pair_stiffness_n_per_m.setflags(write=False)
         self.table_of_pair.setflags(write=False)
+
+    @property
+    def contributions_n_per_m(self) -> FloatArray:
+        """What a pair adds to the mesh stiffness, (rows, points); row 0 is the healthy one [N/m]."""
+        return self.pair_stiffness_n_per_m if self.coupled is None else self.coupled.stiffness_n_per_m
+
+    @property
+    def row_of_pair(self) -> NDArray[np.int32]:
+        """Row of the contributions for pinion tooth i with gear tooth j, (z1, z2)."""
+        return self.table_of_pair if self.coupled is None else self.coupled.row_of_pair
 
 
 def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int = 2049) -> MeshTables:
@@ -72,14 +89,32 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
         raise ValueError(f"received {points} table points; allowed: at least 2")
     kinds = pair_kinds(pair, damage)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    rows = table_of_pair(pair, kinds)
+    alone = kind_stiffness(pair, damage, options, kinds, position)
+    coupled = None if options.coupling == "none" else _coupled(pair, damage, options, rows, position, alone)
     return MeshTables(
         start_m=pair.contact_start_m,
         end_m=pair.contact_end_m,
         step_m=(pair.contact_end_m - pair.contact_start_m) / (points - 1),
         base_pitch_m=pair.base_pitch_m,
-        pair_stiffness_n_per_m=kind_stiffness(pair, damage, options, kinds, position),
-        table_of_pair=table_of_pair(pair, kinds),
+        pair_stiffness_n_per_m=alone,
+        table_of_pair=rows,
+        coupled=coupled,
     )
+
+
+def _coupled(
+    pair: GearPair,
+    damage: Damage,
+    options: StiffnessOptions,
+    table_of_pair: NDArray[np.int32],
+    position_m: FloatArray,
+    alone: FloatArray,
+) -> CoupledRows:
+    runs, row_of_pair = neighbour_runs(pair, table_of_pair)
+    of_kinds = partial(kind_stiffness, pair, damage, options, pair_kinds(pair, damage))
+    rows = coupled_contributions(pair, options, runs, of_kinds, position_m, alone)
+    return CoupledRows(rows, row_of_pair, body_coupling(pair, options, position_m))
 
 
 def pair_kinds(pair: GearPair, damage: Damage) -> tuple[tuple[int, int], ...]:
@@ -161,6 +196,14 @@ def table_error(pair: GearPair, damage: Damage, options: StiffnessOptions, table
     rows = tables.pair_stiffness_n_per_m
     middle = tables.start_m + tables.step_m * (np.arange(rows.shape[1] - 1) + 0.5)
     direct = kind_stiffness(pair, damage, options, pair_kinds(pair, damage), middle)
+    error = _middle_error(rows, direct)
+    if tables.coupled is None:
+        return error
+    coupled = _coupled(pair, damage, options, tables.table_of_pair, middle, direct)
+    return max(error, _middle_error(tables.coupled.stiffness_n_per_m, coupled.stiffness_n_per_m))
+
+
+def _middle_error(rows: FloatArray, direct: FloatArray) -> float:
     return float(np.max(np.abs(0.5 * (rows[:, 1:] + rows[:, :-1]) / direct - 1.0)))
 
 
@@ -235,12 +278,23 @@ def _losses(
     """Return the relative loss of mesh stiffness of each run of pairs at positions of its newest pair, (runs, k)."""
     healthy = np.zeros(newest_m.size)
     damaged = np.zeros((sequences.shape[0], newest_m.size))
+    alone = np.zeros((len(kinds), sequences.shape[1], newest_m.size))
     for older in range(sequences.shape[1]):
         position = newest_m + older * pair.base_pitch_m
         inside = position <= pair.contact_end_m
         if not np.any(inside):
             continue
         stiffness = kind_stiffness(pair, damage, options, kinds, position[inside], through_face=True)
+        alone[:, older, inside] = stiffness
         healthy[inside] += stiffness[0]
         damaged[:, inside] += stiffness[sequences[:, older]]
+    if options.coupling == "none":
+        return 1.0 - damaged / healthy
+    pairs = np.count_nonzero(alone[0], axis=0)
+    for number in np.unique(pairs):
+        chosen = np.flatnonzero(pairs == number)
+        runs = np.vstack([np.zeros_like(sequences[:1]), sequences])[:, :number]
+        every = alone[runs[:, :, np.newaxis], np.arange(number)[:, np.newaxis], chosen]
+        total = approach_forces(pair, options, newest_m[chosen], every).sum(axis=1)
+        healthy[chosen], damaged[:, chosen] = total[0], total[1:]
     return 1.0 - damaged / healthy

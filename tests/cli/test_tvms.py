@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,12 @@ from siggen.errors import UsageError
 runner = CliRunner()
 
 
-def run(*arguments: object) -> None:
+def run(*arguments: object) -> str:
     result = runner.invoke(app, ["tvms", *map(str, arguments)], catch_exceptions=True)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output
+    return result.output
 
 
 def test_the_table_holds_one_column_per_state_and_healthy_is_the_upper_bound(tmp_path: Path) -> None:
@@ -40,6 +42,30 @@ def test_the_stiffness_is_the_same_until_the_contact_reaches_the_pits(tmp_path: 
     table = pyarrow.parquet.read_table(tmp_path / "tvms.parquet")
     before = table["angle_deg"].to_numpy() < 16.1  # the pits begin at 16.110 degrees
     assert np.array_equal(table["healthy_n_per_m"].to_numpy()[before], table["severe_n_per_m"].to_numpy()[before])
+
+
+def test_the_interpolation_error_of_the_tables_is_told_and_falls_with_their_points(tmp_path: Path) -> None:
+    errors = []
+    for points in (129, 4097):
+        said = run(
+            "configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", "--set", f"stiffness.table_points={points}"
+        )
+        found = re.search(r"tables of (\d+) points, .* within ([\d.e-]+) %", said)
+        assert found is not None
+        assert int(found[1]) == points
+        errors.append(float(found[2]))
+    assert 0.0 < errors[1] < 0.5 * errors[0]
+
+
+def test_coupled_teeth_are_softer_in_double_contact_and_the_same_in_single_contact(tmp_path: Path) -> None:
+    curves = []
+    for coupling in ("none", "body"):
+        run("configs/quickstart.yaml", "--out", tmp_path / "tvms.parquet", "--set", f"stiffness.coupling={coupling}")
+        curves.append(pyarrow.parquet.read_table(tmp_path / "tvms.parquet")["healthy_n_per_m"].to_numpy())
+    ratio = curves[1] / curves[0]
+    # About a third of a pitch is single contact (contact ratio 1.64); elsewhere the teeth share two bodies.
+    assert 0.3 < np.mean(ratio == 1.0) < 0.4
+    assert ratio[ratio < 1.0].max() < 0.85
 
 
 @pytest.mark.parametrize("name", ["tvms.txt", "tvms"])

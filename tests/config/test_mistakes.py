@@ -100,6 +100,12 @@ MISTAKES = [
     ({"stiffness__foundation": "none"}, "stiffness.foundation", "'none'", "sainsot with beam: calibrated"),
     ({"stiffness__foundation_angle": "profile"}, "stiffness.foundation_angle", "'profile'", "auto or rack with beam"),
     ({"stiffness__hertz": "power_law"}, "stiffness.hertz_force_n", "null", "a number above 0 with hertz: power_law"),
+    (
+        {"stiffness__beam": "root_circle", "stiffness__foundation": "none", "stiffness__coupling": "body"},
+        "stiffness.coupling",
+        "'body'",
+        "none with foundation: none",
+    ),
     ({"stiffness__hertz_force_n": 2000}, "stiffness.hertz_force_n", "2000.0", "null with hertz: linear"),
     ({"stiffness__hertz_force_n": -1}, "stiffness.hertz_force_n", "-1", "a number above 0, or null"),
     # distributions

@@ -13,7 +13,13 @@ pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
 from benchmarks.finite_elements.calibration import ToothShape, compliance_ratio  # noqa: E402
 from benchmarks.finite_elements.comparison import active_rolls, model_ratios, paper_a_pair  # noqa: E402
-from benchmarks.finite_elements.coupling import body_torsion, neighbour_compliance  # noqa: E402
+from benchmarks.finite_elements.coupling import (  # noqa: E402
+    coupled_bodies,
+    equal_approach,
+    model_stiffness,
+    neighbour_compliance,
+    shape_pair,
+)
 from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
     PlaneElasticity,
     displacements,
@@ -21,6 +27,7 @@ from benchmarks.finite_elements.tooth_compliance_fem import (  # noqa: E402
     tooth_compliance,
 )
 from benchmarks.finite_elements.tooth_mesh import tooth_mesh  # noqa: E402
+from siggen.gears.body_coupling import ring_torsion  # noqa: E402
 from siggen.gears.calibration import calibration_factor  # noqa: E402
 
 pytestmark = pytest.mark.slow
@@ -86,6 +93,25 @@ def test_plane_strain_is_stiffer_than_plane_stress_but_not_by_more_than_its_modu
 def test_neighbours_deflect_each_other_by_more_than_the_twist_of_the_body():
     pair = paper_a_pair()
     for gear, (first, _) in zip((pair.pinion, pair.gear), pair.active_flank, strict=True):
-        own = neighbour_compliance(gear, first)
-        assert min(own[0, 1], own[1, 0]) > body_torsion(gear)
-        assert max(own[0, 1], own[1, 0]) < min(own[0, 0], own[1, 1])
+        own = neighbour_compliance(gear, np.array([first]))[0]
+        # Read at the contact, the cross compliances are reciprocal to the rounding of the solution.
+        assert own[0, 1] == pytest.approx(own[1, 0], rel=1e-9)
+        assert ring_torsion(gear, 0.3) < own[0, 1] < min(own[0, 0], own[1, 1])
+
+
+@pytest.mark.parametrize(
+    ("pinion", "gear"),
+    [
+        (ToothShape(23, 2.0), ToothShape(67, 5.0)),
+        (ToothShape(33, 6.0), ToothShape(33, 1.5)),
+        (ToothShape(26, 3.0, 0.3), ToothShape(40, 2.2, -0.1)),
+    ],
+    ids=str,
+)
+def test_coupled_mesh_meets_two_tooth_finite_elements_of_gears_it_was_not_fitted_to(pinion, gear):
+    pair, places = shape_pair(pinion, gear), np.array([0.05, 0.5, 0.95])
+    exact = equal_approach(coupled_bodies(pair, places, 0.05))
+    plain, coupled = (model_stiffness(pair, places, c) for c in ("none", "body"))
+    # The goal is 3 %; measured 0.2 % on standard racks and 0.6 % on shifted ones (docs/finite_elements.md).
+    np.testing.assert_allclose(coupled, exact, rtol=0.01)
+    assert np.all(plain > 1.1 * exact)
