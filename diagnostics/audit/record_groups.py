@@ -57,7 +57,7 @@ GROUPS = (
 
 CONSEQUENCES = re.compile(
     r"^(record_id|specimen_id|state_id|state|split|repeat|fault|severity|faulty_.*|damage.*|contact_length_loss.*|"
-    r"mesh_stiffness_loss.*|contact_loss_share|snr_.*|clipped_share_.*|.*(pit|spall|film|lambda|asperity|friction).*)$"
+    r"mesh_stiffness_loss.*|contact_loss_share|snr_.*|clipped_share_.*|(.*_)?(pits?|spalls?|film|lambda|asperity|friction)(_.*)?)$"
 )
 """Identities, what the damage is, and what follows from it: these may differ between states."""
 
