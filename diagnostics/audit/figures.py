@@ -50,7 +50,7 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     """Return AUC over profile length with intervals, a line per variant and fault; dashed: chance, dotted: targets."""
-    figure, axes = new_figure(height_in=3.2)
+    figure, axes = new_figure(height_in=3.6)
     axis = axes[0, 0]
     lines = [
         (name, fault, [entry for entry in entries if entry.fault == fault and np.isfinite(entry.auc.value)])
@@ -74,5 +74,5 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     axis.set_xlim(0.0, 1.05 * axis.get_xlim()[1])
     axis.set_xlabel("Length of the damage along the profile [mm]")
     axis.set_ylabel("AUC against healthy")
-    axis.legend(fontsize=8, loc="lower right")
+    figure.legend(fontsize=8, loc="outside upper center")
     return figure

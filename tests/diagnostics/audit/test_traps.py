@@ -105,6 +105,13 @@ def test_a_specimen_in_two_splits_is_found(clean: MeasuredSet) -> None:
     assert traps(relabelled(clean, split=split)) == ["specimen_in_two_splits"]
 
 
+def test_noise_that_few_records_share_in_twos_is_found(clean: MeasuredSet) -> None:
+    sketches = [list(row) for row in clean.sketches]
+    for record in (0, 20):
+        sketches[record + 1][1] = sketches[record][1]
+    assert traps(replace(clean, sketches=sketches)) == ["noise_shared_by_records"]
+
+
 def test_a_copied_signal_is_found(clean: MeasuredSet) -> None:
     checksums = clean.checksums.copy()
     checksums[5, 1] = checksums[0, 1]
