@@ -13,6 +13,7 @@ class Purpose(IntEnum):
     BOOTSTRAP = 1
     PERMUTATION = 2
     WINDOWS = 3
+    HALVES = 4
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0) -> np.random.Generator:

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from siggen.dataset.card_section import write_card_section
     from siggen.dataset.plan import plan
     from siggen.dataset.reading import open
     from siggen.generation import generate
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from siggen.simulation import simulate
     from siggen.stiffness_curves import mesh_stiffness_curves
 
-__all__ = ["generate", "load_config", "mesh_stiffness_curves", "open", "plan", "simulate"]
+__all__ = ["generate", "load_config", "mesh_stiffness_curves", "open", "plan", "simulate", "write_card_section"]
 
 _HOMES = {
     "generate": ("siggen.generation", "generate"),
@@ -26,6 +27,7 @@ _HOMES = {
     "open": ("siggen.dataset.reading", "open"),
     "plan": ("siggen.dataset.plan", "plan"),
     "simulate": ("siggen.simulation", "simulate"),
+    "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
 }
 
 

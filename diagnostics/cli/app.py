@@ -7,6 +7,7 @@ from importlib.metadata import version
 
 import typer
 
+from diagnostics.cli.audit import audit
 from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.report import report
@@ -26,6 +27,7 @@ app.command()(features)
 app.command()(indicators)
 app.command()(train)
 app.command()(report)
+app.command()(audit)
 
 
 def _show_version(wanted: bool) -> None:
@@ -44,7 +46,7 @@ def _options(
 
 
 def main() -> None:
-    """Run the command; errors meant for the user become one message and an exit code (0, 1, 2 or 130)."""
+    """Run the command; errors meant for the user become one message and an exit code (0, 1, 2, 4 or 130)."""
     try:
         app()
     except SiggenError as error:

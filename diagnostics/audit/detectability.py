@@ -1,0 +1,184 @@
+"""How well damage is detected on specimens that were neither trained on nor seen healthy: AUC by state.
+
+Logistic regression on standardised {log RMS, kurtosis, FM4, log sideband index}, averaged over the channels. In every
+repeat the specimens are dealt into two halves: healthy records come from one, faulty ones from the other, so that no
+specimen serves both classes; folds hold whole specimens of both halves. The AUC of the held-out scores is averaged over
+repeats; its interval resamples specimens. Paired: differences from another healthy record of the same specimen at the
+same operating point, energy ratio and sideband energy ratio added. Source: standard literature; the scheme derived.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.seeding import Purpose, generator
+
+LEVELS, PLAIN = ("rms", "sideband_index"), ("kurtosis", "fm4")
+ADDED = ("energy_ratio", "sideband_energy_ratio")
+REPEATS, FOLDS, RESAMPLES = 10, 5, 200
+FEWEST_SPECIMENS = 4
+SIZES = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm")
+TARGETS = (0.75, 0.85)
+
+
+@dataclass(frozen=True, slots=True)
+class Detection:
+    """AUC of one state against healthy, with its damage: means of the size labels over its records."""
+
+    state: str
+    fault: str
+    sizes: dict[str, float]
+    auc: Interval
+    specimens: int
+
+
+def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
+    """Return the features averaged over channels, (records, 4), or differences from the reference, (records, 6)."""
+    columns = [*(_log(measured.values[name]) for name in LEVELS), *(measured.values[name] for name in PLAIN)]
+    if paired:
+        columns += [measured.values[name] for name in ADDED]
+    found = np.stack([_channel_mean(column) for column in columns], axis=1)
+    if not paired:
+        return found
+    reference = reference_records(measured)
+    return np.where((reference >= 0)[:, None], found - found[reference], np.nan)
+
+
+def waveform_change(measured: MeasuredSet) -> np.ndarray:
+    """Return log10 of the rms of (averaged waveform - that of the reference) over the reference's, (records, 1)."""
+    found = np.full(len(measured.waveforms), np.nan)
+    for record, reference in enumerate(reference_records(measured).tolist()):
+        if reference >= 0:
+            pairs = zip(measured.waveforms[record], measured.waveforms[reference], strict=True)
+            changes = [change for own, other in pairs if math.isfinite(change := _change(own, other))]
+            found[record] = float(np.mean(changes)) if changes else math.nan
+    return found[:, None]
+
+
+def _change(own: np.ndarray, other: np.ndarray) -> float:
+    orders = min(own.size, other.size)
+    if orders < 2:
+        return math.nan
+    # from order 1: the mean of an accelerometer is not a vibration
+    left = float(np.linalg.norm(own[1:orders] - other[1:orders])) / float(np.linalg.norm(other[1:orders]))
+    return math.log10(left) if left > 0.0 else math.nan
+
+
+def _log(values: np.ndarray) -> np.ndarray:
+    return np.log10(np.where(values > 0, values, np.nan))
+
+
+def _channel_mean(values: np.ndarray) -> np.ndarray:
+    defined = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(
+            np.where(defined, values, 0.0).sum(axis=1) / np.where(defined.any(axis=1), defined.sum(axis=1), np.nan)
+        )
+
+
+def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list[Detection]:
+    """Return the detection of every damaged state, by fault and profile length.
+
+    Parameters
+    ----------
+    measured : MeasuredSet
+        The set.
+    values : (records, features) float64
+        What the classifier takes; records with an undefined value are left out.
+    seed : int
+        Seed of halves, folds and bootstrap.
+    """
+    usable = np.isfinite(values).all(axis=1)
+    labels, found = measured.labels, []
+    for state in dict.fromkeys(labels["state"][~measured.healthy].tolist()):
+        chosen = usable & (measured.healthy | (labels["state"] == state))
+        specimen, positive = labels["specimen_id"][chosen], ~measured.healthy[chosen]
+        enough = min(np.unique(specimen[side]).size for side in (positive, ~positive)) >= FEWEST_SPECIMENS
+        count = int(np.unique(specimen).size)
+        auc = (
+            interval(state_auc(values[chosen], positive, specimen, seed), count)
+            if enough
+            else Interval(math.nan, math.nan, math.nan)
+        )
+        rows = labels["state"] == state
+        sizes = {name: float(np.mean(labels[name][rows])) for name in SIZES if name in labels}
+        found.append(Detection(state, str(labels["fault"][rows][0]), sizes, auc, count))
+    return sorted(found, key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]])))
+
+
+def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, seed: int) -> np.ndarray:
+    """Return the AUC averaged over repeats: row 0 of the sample itself, the others of resampled specimens."""
+    weights = bootstrap_weights(specimen, seed, RESAMPLES)
+    areas = []
+    for repeat in range(REPEATS):
+        half, fold = dealt(specimen, seed, repeat)
+        used = half == positive
+        score = held_out_scores(values[used], positive[used], fold[used])
+        areas.append(weighted_auc(score, positive[used], weights[:, used]))
+    defined = np.isfinite(areas)
+    with np.errstate(invalid="ignore"):
+        total = np.where(defined, areas, 0.0).sum(axis=0)
+        return np.asarray(total / np.where(defined.any(axis=0), defined.sum(axis=0), np.nan))
+
+
+def dealt(specimen: np.ndarray, seed: int, repeat: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return for every record whether its specimen serves the faulty class, and its fold."""
+    unique, index = np.unique(specimen, return_inverse=True)
+    place = generator(seed, Purpose.HALVES, repeat).permutation(unique.size)
+    return (place % 2 == 1)[index], (place // 2 % FOLDS)[index]
+
+
+def held_out_scores(values: np.ndarray, positive: np.ndarray, fold: np.ndarray) -> np.ndarray:
+    """Return each record's log odds from a classifier trained on the other folds."""
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    score = np.zeros(positive.size)
+    for held in np.unique(fold):
+        train = fold != held
+        if np.unique(positive[train]).size == 2:
+            model = make_pipeline(StandardScaler(), LogisticRegression(class_weight="balanced", max_iter=1000))
+            score[~train] = model.fit(values[train], positive[train]).decision_function(values[~train])
+    return score
+
+
+@dataclass(frozen=True, slots=True)
+class DetectedLength:
+    """Profile length [mm] at which an AUC is reached; an upper bound where the smallest damage exceeds it already."""
+
+    length_mm: float
+    is_upper_bound: bool
+
+
+def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLength | None]:
+    """Return by fault the profile length at which the AUC first reaches a target, linear between states; None if never.
+
+    Parameters
+    ----------
+    entries : list of Detection
+        Ordered by size.
+    target : float
+        AUC.
+    """
+    judged = [entry for entry in entries if math.isfinite(entry.auc.value) and SIZES[2] in entry.sizes]
+    faults = dict.fromkeys(entry.fault for entry in entries)
+    return {fault: _first_reaching([entry for entry in judged if entry.fault == fault], target) for fault in faults}
+
+
+def _first_reaching(entries: list[Detection], target: float) -> DetectedLength | None:
+    first = next((place for place, entry in enumerate(entries) if entry.auc.value >= target), None)
+    if first is None:
+        return None
+    length, auc = entries[first].sizes[SIZES[2]], entries[first].auc.value
+    if first == 0:
+        return DetectedLength(length, True)
+    below, auc_below = entries[first - 1].sizes[SIZES[2]], entries[first - 1].auc.value
+    share = (target - auc_below) / (auc - auc_below)
+    return DetectedLength(below + share * (length - below), False)

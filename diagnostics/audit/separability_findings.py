@@ -1,0 +1,47 @@
+"""All traps of the separability audit, and the sentence that sums them up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from diagnostics.audit.damage_phase import damage_phase
+from diagnostics.audit.error_draws import error_draws
+from diagnostics.audit.finding import Finding
+from diagnostics.audit.healthy_sidebands import healthy_sidebands
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.noise_copies import noise_copies
+from diagnostics.audit.shared_specimens import shared_specimens
+from diagnostics.audit.simple_thresholds import simple_thresholds
+from diagnostics.audit.solver_settings import solver_settings
+from diagnostics.audit.state_ties import state_ties
+
+TRIVIAL = ("healthy_without_sidebands", "slight_separable_by", "state_tied_to", "constant_damage_phase")
+
+
+def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
+    """Return every finding, in the order of the traps."""
+    return [
+        *shared_specimens(measured),
+        *healthy_sidebands(measured),
+        *simple_thresholds(measured, seed),
+        *state_ties(measured, seed),
+        *solver_settings(measured),
+        *error_draws(measured),
+        *noise_copies(measured),
+        *damage_phase(measured),
+    ]
+
+
+def verdict(findings: Sequence[Finding]) -> str:
+    """Return what the findings mean for scores on the set."""
+    if not findings:
+        return (
+            "No trap was found: scores on unseen specimens of this set measure the damage, as far as the audit can see."
+        )
+    trivial = [finding.trap for finding in findings if finding.trap.startswith(TRIVIAL)]
+    if trivial:
+        return (
+            f"The set is trivially separable ({', '.join(trivial)}): a detection score on it says nothing about real "
+            "gearboxes."
+        )
+    return f"{len(findings)} traps were found: scores on this set are not what they seem to be."

@@ -1,0 +1,177 @@
+"""Trap: the state can be told from a condition of the record (speed, noise floor, path ...) without its signal.
+
+Mutual information between state and a binned column, against the same with permuted states. What is permuted is the
+state of whole cells (specimen, state), within specimens that have several states and among specimens otherwise, since
+records of a cell are not independent. Source: standard literature; the permutation scheme derived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.audit.finding import Finding
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.record_groups import ColumnGroup, column_group
+from diagnostics.seeding import Purpose, generator
+
+BINS = 8
+PERMUTATIONS = 200
+LARGEST_DEVIATIONS = 5.0
+"""Standard deviations of the permuted values: one column in 3 million exceeds that by chance, were they normal."""
+
+LARGEST_EXCESS = 0.03
+"""Share of the state's entropy beyond chance; less is a tie nobody could use."""
+
+MEASURED_COLUMNS = ("samples", "pulses_per_s", "start_turn")
+"""Conditions read off the signals and pulses, in case a label is missing or wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """Share of the state's entropy that a column tells: observed, mean and spread of permutations."""
+
+    column: str
+    observed: float
+    chance: float
+    spread: float
+
+    @property
+    def is_found(self) -> bool:
+        """Whether the column tells more than chance explains, and enough to matter."""
+        excess = self.observed - self.chance
+        return bool(excess > LARGEST_EXCESS and excess > LARGEST_DEVIATIONS * self.spread)
+
+
+def state_ties(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
+    """Return one finding per group of columns that tells the state."""
+    return [_finding(group, ties) for group, ties in tied_columns(measured, seed).items()] + failed_states(measured)
+
+
+def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[ColumnGroup, list[Tie]]:
+    """Return the columns that tell the state, by group."""
+    state = _codes(measured.labels["state"])
+    if state.max() == 0:
+        return {}
+    specimen = _codes(measured.labels["specimen_id"])
+    permuted = permuted_states(state, specimen, seed)
+    found: dict[ColumnGroup, list[Tie]] = {}
+    for name, values in _columns(measured).items():
+        group = column_group(name)
+        if group is None:
+            continue
+        tie = strongest_tie(name, values, state, specimen, permuted)
+        if tie is not None and tie.is_found:
+            found.setdefault(group, []).append(tie)
+    return found
+
+
+def _columns(measured: MeasuredSet) -> dict[str, np.ndarray]:
+    labels = {name: values for name, values in measured.labels.items() if values.ndim == 1}
+    seen = {name: measured.values[name][:, 0] for name in MEASURED_COLUMNS if name in measured.values}
+    return {**labels, **seen}
+
+
+def permuted_states(state: np.ndarray, specimen: np.ndarray, seed: int, count: int = PERMUTATIONS) -> np.ndarray:
+    """Return states permuted by cells, (count, records) int."""
+    cells, cell_of = np.unique(np.stack([specimen, state]), axis=1, return_inverse=True)
+    cell_of = np.asarray(cell_of).ravel()
+    rng = generator(seed, Purpose.PERMUTATION)
+    several = np.unique(cells[0]).size < cells.shape[1]
+    result = np.empty((count, state.size), dtype=np.int64)
+    for row in range(count):
+        # sorting by (specimen, random) shuffles the states of each specimen among its cells
+        keys = cells[0] if several else np.zeros_like(cells[0])
+        shuffled = np.lexsort((rng.random(cells.shape[1]), keys.astype(np.float64)))
+        permuted = np.empty(cells.shape[1], dtype=np.int64)
+        permuted[np.argsort(keys, kind="stable")] = cells[1][shuffled]
+        result[row] = permuted[cell_of]
+    return result
+
+
+def strongest_tie(
+    name: str, values: np.ndarray, state: np.ndarray, specimen: np.ndarray, permuted: np.ndarray
+) -> Tie | None:
+    """Return the larger of the ties of the column itself and of its differences from the specimen's mean."""
+    if values.dtype.kind in "biuf":
+        number = values.astype(np.float64)
+        defined = np.where(np.isfinite(number), number, np.nanmax(np.where(np.isfinite(number), number, -1e300)) + 1.0)
+        mean = np.bincount(specimen, defined) / np.bincount(specimen)
+        centred = defined - mean[specimen]
+        centred[np.abs(centred) < 1e-9 * max(float(np.abs(defined).max()), 1e-300)] = 0.0
+        codes = [_bins(defined), _bins(centred)]
+    else:
+        codes = [_codes(np.array([str(value) for value in values.tolist()]))]
+    ties = [_tie(name, code, state, permuted) for code in codes if code.max() > 0]
+    return max(ties, key=lambda tie: (tie.is_found, tie.observed - tie.chance), default=None)
+
+
+def _tie(name: str, code: np.ndarray, state: np.ndarray, permuted: np.ndarray) -> Tie:
+    chance = np.array([told_share(code, row) for row in permuted])
+    return Tie(name, told_share(code, state), float(chance.mean()), float(chance.std()))
+
+
+def told_share(code: np.ndarray, state: np.ndarray) -> float:
+    """Return mutual information of two codes over the entropy of the state, 0 to 1."""
+    states = int(state.max()) + 1
+    joint = np.bincount(code * states + state, minlength=(int(code.max()) + 1) * states).astype(np.float64)
+    joint = joint.reshape(-1, states) / state.size
+    entropy = [_entropy(part) for part in (joint.sum(axis=0), joint.sum(axis=1), joint.ravel())]
+    return (entropy[0] + entropy[1] - entropy[2]) / entropy[0] if entropy[0] > 0 else 0.0
+
+
+def _entropy(share: np.ndarray) -> float:
+    used = share[share > 0]
+    return -float(np.sum(used * np.log(used)))
+
+
+def _codes(values: np.ndarray) -> np.ndarray:
+    return np.asarray(np.unique(values, return_inverse=True)[1]).ravel()
+
+
+def _bins(values: np.ndarray) -> np.ndarray:
+    """Return the values themselves as codes where there are few, else the bins between equal shares."""
+    unique = np.unique(values)
+    if unique.size <= BINS:
+        return np.searchsorted(unique, values)
+    edges = np.unique(np.quantile(values, np.arange(1, BINS) / BINS))
+    return _codes(np.searchsorted(edges, values, side="right"))
+
+
+def _finding(group: ColumnGroup, ties: list[Tie]) -> Finding:
+    strongest = max(ties, key=lambda tie: tie.observed)
+    others = f" (and {len(ties) - 1} more columns of this group)" if len(ties) > 1 else ""
+    return Finding(
+        f"state_tied_to_{group.name}",
+        f"`{strongest.column}`{others} tells {strongest.observed:.0%} of the state's entropy",
+        f"chance with permuted states gives {strongest.chance:.1%} (spread {strongest.spread:.1%}); allowed are "
+        f"{LARGEST_EXCESS:.0%} beyond it",
+        group.mend,
+    )
+
+
+def failed_states(measured: MeasuredSet) -> list[Finding]:
+    """Return a finding if failed records gather in some states."""
+    states = measured.states()
+    if not measured.failures or len(states) < 2:
+        return []
+    planned = [str(state.get("name")) for state in measured.config.get("states", [])] or list(states)
+    points, repeats = (int(measured.labels[name].max()) + 1 for name in ("operating_point_id", "repeat"))
+    block = points * repeats
+    counts = np.bincount(
+        [int(failure["record_id"]) // block % len(planned) for failure in measured.failures], minlength=len(planned)
+    )
+    expected = counts.sum() / len(planned)
+    # a count of failures scatters by its square root
+    if counts.max() - expected <= LARGEST_DEVIATIONS * np.sqrt(expected):
+        return []
+    worst = planned[int(counts.argmax())]
+    return [
+        Finding(
+            "state_tied_to_status",
+            f"{counts.max()} of {counts.sum()} failed records are of state {worst}",
+            f"{expected:.1f} were expected; allowed are {LARGEST_DEVIATIONS:g} standard deviations more",
+            "Ease the settings that make this state fail; what is left of it is a selection.",
+        )
+    ]

@@ -1,0 +1,72 @@
+"""`siggen-diagnostics audit`: what makes a set trivially separable, how real it looks, what can be found in it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Speed(StrEnum):
+    """Kind of machine whose speed variation is compared with."""
+
+    bench = "bench"
+    variable = "variable"
+
+
+def audit(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    strict: Annotated[bool, typer.Option("--strict", help="End with exit code 4 if a trap was found.")] = False,
+    realism: Annotated[bool, typer.Option("--realism", help="Compare with ranges of healthy gearboxes.")] = False,
+    write_card: Annotated[
+        bool, typer.Option("--write-card", help="Put the summary into the set's README.md (implies --realism).")
+    ] = False,
+    paired: Annotated[
+        bool, typer.Option("--paired", help="Also judge differences from the specimen's own healthy record.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="DIR2", help="Folder for the report; default DIR_audit.", show_default=False
+        ),
+    ] = None,
+    speed: Annotated[Speed, typer.Option(help="Machine whose speed variation is compared with.")] = Speed.bench,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of permutations, folds and bootstrap.")] = 0,
+) -> None:
+    """Look for what makes scores on a set worthless, and write audit.html and audit.json.
+
+    Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found.
+
+    Example: siggen-diagnostics audit data/quickstart --strict --realism
+    """
+    from diagnostics.audit.audit_report import audit_set, write_audit
+    from diagnostics.audit.card_section import card_section
+    from diagnostics.cli.progress import terminal_stage
+    from siggen.dataset.reading import open as open_set
+    from siggen.errors import VerificationError
+
+    dataset = open_set(directory)
+    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_audit")
+    found = audit_set(
+        dataset,
+        folder,
+        seed,
+        with_realism=realism or write_card,
+        paired=paired,
+        speed=speed.value,
+        stage=terminal_stage,
+    )
+    typer.echo(found.verdict)
+    for finding in found.findings:
+        typer.echo(f"- {finding.line()}")
+    for note in found.notes:
+        typer.echo(f"note: {note}", err=True)
+    typer.echo(str(write_audit(found, dataset, folder)))
+    if write_card:
+        import siggen
+
+        siggen.write_card_section(directory, card_section(found))
+    if strict and found.findings:
+        raise VerificationError(f"{directory}: {len(found.findings)} traps were found (--strict)")

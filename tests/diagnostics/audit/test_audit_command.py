@@ -1,0 +1,105 @@
+"""`siggen-diagnostics audit`: files, exit codes, messages, and the card."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from planted_set import Plant, PlantedSet, planted
+
+from diagnostics.audit import measured_set as measuring
+from diagnostics.audit.audit_report import CACHE
+from diagnostics.cli.app import main
+from siggen.dataset import reading
+from siggen.verification import verify
+from tests.dataset.fake_set import fake_config, write_fake_set
+
+
+@pytest.fixture(scope="module")
+def perfect_gears() -> PlantedSet:
+    return planted(Plant(specimens=4, error_depth=0.0))
+
+
+@pytest.fixture(scope="module")
+def clean() -> PlantedSet:
+    return planted(Plant(specimens=6))
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "audit", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+@pytest.mark.parametrize(("strict", "code"), [([], 0), (["--strict"], 4)])
+def test_findings_fail_only_with_strict(
+    strict: list[str], code: int, perfect_gears: PlantedSet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.setattr(reading, "open", lambda path: perfect_gears)
+    assert run(monkeypatch, "anything", "--out", str(tmp_path), *strict) == code
+    shown = capsys.readouterr()
+    assert "trivially separable" in shown.out
+    assert "healthy_without_sidebands" in shown.out
+    assert ("--strict" in shown.err) == bool(strict)
+    numbers = json.loads((tmp_path / "audit.json").read_text())
+    assert [finding["trap"] for finding in numbers["findings"]] == ["healthy_without_sidebands"]
+
+
+def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
+    clean: PlantedSet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(reading, "open", lambda path: clean)
+    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", "--realism", "--paired") == 0
+    assert capsys.readouterr().out.strip().endswith("audit.html")
+    page = (tmp_path / "audit.html").read_text()
+    for part in ("No trap", "Against healthy gearboxes", "Spread between sensors", "Detectability", "base64"):
+        assert part in page
+    assert "http" not in page.replace("http-equiv", "")
+    assert len(json.loads((tmp_path / "audit.json").read_text())["realism"]["quantities"]) == 13
+
+
+def test_measured_quantities_are_read_back_until_the_set_changes(
+    perfect_gears: PlantedSet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = measuring.measured_set(perfect_gears, tmp_path / CACHE)
+    monkeypatch.setattr(measuring, "_record_rows", lambda *arguments: pytest.fail("measured again"))
+    again = measuring.measured_set(perfect_gears, tmp_path / CACHE)
+    assert all((first.values[name] == again.values[name]).all() for name in ("rms", "kurtosis", "sideband1_db"))
+    other = replace(perfect_gears, manifest={"identity": "1" * 64})
+    with pytest.raises(pytest.fail.Exception, match="measured again"):
+        measuring.measured_set(other, tmp_path / CACHE)
+
+
+def test_a_folder_without_a_set_is_a_usage_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, str(tmp_path / "nothing")) == 2
+    assert "no data set here" in capsys.readouterr().err
+    assert not (tmp_path / "nothing").exists()
+    (tmp_path / "photo.jpg").write_bytes(b"x")
+    assert run(monkeypatch, str(tmp_path)) == 2
+    assert "not a siggen data set" in capsys.readouterr().err
+
+
+def test_help_has_an_example(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(monkeypatch, "-h") == 0
+    assert "Example: siggen-diagnostics audit" in capsys.readouterr().out
+
+
+def test_the_card_of_a_set_on_disk_is_written_and_the_set_still_verifies(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "set"
+    write_fake_set(folder, fake_config())  # noise over 0.1 s: nearly everything is undefined, and nothing breaks
+    for _ in range(2):
+        assert run(monkeypatch, str(folder), "--out", str(tmp_path / "report"), "--write-card") == 0
+    card = (folder / "README.md").read_text()
+    assert card.count("## What this set was measured to teach") == 1
+    assert verify(folder).mismatches == ()

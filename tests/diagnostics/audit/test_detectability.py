@@ -1,0 +1,117 @@
+"""AUC of planted effects, pairs of records, and the interpolated length of damage."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planted_set import Plant, measured
+
+from diagnostics.audit.detectability import (
+    Detection,
+    dealt,
+    detections,
+    features,
+    length_at,
+    state_auc,
+    waveform_change,
+)
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.evaluation import Interval
+
+
+@pytest.fixture(scope="module")
+def repeated() -> MeasuredSet:
+    """Two records per operating point and state; in the severe state a pulse of ten times the mesh line."""
+    return measured(Plant(specimens=8, repeats=2, severe_pulse=10.0))
+
+
+def planted_scores(shift: float, specimens: int = 60) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """One feature with a specimen's offset (spread 1) and noise (spread 0.5), shifted in the faulty records."""
+    rng = np.random.default_rng(11)
+    specimen = np.repeat(np.arange(specimens), 4)
+    positive = np.tile([False, False, True, True], specimens)
+    value = rng.standard_normal(specimens)[specimen] + 0.5 * rng.standard_normal(specimen.size) + shift * positive
+    return value[:, None], positive, specimen
+
+
+def test_auc_of_a_planted_shift_is_that_of_two_normal_laws() -> None:
+    values, positive, specimen = planted_scores(1.5)
+    area = state_auc(values, positive, specimen, seed=0)
+    # difference of two independent records: spread sqrt(2 * 1.25); 30 specimens a side fix the AUC to about 0.05
+    expected = 0.5 * (1 + math.erf(1.5 / math.sqrt(2.5) / math.sqrt(2)))
+    assert area[0] == pytest.approx(expected, abs=0.08)
+    low, high = np.nanquantile(area[1:], [0.025, 0.975])
+    assert low < expected < high
+
+
+def test_auc_without_an_effect_is_chance() -> None:
+    values, positive, specimen = planted_scores(0.0)
+    # held-out scores of an effectless feature lean below 0.5 by the usual bias of cross-validation
+    assert 0.35 < state_auc(values, positive, specimen, seed=0)[0] < 0.58
+
+
+def test_no_specimen_serves_both_classes_and_folds_hold_whole_specimens() -> None:
+    specimen = np.repeat(np.arange(20), 3)
+    half, fold = dealt(specimen, seed=1, repeat=2)
+    for owner in range(20):
+        assert np.unique(half[specimen == owner]).size == np.unique(fold[specimen == owner]).size == 1
+    assert half.sum() == 30
+    assert {int(np.sum(half[fold == k])) for k in range(5)} == {6}
+
+
+def test_a_pulse_is_detected_and_its_absence_is_not(repeated: MeasuredSet) -> None:
+    found = {entry.state: entry.auc.value for entry in detections(repeated, features(repeated))}
+    assert found["severe"] > 0.95
+    assert found["slight"] < 0.75  # 8 specimens: four a class
+
+
+def test_pairs_are_healthy_records_of_the_same_specimen_at_the_same_point(repeated: MeasuredSet) -> None:
+    reference = reference_records(repeated)
+    assert np.all(reference >= 0)
+    labels = repeated.labels
+    assert np.all(repeated.healthy[reference])
+    assert np.all(reference != np.arange(reference.size))
+    for name in ("specimen_id", "operating_point_id"):
+        assert np.array_equal(labels[name], labels[name][reference])
+
+
+def test_records_beyond_one_percent_torque_have_no_pair(repeated: MeasuredSet) -> None:
+    torque = repeated.labels["torque_nm"] * np.where(repeated.healthy, 1.0, 1.011)
+    found = reference_records(replace(repeated, labels={**repeated.labels, "torque_nm": torque}))
+    assert np.all(found[~repeated.healthy] == -1)
+    assert np.all(found[repeated.healthy] >= 0)
+
+
+def test_without_repeats_healthy_records_have_no_pair_and_no_auc_is_given() -> None:
+    single = measured(Plant(specimens=4))
+    assert np.all(reference_records(single)[single.healthy] == -1)
+    assert all(math.isnan(entry.auc.value) for entry in detections(single, features(single, paired=True)))
+
+
+def test_paired_differences_and_waveforms_find_the_pulse(repeated: MeasuredSet) -> None:
+    paired = features(repeated, paired=True)
+    assert paired.shape == (96, 6)
+    assert np.isfinite(paired).all()
+    for values in (paired, waveform_change(repeated)):
+        found = {entry.state: entry.auc.value for entry in detections(repeated, values)}
+        assert found["severe"] > 0.95
+
+
+def entry(length: float, auc: float, fault: str = "spalling") -> Detection:
+    sizes = {"damaged_area_mm2": length, "damage_profile_length_mm": length}
+    return Detection(f"s{length}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
+
+
+def test_length_at_an_auc_is_interpolated_between_states_of_one_fault() -> None:
+    found = length_at([entry(0.5, 0.6), entry(1.0, 0.8), entry(2.0, 0.9), entry(1.0, 0.5, "pitting")], 0.85)
+    assert found["spalling"] is not None
+    assert found["spalling"].length_mm == pytest.approx(1.5)
+    assert not found["spalling"].is_upper_bound
+    assert found["pitting"] is None
+    first = length_at([entry(0.5, 0.9)], 0.85)["spalling"]
+    assert first is not None
+    assert first.is_upper_bound

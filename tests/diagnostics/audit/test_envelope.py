@@ -1,0 +1,55 @@
+"""Shares inside the ranges, and the spread between sensors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planted_set import Plant, measured
+
+from diagnostics.audit.envelope import QUANTITIES, realism
+from diagnostics.audit.measured_set import MeasuredSet
+
+
+@pytest.fixture(scope="module")
+def found() -> MeasuredSet:
+    return measured(Plant(specimens=3))
+
+
+def test_the_ranges_hold_their_limits_and_undefined_is_outside() -> None:
+    kurtosis = next(quantity for quantity in QUANTITIES if quantity.name == "kurtosis")
+    values = np.array([1.9, 2.0, 3.2, 3.3, 4.0, 6.5, 6.6, np.nan])
+    assert kurtosis.inside(values).tolist() == [False, True, True, False, True, True, False, False]
+
+
+def test_thirteen_quantities_count_healthy_channel_records_only(found: MeasuredSet) -> None:
+    fm4 = np.where(found.healthy[:, None], 3.0, 99.0) * np.ones((1, 3))
+    fm4[0, 0], fm4[0, 1] = np.nan, 9.0
+    result = realism(replace(found, values={**found.values, "fm4": fm4}))
+    assert result is not None
+    assert len(result.shares) == 13
+    assert result.channel_records == 3 * 2 * 3
+    share = next(share for share in result.shares if share.quantity.name == "fm4")
+    assert share.inside == pytest.approx(16 / 18)
+    assert share.undefined == pytest.approx(1 / 18)
+    assert share.quantiles[1] == 3.0
+
+
+def test_speed_range_follows_the_kind_of_machine(found: MeasuredSet) -> None:
+    variation = np.full(found.checksums.shape, 1.0)
+    changed = replace(found, values={**found.values, "speed_variation_percent": variation})
+    shares = {speed: realism(changed, speed).shares[-1].inside for speed in ("bench", "variable")}  # type: ignore[union-attr]
+    assert shares == {"bench": 0.0, "variable": 1.0}
+
+
+def test_spread_between_sensors_is_the_standard_deviation_over_channels(found: MeasuredSet) -> None:
+    values = np.tile([-20.0, -17.0, -14.0], (found.checksums.shape[0], 1))
+    result = realism(replace(found, values={**found.values, "sideband1_db": values}))
+    assert result is not None
+    assert result.spreads[0].name == "sideband1_db"
+    assert result.spreads[0].spread_db == pytest.approx(3.0)
+
+
+def test_a_set_without_healthy_records_has_nothing_to_compare(found: MeasuredSet) -> None:
+    assert realism(replace(found, labels={**found.labels, "fault": np.full(found.healthy.size, "pitting")})) is None

@@ -1,0 +1,171 @@
+"""Each planted trap gives exactly its finding; a set without traps gives none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planted_set import Plant, measured
+
+from diagnostics.audit.error_draws import chance_bound, likeness
+from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.separability_findings import separability_findings, verdict
+from diagnostics.audit.state_ties import permuted_states, told_share
+
+
+@pytest.fixture(scope="module")
+def clean() -> MeasuredSet:
+    return measured(Plant())
+
+
+def traps(found: MeasuredSet) -> list[str]:
+    return [finding.trap for finding in separability_findings(found)]
+
+
+def relabelled(found: MeasuredSet, **columns: object) -> MeasuredSet:
+    return replace(found, labels={**found.labels, **{name: np.asarray(column) for name, column in columns.items()}})
+
+
+def test_a_set_without_traps_gives_no_finding(clean: MeasuredSet) -> None:
+    assert traps(clean) == []
+    assert "No trap" in verdict([])
+
+
+@pytest.mark.parametrize(
+    ("plant", "expected"),
+    [
+        (Plant(error_depth=0.0), "healthy_without_sidebands"),
+        (Plant(one_error_draw=True), "one_error_draw"),
+        (Plant(shared_noise=True), "noise_shared_by_records"),
+        (Plant(copied_channel_noise=True), "noise_shared_by_channels"),
+        (Plant(slight_gain=4.0), "slight_separable_by_rms"),
+        (Plant(padded_state="severe"), "state_tied_to_length"),
+        (Plant(one_tooth=True), "constant_damage_phase_tacho"),
+        (Plant(one_start=True), "constant_damage_phase_start"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_trap_in_the_signals_gives_exactly_its_finding(plant: Plant, expected: str) -> None:
+    assert traps(measured(plant)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("column", "group"),
+    [
+        ("torque_nm", "operation"),
+        ("speed_hz", "operation"),
+        ("noise_floor_lid_x_m_s2", "noise"),
+        ("path_gain_lid_x", "path"),
+        ("start_angle_rad", "start"),
+        ("steps_per_sample", "solver"),
+        ("pitch_error_um", "manufacture"),
+        ("something_new", "other"),
+    ],
+)
+def test_a_small_shift_of_one_label_with_the_state_is_found_though_specimens_scatter_more(
+    clean: MeasuredSet, column: str, group: str
+) -> None:
+    # 3 % with the state, where specimens scatter by 20 %: only differences within a specimen show it
+    specimen = clean.labels["specimen_id"]
+    scatter = np.random.default_rng(1).uniform(0.8, 1.2, int(specimen.max()) + 1)[specimen]
+    values = scatter * (1.0 + 0.03 * clean.labels["state_id"])
+    assert traps(relabelled(clean, **{column: values})) == [f"state_tied_to_{group}"]
+
+
+def test_status_by_state_is_found(clean: MeasuredSet) -> None:
+    status = np.where(clean.labels["state"] == "severe", "ended_early", "ok")
+    assert traps(relabelled(clean, status=status)) == ["state_tied_to_status"]
+
+
+def test_failures_that_gather_in_one_state_are_found_and_evenly_spread_ones_are_not(clean: MeasuredSet) -> None:
+    config = {"states": [{"name": name} for name in clean.states()]}
+    # 2 operating points, 1 repeat: records 4 and 5 of every 6 are the third state
+    gathered = [{"record_id": 6 * specimen + 4} for specimen in range(60)]
+    spread = [{"record_id": record} for record in range(60)]
+    assert traps(replace(clean, config=config, failures=gathered)) == ["state_tied_to_status"]
+    assert traps(replace(clean, config=config, failures=spread)) == []
+
+
+def test_what_follows_from_damage_may_differ_between_states(clean: MeasuredSet) -> None:
+    state = clean.labels["state_id"].astype(float)
+    assert traps(relabelled(clean, snr_lid_x_db=state, contact_loss_share=state, damage_count=state)) == []
+
+
+def test_equal_error_labels_of_all_healthy_specimens_are_found(clean: MeasuredSet) -> None:
+    damaged = ~clean.healthy
+    values = np.where(damaged, clean.labels["pitch_error_um"], 3.0)
+    assert "one_error_draw" in traps(relabelled(clean, pitch_error_um=values))
+    assert traps(relabelled(clean, pitch_error_um=np.zeros(values.size))) == []
+
+
+def test_a_specimen_in_two_splits_is_found(clean: MeasuredSet) -> None:
+    split = clean.labels["split"].copy()
+    split[0] = "train" if split[0] == "test" else "test"
+    assert traps(relabelled(clean, split=split)) == ["specimen_in_two_splits"]
+
+
+def test_noise_that_few_records_share_in_twos_is_found(clean: MeasuredSet) -> None:
+    sketches = [list(row) for row in clean.sketches]
+    for record in (0, 20):
+        sketches[record + 1][1] = sketches[record][1]
+    assert traps(replace(clean, sketches=sketches)) == ["noise_shared_by_records"]
+
+
+def test_a_copied_signal_is_found(clean: MeasuredSet) -> None:
+    checksums = clean.checksums.copy()
+    checksums[5, 1] = checksums[0, 1]
+    assert traps(replace(clean, checksums=checksums)) == ["copied_signal"]
+
+
+def test_kurtosis_alone_that_separates_slight_is_found(clean: MeasuredSet) -> None:
+    kurtosis = clean.values["kurtosis"] + 5.0 * (clean.labels["state"] == "slight")[:, None]
+    assert traps(replace(clean, values={**clean.values, "kurtosis": kurtosis})) == ["slight_separable_by_kurtosis"]
+
+
+def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:
+    states = [{"name": "healthy"}, {"name": "slight", "dynamics": {"integrator": "runge_kutta"}}]
+    assert traps(replace(clean, config={"states": states})) == ["solver_settings_by_state"]
+
+
+def test_missing_columns_of_older_sets_do_no_harm(clean: MeasuredSet) -> None:
+    kept = {
+        *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split", "fault"),
+        *("severity", "damaged_area_mm2", "teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"),
+    }
+    assert traps(replace(clean, labels={k: v for k, v in clean.labels.items() if k in kept})) == []
+
+
+def test_permuting_keeps_cells_whole_and_states_of_a_specimen_together() -> None:
+    specimen, state = np.repeat(np.arange(5), 6), np.tile(np.repeat(np.arange(3), 2), 5)
+    permuted = permuted_states(state, specimen, seed=0, count=50)
+    assert permuted.shape == (50, 30)
+    cells = permuted.reshape(50, 5, 3, 2)
+    assert np.array_equal(cells[..., 0], cells[..., 1])
+    assert np.array_equal(np.sort(cells[..., 0], axis=2), np.broadcast_to(np.arange(3), (50, 5, 3)))
+    assert len({row.tobytes() for row in permuted}) > 40
+
+
+def test_permuting_moves_states_among_specimens_that_have_one_state_each() -> None:
+    specimen, state = np.repeat(np.arange(6), 2), np.repeat([0, 0, 0, 1, 1, 1], 2)
+    permuted = permuted_states(state, specimen, seed=0, count=50)
+    assert np.all(permuted.sum(axis=1) == 6)
+    assert np.array_equal(permuted[:, ::2], permuted[:, 1::2])
+    assert len({row.tobytes() for row in permuted}) > 10
+
+
+def test_told_share_is_one_for_a_copy_and_zero_for_an_independent_code() -> None:
+    state = np.tile(np.arange(3), 4)
+    assert told_share(state, state) == pytest.approx(1.0)
+    assert told_share(np.repeat(np.arange(4), 3), state) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_likeness_is_one_up_to_rotation_and_below_the_bound_for_independent_phases() -> None:
+    rng = np.random.default_rng(2)
+    orders = [18 * h + k for h in range(1, 4) for k in range(-6, 7) if k]
+    first = {order: complex(np.exp(2j * np.pi * rng.random())) for order in orders}
+    turned = {order: 3.0 * value * np.exp(2j * np.pi * order * 0.1234) for order, value in first.items()}
+    # the rotation lies up to 1/4096 off the grid of angles, which turns order 60 by 5 degrees
+    assert likeness(first, turned) == (pytest.approx(1.0, abs=0.01), 36)
+    other = [{order: complex(np.exp(2j * np.pi * rng.random())) for order in orders} for _ in range(200)]
+    assert max(likeness(first, found)[0] for found in other) < chance_bound(36, 200)
