@@ -141,7 +141,7 @@ def test_mistakes_are_named_with_their_key(
 
 def test_a_spall_over_the_whole_face_is_refused() -> None:
     with pytest.raises(ConfigError, match="spalls of pinion tooth 0 that take the whole contact length"):
-        config_with({**BOX, "face_length_mm": 20.0})
+        config_with({**BOX, "face_length_mm": 20.0}, law="linear")
 
 
 def test_an_empty_list_is_refused() -> None:

@@ -24,7 +24,7 @@ DRAWN_PIT = {
 }
 
 
-def config_with(*damages: Mapping[str, Any], seed: int = 5) -> Config:
+def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") -> Config:
     names = ("slight", "moderate", "severe")
     states = [{"name": "healthy"}, *({"name": n, "damage": dict(d)} for n, d in zip(names, damages, strict=False))]
     return load_config(
@@ -38,6 +38,7 @@ def config_with(*damages: Mapping[str, Any], seed: int = 5) -> Config:
                 "pinion": {"teeth": 18, "bore_radius_mm": 10.0},
                 "gear": {"teeth": 47, "bore_radius_mm": 15.0},
             },
+            "dynamics": {"mesh": {"law": law}},
             "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}],
             "states": states,
             "sensors": [{"name": "bearing"}],

@@ -99,6 +99,7 @@ def test_the_plan_says_what_varies_within_a_record(path):
         "variation.speed.start_ratio=0.5",
         "variation.speed.random_rms=0.003",
         "dynamics.unbalance.grade_mm_s=6.3",
+        "dynamics.friction.model=off",
     ]
     overrides = [word for one in varying for word in ("--set", one)]
     summary = json.loads(run("plan", path, *overrides, "--json"))

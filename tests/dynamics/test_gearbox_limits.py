@@ -10,10 +10,11 @@ import pytest
 from siggen.dataset.plan import planned_record
 from siggen.dataset.specimen import draw_specimen
 from siggen.dynamics.casing_structure import bolt_elements
+from siggen.dynamics.equations import no_inputs
 from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.load_lock import locked_load
-from siggen.dynamics.pair_law import FLANK, FRICTION, POSITION, SLIDING
 from siggen.dynamics.pair_motion import PairMotion
+from siggen.dynamics.pair_places import FLANK, FRICTION, POSITION, SLIDING
 from siggen.dynamics.structure import vector
 from siggen.gears.missing_material import MissingMaterial, missing_material
 from siggen.loading import load_config
@@ -90,7 +91,7 @@ def test_a_disturbance_dies_out_where_nothing_excites() -> None:
     states[0] = run.start(0.0)
     states[0, 11 + run.structure.coordinates.index("y_c")] = 1e-3
     states[0, 11 + run.structure.coordinates.index("theta_m")] = 1e-2
-    run.advance(pitches, states)
+    run.advance(pitches, no_inputs(pitches), states)
     moving = [i for i, name in enumerate(run.structure.coordinates) if name[0] in "xy"]
     first, last = (
         np.abs(np.array([run.rate(z, 0.0)[11:] for z in states[at]])) for at in (slice(0, 9), slice(-9, None))

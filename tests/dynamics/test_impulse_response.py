@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from siggen.dynamics.equations import no_inputs
 from siggen.dynamics.linear_motion import LinearMotion
 from siggen.dynamics.modes import natural_modes
 from siggen.dynamics.structure import Structure
@@ -33,7 +34,8 @@ def velocities(structure: Structure, blow: np.ndarray) -> np.ndarray:
     states = np.empty((steps + 1, 2 * n))
     states[0] = run.start(0.0)
     states[0, n:] += np.linalg.solve(structure.mass, blow)
-    run.advance(540.0 * STEP_S * np.arange(steps + 1), states)
+    pitches = 540.0 * STEP_S * np.arange(steps + 1)
+    run.advance(pitches, no_inputs(pitches), states)
     return states[:, n:]
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from siggen.dynamics.friction import constant_friction
 from siggen.dynamics.load_lock import locked_load
-from siggen.dynamics.pair_law import FLANK, FRICTION, SLIDING
 from siggen.dynamics.pair_motion import PairMotion
+from siggen.dynamics.pair_places import FLANK, FRICTION, SLIDING
 from siggen.gears.missing_material import MissingMaterial, missing_material
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
