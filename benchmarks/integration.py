@@ -16,7 +16,7 @@ from benchmarks.timing import Candidate, medians
 from siggen.config import Config, constant
 from siggen.dataset.plan import PlannedRecord, planned_record
 from siggen.dataset.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
-from siggen.dynamics.equations import equations_of_motion
+from siggen.dynamics.equations import equations_of_motion, no_inputs
 from siggen.dynamics.linear_motion import INTEGRATORS
 from siggen.dynamics.mesh_force import mean_mesh_stiffness, mesh_law
 from siggen.dynamics.response import simulate_response
@@ -98,9 +98,9 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 PAIR_CASES = {
-    "friction off": ("dynamics.friction.model=off",),
-    "mixed friction": (),
-    "mixed friction, damping by asperities": ("dynamics.mesh.damping=asperity_share",),
+    "friction off": ("dynamics.friction.model=off", "dynamics.mesh.damping=constant"),
+    "mixed friction": ("dynamics.mesh.damping=constant",),
+    "mixed friction, damping by asperities": (),
 }
 PAIR_GOAL_S = 0.13
 """Per second of signal: 410 000 evaluations of 11 accelerations and two tooth pairs, some 300 ns of arithmetic each."""
@@ -131,7 +131,7 @@ def _pair_loop(config: Config, duration_s: float) -> Callable[[int], object]:
     pitches = np.arange(steps + 1, dtype=np.float64) * (motion.teeth * point.speed_hz * step_s)
     trajectory = np.empty((steps + 1, 2 * len(motion.structure.coordinates)))
     trajectory[0] = motion.start(pitches[0])
-    return lambda _: motion.advance(pitches, trajectory)
+    return lambda _: motion.advance(pitches, no_inputs(pitches), trajectory)
 
 
 def _costs(case: _Case, duration_s: float, rounds: int) -> dict[str, float]:

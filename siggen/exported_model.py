@@ -1,7 +1,6 @@
 """One record's equations of motion as plain arrays, so that anybody can integrate the same record with other tools.
 
-Every key is described in docs/exported_model.md. Arrays of a mesh law are exported field by field under `law.`: what a
-law gains appears here by itself.
+Every key is described in docs/exported_model.md. Numbers and tables of a mesh law stand under `law.`.
 """
 
 from __future__ import annotations
@@ -20,7 +19,9 @@ from siggen.dataset.specimen import draw_operating_point, draw_specimen
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.decimation import half_length
 from siggen.dynamics.equations import Equations
+from siggen.dynamics.law_tables import law_tables
 from siggen.dynamics.motion import Motion
+from siggen.dynamics.pair_law import PairLaw
 from siggen.dynamics.structure import Structure
 from siggen.dynamics.transient import settling_steps
 from siggen.errors import UsageError
@@ -75,7 +76,7 @@ def exported_model(config: Config, record_id: int) -> Model:
         **grid,
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
-        **_fields("law", motion.law),
+        **_law(motion.law),
     }
 
 
@@ -159,10 +160,7 @@ def _time_grid(config: Config, motion: Motion, speed_hz: float, angle_rad: float
     }
 
 
-def _fields(prefix: str, law: Any) -> dict[str, Any]:
-    """Return the fields of a named tuple, those of nested ones behind their name and a dot."""
-    fields: dict[str, Any] = {}
-    for name, value in law._asdict().items():
-        key = f"{prefix}.{name}"
-        fields |= _fields(key, value) if hasattr(value, "_asdict") else {key: value}
-    return fields
+def _law(law: Any) -> dict[str, Any]:
+    """Return numbers and tables of a law: a named tuple of them, or tooth pairs in packed form."""
+    named = law_tables(law) if isinstance(law, PairLaw) else law._asdict()
+    return {f"law.{name}": value for name, value in named.items()}

@@ -13,7 +13,7 @@ from siggen.record_internals import internals_table
 from siggen.simulation import simulate, simulate_specimen
 
 SHORT = ["specimens=1", "duration_s=0.1"]
-STIFF = ["dynamics.friction.model=off"]
+STIFF = ["dynamics.friction.model=off", "dynamics.mesh.damping=constant"]
 
 
 @pytest.fixture(scope="module")

@@ -17,4 +17,4 @@ def test_roughness_beyond_the_fit_is_noted_for_the_lands_inside_damage() -> None
 
 
 def test_a_set_without_oil_has_no_notes() -> None:
-    assert notes("dynamics.friction.model=constant") == ""
+    assert notes("dynamics.friction.model=constant", "dynamics.mesh.damping=constant") == ""
