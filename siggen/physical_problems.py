@@ -130,7 +130,8 @@ def _coupling_problems(gears: Gears, stiffness: Stiffness | None, pairs: list[Ge
             # The bodies' twist grows with Poisson's ratio, the contact's compliance falls.
             mesh_stiffness(replace(pair, poisson_ratio=largest), _one_pitch_rad(pair), options)
         except StiffTeethError:
-            received = f"'{stiffness.coupling}' with beam: {stiffness.beam}, whose teeth deflect less than their neighbour deflects them"
+            stiff = "whose teeth deflect less than their neighbour deflects them"
+            received = f"'{stiffness.coupling}' with beam: {stiffness.beam}, {stiff}"
             yield Problem(
                 "stiffness.coupling", received, "allowed: none, or larger bores, or a softer beam such as calibrated"
             )
