@@ -5,9 +5,13 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from siggen.config import (
     ClusteredPits,
@@ -20,18 +24,21 @@ from siggen.config import (
     ParsedConfig,
     Spalls,
     SpallSize,
+    Stiffness,
     bounds,
     corners,
 )
 from siggen.config.damage import PitSize
 from siggen.errors import Problem
+from siggen.gears.coupled_pairs import StiffTeethError
 from siggen.gears.damage import Damage, Pit, Spall, damage_problems, flank_heights
 from siggen.gears.geometry import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.iso_1328 import outside_iso_1328
+from siggen.gears.stiffness import mesh_stiffness
 from siggen.spall_physics import spall_on_tooth
 from siggen.specimen_contact import damage_is_geometry
 from siggen.specimen_friction import roughness_problem
-from siggen.specimen_physics import gear_pair, pit_height_m
+from siggen.specimen_physics import gear_pair, pit_height_m, stiffness_options
 from siggen.variation_problems import variation_problems
 
 PROBE_M = 1e-9
@@ -47,6 +54,9 @@ KEYS = {
 
 GO_ON = {"contact": ", or dynamics.mesh.law: pairs with dynamics.mesh.damage: all or geometry"}
 """What else to do about a problem, by its name."""
+
+PLACES = 65
+"""Angles over one pitch at which a coupling is checked: compliances change smoothly between."""
 
 SIZE_KEYS = ("face_length_mm", "profile_length_mm", "lower_width_mm", "upper_width_mm", "depth_mm")
 SPALL_KEYS = {
@@ -89,6 +99,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     if parsed.sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
     problems += _friction_problems(dynamics)
+    problems += _coupling_problems(gears, parsed.sections.get("stiffness"), sound)
     problems += variation_problems(parsed.sections, sound)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
@@ -107,6 +118,27 @@ def _friction_problems(dynamics: Dynamics | None) -> list[Problem]:
         return []
     received = f"{dynamics.friction.roughness_um} with fluid: {dynamics.friction.fluid}"
     return [Problem("dynamics.friction.roughness_um", received, f"allowed: what the model holds for: {allowed}")]
+
+
+def _coupling_problems(gears: Gears, stiffness: Stiffness | None, pairs: list[GearPair]) -> Iterator[Problem]:
+    """Yield a coupling that the teeth of a beam are too stiff for; damage, which softens them, never makes them so."""
+    if stiffness is None or stiffness.coupled_by == "none":
+        return
+    options, largest = stiffness_options(stiffness), bounds(gears.poisson_ratio)[1]
+    for pair in pairs:
+        try:
+            # The bodies' twist grows with Poisson's ratio, the contact's compliance falls.
+            mesh_stiffness(replace(pair, poisson_ratio=largest), _one_pitch_rad(pair), options)
+        except StiffTeethError:
+            stiff = "whose teeth deflect less than their neighbour deflects them"
+            received = f"'{stiffness.coupling}' with beam: {stiffness.beam}, {stiff}"
+            yield Problem(
+                "stiffness.coupling", received, "allowed: none, or larger bores, or a softer beam such as calibrated"
+            )
+
+
+def _one_pitch_rad(pair: GearPair) -> NDArray[np.float64]:
+    return np.linspace(0.0, 2.0 * math.pi / pair.pinion.teeth, PLACES)
 
 
 def _without_material(gears: Gears) -> Gears:

@@ -38,7 +38,7 @@ def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
         stiffness.foundation_angle,
         stiffness.hertz,
         stiffness.hertz_force_n,
-        stiffness.coupling,
+        stiffness.coupled_by,
     )
 
 

@@ -119,7 +119,7 @@ def _told(value: Any) -> Any:
         case Section():
             found: dict[str, Any] = {}
             for name, field in type(value).model_fields.items():
-                item, first = getattr(value, name), uncounted(field)
+                item, first = value.meant(name), uncounted(field)
                 told = _told(item)
                 # A section that has always been there counts by its keys, whose defaults may have changed.
                 counts = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -11,6 +11,10 @@ class Section(BaseModel):
     """A mapping of the YAML file; keys are the attributes."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    def meant(self, key: str) -> Any:
+        """Return what the value of a key stands for, which is what counts in an identity; as a rule the value."""
+        return getattr(self, key)
 
 
 Real = Annotated[float, Field(strict=True)]

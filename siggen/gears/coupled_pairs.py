@@ -17,6 +17,10 @@ from siggen.gears.stiffness_options import StiffnessOptions
 FloatArray = NDArray[np.float64]
 
 
+class StiffTeethError(ValueError):
+    """Teeth by themselves are stiffer than their effect on a neighbour: one of the models does not fit the gear."""
+
+
 def approach_forces(
     pair: GearPair, options: StiffnessOptions, newest_m: FloatArray, stiffness_n_per_m: FloatArray
 ) -> FloatArray:
@@ -33,7 +37,7 @@ def approach_forces(
 
     Raises
     ------
-    ValueError
+    StiffTeethError
         If a pair would have to pull: the bodies deflect a neighbour more than the models deflect the tooth itself.
     """
     count = stiffness_n_per_m.shape[-2]
@@ -53,7 +57,7 @@ def approach_forces(
         forces = np.moveaxis(np.linalg.solve(matrix, np.ones((*matrix.shape[:-1], 1)))[..., 0], -1, -2)
     own_is_largest = np.all(np.argmax(matrix, axis=-1) == np.arange(count))
     if not (own_is_largest and np.all(forces > 0.0)):
-        raise ValueError(
+        raise StiffTeethError(
             "coupling 'body': a tooth's own compliance is below its neighbour's effect on it; allowed: stiffness "
             "models whose teeth and body are softer, such as beam 'calibrated'"
         )

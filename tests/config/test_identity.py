@@ -94,10 +94,10 @@ def test_changes_all_differ_from_each_other():
 
 @pytest.mark.parametrize(("path", "value"), [*CHANGES[:14], *CHANGES[16:]])
 def test_the_canonical_form_gives_an_equal_configuration(path, value):
-    first = config(**{path: value})
-    again = parse(first.canonical())
-    assert again.config == first
-    assert again.config.identity == first.identity
+    made = config(**{path: value})
+    again = parse(made.canonical())
+    assert again.config == made
+    assert again.config.identity == made.identity
 
 
 def test_the_written_file_gives_an_equal_configuration_and_the_same_bytes():
@@ -118,8 +118,11 @@ def test_a_configuration_cannot_be_changed_and_travels_between_processes():
     assert isinstance(travelled, Config)
 
 
-GOLDEN = "df31554f2d4f0fa6fd71e4978d19ae8d3f569a4a040cfa4befcec63fb0759649"
+GOLDEN = "1c6375a541ae384fcafe26dea8fb18b5991779c324ddab8d8b740276932b4a98"
 """Of the minimal configuration. If it changes, every set that exists is orphaned."""
+
+UNCOUPLED_GOLDEN = "df31554f2d4f0fa6fd71e4978d19ae8d3f569a4a040cfa4befcec63fb0759649"
+"""Of the minimal configuration when teeth did not couple unless told to."""
 
 FIRST_GOLDEN = "36cde563b6a956719c5b3e55e7b0c5f504abd4e091e4710529d9c00d61512e84"
 """Of the minimal configuration with the first defaults written out, as the config.yaml of the first sets has them."""
@@ -143,9 +146,45 @@ FIRST_DYNAMICS = {
 }
 
 
+FIRST_STIFFNESS = {
+    "beam": "calibrated",
+    "foundation": "sainsot",
+    "foundation_angle": "auto",
+    "hertz": "linear",
+    "hertz_force_n": None,
+    "table_points": 2049,
+}
+"""Written out before there was a coupling: a section that names all of these and no coupling has none."""
+
+
+def first(**dynamics):
+    """Return the minimal configuration as the config.yaml of the first sets has it."""
+    return config(dynamics={**FIRST_DYNAMICS, **dynamics}, stiffness=FIRST_STIFFNESS)
+
+
 def test_the_identity_of_a_given_configuration_never_changes():
     assert config().identity == GOLDEN
-    assert config(dynamics=FIRST_DYNAMICS).identity == FIRST_GOLDEN
+    assert config(stiffness__coupling="none").identity == UNCOUPLED_GOLDEN
+    assert config(stiffness=FIRST_STIFFNESS).identity == UNCOUPLED_GOLDEN
+    assert first().identity == FIRST_GOLDEN
+
+
+def test_a_section_written_before_the_coupling_has_none_and_any_other_couples_its_calibrated_teeth():
+    assert config(stiffness=FIRST_STIFFNESS).stiffness.coupled_by == "none"
+    for key in FIRST_STIFFNESS:
+        shorter = {name: value for name, value in FIRST_STIFFNESS.items() if name != key}
+        assert config(stiffness=shorter).stiffness.coupled_by == "body"
+
+
+@pytest.mark.parametrize(
+    ("beam", "named"), [("calibrated", "body"), ("rack_trochoid", "none"), ("base_circle", "none")]
+)
+def test_naming_the_coupling_that_a_beam_brings_along_leaves_the_identity(beam, named):
+    auto = config(stiffness__beam=beam)
+    other = "none" if named == "body" else "body"
+    assert auto.stiffness.coupled_by == named
+    assert config(stiffness__beam=beam, stiffness__coupling=named).identity == auto.identity
+    assert config(stiffness__beam=beam, stiffness__coupling=other).identity != auto.identity
 
 
 @pytest.mark.parametrize("key", FIRST_DYNAMICS)
@@ -154,7 +193,7 @@ def test_a_first_default_that_is_not_named_is_another_set(key):
         named = {name: value for name, value in FIRST_DYNAMICS.items() if name != key} | (
             {"integrator": "auto"} if key == "mesh" else {}
         )
-        assert config(dynamics=named).identity != FIRST_GOLDEN
+        assert config(dynamics=named, stiffness=FIRST_STIFFNESS).identity != FIRST_GOLDEN
 
 
 def test_a_key_at_its_default_does_not_count_wherever_it_stands(monkeypatch):
@@ -170,7 +209,8 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
     # keys may be added; a default that changes gives other records under the same identity
     canonical = config().canonical()
     assert (
-        canonical["stiffness"] | {"beam": "calibrated", "foundation": "sainsot", "table_points": 2049}
+        canonical["stiffness"]
+        | {"beam": "calibrated", "foundation": "sainsot", "table_points": 2049, "coupling": "auto"}
         == canonical["stiffness"]
     )
     known = {
@@ -190,8 +230,8 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
 
 @pytest.mark.parametrize("integrator", ["auto", "product"])
 def test_naming_the_integrator_of_the_linear_law_leaves_the_identity(integrator):
-    assert config(dynamics={**FIRST_DYNAMICS, "integrator": integrator}).identity == FIRST_GOLDEN
-    assert config(dynamics={**FIRST_DYNAMICS, "integrator": "runge_kutta"}).identity != FIRST_GOLDEN
+    assert first(integrator=integrator).identity == FIRST_GOLDEN
+    assert first(integrator="runge_kutta").identity != FIRST_GOLDEN
 
 
 def test_identities_count_from_the_first_defaults():
