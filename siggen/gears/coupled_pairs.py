@@ -33,7 +33,7 @@ def approach_forces(
     newest_m : (k,)
         Positions of the pair that entered last [m].
     stiffness_n_per_m : (..., q, k)
-        Stiffness of each pair alone, the newest first [N/m].
+        Stiffness of each pair alone, the newest first; 0 where a pair has no contact [N/m].
 
     Raises
     ------
@@ -43,24 +43,25 @@ def approach_forces(
     count = stiffness_n_per_m.shape[-2]
     if count == 1 or options.coupling == "none":
         return stiffness_n_per_m
-    matrix = np.zeros((*stiffness_n_per_m.shape[:-2], newest_m.size, count, count))
-    for i in range(count):
-        matrix[..., i, i] = 1.0 / stiffness_n_per_m[..., i, :]
+    cross = np.zeros((count, count, newest_m.size))
     for later in range(count - 1):
         between = body_coupling(pair, options, newest_m + later * pair.base_pitch_m)
         for apart in range(1, count - later):
-            matrix[..., later, later + apart] = matrix[..., later + apart, later] = between[apart - 1]
+            cross[later, later + apart] = cross[later + apart, later] = between[apart - 1]
+    # In stiffness, not compliance: a pair that damage through the face leaves without contact carries none.
+    share = cross * stiffness_n_per_m[..., np.newaxis, :, :]
     if count == 2:
-        own, mate, cross = matrix[..., 0, 0], matrix[..., 1, 1], matrix[..., 0, 1]
-        forces = np.stack([mate - cross, own - cross], axis=-2) / (own * mate - cross * cross)[..., np.newaxis, :]
+        own, mate = share[..., 1, 0, :], share[..., 0, 1, :]
+        deflection = np.stack([1.0 - mate, 1.0 - own], axis=-2) / (1.0 - own * mate)[..., np.newaxis, :]
     else:
-        forces = np.moveaxis(np.linalg.solve(matrix, np.ones((*matrix.shape[:-1], 1)))[..., 0], -1, -2)
-    own_is_largest = np.all(np.argmax(matrix, axis=-1) == np.arange(count))
-    if not (own_is_largest and np.all(forces > 0.0)):
+        matrix = np.eye(count) + np.moveaxis(share, -1, -3)
+        deflection = np.moveaxis(np.linalg.solve(matrix, np.ones((*matrix.shape[:-1], 1)))[..., 0], -1, -2)
+    if not (np.all(share < 1.0) and np.all(deflection > 0.0)):
         raise StiffTeethError(
             "coupling 'body': a tooth's own compliance is below its neighbour's effect on it; allowed: stiffness "
             "models whose teeth and body are softer, such as beam 'calibrated'"
         )
+    forces: FloatArray = stiffness_n_per_m * deflection
     return forces
 
 
