@@ -13,9 +13,13 @@ class Purpose(IntEnum):
     BOOTSTRAP = 1
     PERMUTATION = 2
     WINDOWS = 3
+    LOADER = 4
+    AUGMENTATION = 5
+    FOLDS = 6
+    LEARNING_CURVE = 7
 
 
-def generator(seed: int, purpose: Purpose, owner: int = 0) -> np.random.Generator:
-    """Return the generator of one purpose and owner (repeat, epoch ...); equal arguments give equal streams."""
-    sequence = np.random.SeedSequence(seed, spawn_key=(int(purpose), owner))
+def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:
+    """Return the generator of one purpose, owner (repeat, epoch ...) and part; equal arguments give equal streams."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(int(purpose), owner, *part))
     return np.random.Generator(np.random.Philox(sequence))
