@@ -15,7 +15,7 @@ from benchmarks.machine import load_average, machine_lines
 from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
-TOPICS = ("startup", "stiffness", "integration", "record", "sensing", "storage", "workers", "quickstart")
+TOPICS = ("startup", "stiffness", "integration", "record", "sensing", "storage", "loader", "workers", "quickstart")
 
 
 def main() -> int:

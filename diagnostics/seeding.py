@@ -14,9 +14,13 @@ class Purpose(IntEnum):
     PERMUTATION = 2
     WINDOWS = 3
     HALVES = 4
+    LOADER = 5
+    AUGMENTATION = 6
+    FOLDS = 7
+    LEARNING_CURVE = 8
 
 
-def generator(seed: int, purpose: Purpose, owner: int = 0) -> np.random.Generator:
-    """Return the generator of one purpose and owner (repeat, epoch ...); equal arguments give equal streams."""
-    sequence = np.random.SeedSequence(seed, spawn_key=(int(purpose), owner))
+def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:
+    """Return the generator of one purpose, owner (repeat, epoch ...) and part; equal arguments give equal streams."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(int(purpose), owner, *part))
     return np.random.Generator(np.random.Philox(sequence))

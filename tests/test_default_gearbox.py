@@ -35,7 +35,8 @@ def test_its_teeth_rub_as_lubricated_ones_do() -> None:
 
 
 def test_all_supports_swing() -> None:
-    found = specimen_modes(load_config(minimal()))
+    # As stiff as the plain sum of pairs: the softer the mesh, the more the supports count.
+    found = specimen_modes(load_config(minimal(stiffness__coupling="none")))
     assert len(found.coordinates) == 11
     assert (np.diff(found.modes.frequency_hz) > 0.0).all()
     inertia = dict(zip(found.coordinates, np.diag(found.mass), strict=True))

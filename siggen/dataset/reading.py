@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,15 @@ from siggen.dataset.record import TACHO_COLUMN, Channel, Column, signal_channels
 from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.errors import DatasetError, UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class RowGroup:
+    """The smallest piece of a set that is decoded at once: number `number` of `file`, with `rows` records."""
+
+    file: str
+    number: int
+    rows: int
 
 
 class Dataset:
@@ -89,6 +99,34 @@ class Dataset:
             If the split or a column does not exist.
         """
         yield from self._batches("file", split, columns, batch_rows)
+
+    def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
+        """Return the row groups of a split, or of all splits, in the order of the labels; `row_group` reads one.
+
+        Raises
+        ------
+        UsageError
+            If the split does not exist.
+        """
+        found = []
+        for shard in self._shards(split):
+            with self._parquet(shard["file"]) as file:
+                footer = file.metadata
+                found += [RowGroup(shard["file"], k, footer.row_group(k).num_rows) for k in range(file.num_row_groups)]
+        return tuple(found)
+
+    def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
+        """Return the rows of one row group with signals, by any process and in any order.
+
+        Raises
+        ------
+        UsageError
+            If a column does not exist.
+        """
+        with self._parquet(group.file) as file:
+            self._check_columns(file.schema_arrow, columns)
+            table = file.read_row_group(group.number, columns=_as_list(columns), use_threads=False)
+        return table.combine_chunks().to_batches()[0]
 
     def internals(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None

@@ -13,11 +13,16 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from siggen.dataset.reading import RowGroup
+
 STATES = ("healthy", "slight", "severe")
 DEPTH = {"healthy": 0.0, "slight": 0.15, "severe": 0.5}
 AREA_MM2 = {"healthy": 0.0, "slight": 1.0, "severe": 8.0}
 TEETH = (18, 47)
 FS_HZ = 12_800.0
+ROWS = 7
+"""Records of a row group: no divisor of the 36 of the training split, so that the last group is smaller."""
+
 CHANNELS = ("bearing_vertical", "bearing_horizontal")
 
 
@@ -73,6 +78,14 @@ class MemoryDataset:
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
     ) -> Iterator[pa.RecordBatch]:
         yield from self.labels(split, columns).combine_chunks().to_batches(max_chunksize=batch_rows)
+
+    def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
+        rows = self.labels(split, ["record_id"]).num_rows
+        return tuple(RowGroup(split or "", k, min(ROWS, rows - k * ROWS)) for k in range(-(-rows // ROWS)))
+
+    def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
+        part = self.labels(group.file or None, columns).slice(group.number * ROWS, group.rows)
+        return part.combine_chunks().to_batches()[0]
 
     def record(self, record_id: int) -> dict[str, Any]:
         row = self.table.filter(pc.equal(self.table.column("record_id"), record_id)).to_pylist()[0]
