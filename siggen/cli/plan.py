@@ -38,6 +38,7 @@ def plan(
     console = Console()
     console.print(_overview(summary))
     console.print(_states(summary))
+    console.print(summary["stiffness_tables"], highlight=False, markup=False)
     for note in (*summary["stiffness_notes"], *summary["lubrication_notes"]):
         console.print(f"note: {note}", highlight=False, markup=False)
 
@@ -47,6 +48,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.contact_notes import contact_notes
     from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen_physics import model_notes
+    from siggen.stiffness_curves import table_error_text
     from siggen.variation_notes import variation_notes
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
@@ -71,6 +73,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
+        "stiffness_tables": table_error_text(config),
         "stiffness_notes": list(model_notes(config)),
         "manufacture": _manufacture(config),
         "variation": list(variation_notes(config)),

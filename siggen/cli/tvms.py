@@ -39,7 +39,7 @@ def tvms(
     from siggen.dataset.table_file import check_table_file, write_table_file
     from siggen.loading import load_config
     from siggen.specimen_physics import model_notes
-    from siggen.stiffness_curves import curve_table, stiffness_curves, worst_table_error
+    from siggen.stiffness_curves import curve_table, stiffness_curves, table_error_text
 
     check_table_file(out)
     if png is not None:
@@ -49,11 +49,7 @@ def tvms(
     write_table_file(curve_table(curves, parts=parts), out)
     if png is not None:
         save_stiffness_figure(curves, png, parts=parts)
-    typer.echo(
-        f"tables of {usable.stiffness.table_points} points, as simulations use them, interpolate this stiffness within "
-        f"{100.0 * worst_table_error(usable, specimen):.2g} %",
-        err=True,
-    )
+    typer.echo(table_error_text(usable, specimen), err=True)
     for note in model_notes(usable):
         typer.echo(f"note: {note}", err=True)
     typer.echo(str(out))

@@ -15,21 +15,17 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.gears import involute
 from siggen.gears.covering import hidden_rows, hides
 from siggen.gears.geometry import GearPair
-from siggen.gears.kinks import section_kinks
 from siggen.gears.outlines import COLUMNS, Ellipse, Outline
 from siggen.gears.spur_gear import SpurGear
-from siggen.gears.union import lengths_covered
+from siggen.gears.whole_loss import takes_whole_contact
 
 FloatArray = NDArray[np.float64]
 
 FLOORS = ("flat", "dish")
 SPALL_FLOORS = (*FLOORS, "length_squared")
 READINGS = ("axial", "radial", "arc")
-WHOLE_FACE = 1e-12
-"""Remaining share of the face width below which a contact counts as lost: rounding of the union's ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,12 +287,11 @@ def lost_contacts(pair: GearPair, damage: Damage) -> Iterator[tuple[str, int, in
         for which in ("pinion", "gear")
         for tooth in damaged_teeth(damage, which)
     }
-    limit = pair.face_width_m * (1.0 - WHOLE_FACE)
     none = np.empty((0, COLUMNS))
     whole: set[tuple[str, int]] = set()
     for (which, tooth), own in rows.items():
         first, second = (own, none) if which == "pinion" else (none, own)
-        if _largest_middle_loss(pair, first, second) >= limit:
+        if takes_whole_contact(pair, first, second):
             whole.add((which, tooth))
             yield which, tooth, None
     shared = gcd(pair.pinion.teeth, pair.gear.teeth)
@@ -304,30 +299,5 @@ def lost_contacts(pair: GearPair, damage: Damage) -> Iterator[tuple[str, int, in
         for j in damaged_teeth(damage, "gear"):
             if (i - j) % shared or ("pinion", i) in whole or ("gear", j) in whole:
                 continue
-            if _largest_middle_loss(pair, rows["pinion", i], rows["gear", j]) >= limit:
+            if takes_whole_contact(pair, rows["pinion", i], rows["gear", j]):
                 yield "pinion", i, j
-
-
-def _largest_middle_loss(pair: GearPair, pinion_rows: FloatArray, gear_rows: FloatArray) -> float:
-    """Return the largest loss half-way between kinks of the path of contact [m].
-
-    Enough to find a whole loss: where the union closes or opens, two outlines cross, so a closed stretch reaches from
-    kink to kink.
-    """
-    pinion, gear, width = pair.pinion, pair.gear, pair.face_width_m
-    length = pair.line_of_action_m
-    marks = []
-    if pinion_rows.size:
-        rolls = involute.rolls_at_heights(
-            section_kinks(pinion_rows, width), pinion.base_radius_m, pinion.base_half_angle_rad
-        )
-        marks.append(rolls * pinion.base_radius_m)
-    if gear_rows.size:
-        rolls = involute.rolls_at_heights(section_kinks(gear_rows, width), gear.base_radius_m, gear.base_half_angle_rad)
-        marks.append(length - rolls * gear.base_radius_m)
-    ends = [pair.contact_start_m, pair.contact_end_m]
-    cuts = np.unique(np.clip(np.concatenate([*marks, np.array(ends)]), ends[0], ends[1]))
-    middle = 0.5 * (cuts[1:] + cuts[:-1])
-    pinion_height = pinion.height_m(middle / pinion.base_radius_m)
-    gear_height = gear.height_m((length - middle) / gear.base_radius_m)
-    return float(np.max(lengths_covered(pinion_height, pinion_rows, gear_height, gear_rows, width)))

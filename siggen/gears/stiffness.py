@@ -16,11 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from siggen.gears import involute
 from siggen.gears.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
 from siggen.gears.coupled_pairs import coupled_sum
-from siggen.gears.damage import WHOLE_FACE, Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
+from siggen.gears.damage import Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
 from siggen.gears.geometry import GearPair
 from siggen.gears.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
 from siggen.gears.stiffness_options import StiffnessOptions
 from siggen.gears.union import lengths_covered
+from siggen.gears.whole_loss import WHOLE_FACE
 
 __all__ = [
     "PairCompliance",

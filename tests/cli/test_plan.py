@@ -70,6 +70,19 @@ def test_the_table_shows_identity_splits_and_size(path):
         assert part in text
 
 
+def test_the_error_of_the_stiffness_tables_is_told_and_falls_with_their_points(path):
+    found = {}
+    for law, points in (("linear", 129), ("linear", 2049), ("pairs", 129)):
+        chosen = ("--set", f"stiffness.table_points={points}", "--set", f"dynamics.mesh.law={law}")
+        said = json.loads(run("plan", path, *chosen, "--json"))["stiffness_tables"]
+        assert f"tables of {points} points" in said
+        found[law, points] = float(said.split("within ")[1].removesuffix(" %"))
+        assert ("healthy teeth" if law == "pairs" else "all states") in said
+    assert 0.0 < found["linear", 2049] < 0.5 * found["linear", 129]
+    # Pits' square-root ends are what tables follow worst; with pairs they are no part of them.
+    assert 0.0 < found["pairs", 129] < found["linear", 129]
+
+
 def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
     assert plan_summary(config())["manufacture"] == "perfect gears"
     override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_gear: 7, draw: state}")
