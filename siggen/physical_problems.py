@@ -92,7 +92,8 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     sound = [pair for pair in pairs if not geometry_problems(pair)]
     flanks = list({_without_bores(pair): pair for pair in sound}.values())
     dynamics: Dynamics | None = parsed.sections.get("dynamics")
-    through_face = dynamics is not None and damage_is_geometry(dynamics)
+    # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
+    through_face = dynamics is None or damage_is_geometry(dynamics)
     for index, state in parsed.sections.get("states", {}).items():
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
