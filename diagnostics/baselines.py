@@ -7,11 +7,12 @@ specimens; test specimens are touched once. Source: standard literature.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from diagnostics.calibration import calibrated, fitted_temperature
 from diagnostics.evaluation import Predictions, macro_auroc
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.seeding import Purpose, generator
@@ -37,9 +38,11 @@ class FeatureClassifier:
     features, classes : tuple of str
         Columns it takes and states in the order of its probabilities.
     strength : float
-        Chosen C.
+        Chosen C; rounds of boosting.
     note : str
         What was not as it should be (no validation specimens), or empty.
+    temperature : float
+        Applied to the probabilities, see `diagnostics.calibration`; 1 leaves them.
     """
 
     pipeline: Any
@@ -47,10 +50,23 @@ class FeatureClassifier:
     classes: tuple[str, ...]
     strength: float
     note: str
+    temperature: float = 1.0
 
     def predict(self, matrix: FeatureMatrix) -> Predictions:
         """Return the probabilities of records; states that training lacked get zero."""
-        return _predictions(self.pipeline, matrix.columns(self.features), self.classes)
+        found = _predictions(self.pipeline, matrix.columns(self.features), self.classes)
+        return calibrated(found, self.temperature)
+
+
+def calibrated_classifier(
+    model: FeatureClassifier, matrix: FeatureMatrix, split: SpecimenSplit, target: np.ndarray | None = None
+) -> FeatureClassifier:
+    """Return the classifier with the temperature that suits the validation specimens (1 where there are none)."""
+    if not split.validation.any():
+        return model
+    found = model.predict(matrix.rows(split.validation))
+    truth = found.truth if target is None else target[split.validation]
+    return replace(model, temperature=fitted_temperature(replace(found, truth=truth)))
 
 
 def _predictions(pipeline: Any, matrix: FeatureMatrix, classes: tuple[str, ...]) -> Predictions:
@@ -64,7 +80,8 @@ def state_index(matrix: FeatureMatrix, classes: tuple[str, ...]) -> np.ndarray:
     return np.array([classes.index(state) for state in matrix.labels["state"].tolist()], dtype=np.int64)
 
 
-def _pipeline(strength: float) -> Any:
+def logistic_pipeline(strength: float = DEFAULT_STRENGTH) -> Any:
+    """Return an unfitted pipeline: medians for undefined values, standardisation, logistic regression."""
     from sklearn.impute import SimpleImputer
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import make_pipeline
@@ -94,13 +111,13 @@ def train_classifier(
     truth = state_index(matrix, split.classes) if target is None else target
     train, validation = matrix.rows(split.train), matrix.rows(split.validation)
     if not split.validation.any():
-        pipeline = _pipeline(DEFAULT_STRENGTH).fit(train.values, truth[split.train])
+        pipeline = logistic_pipeline().fit(train.values, truth[split.train])
         note = f"no validation specimens: C = {DEFAULT_STRENGTH} was not chosen but taken as it is"
         return FeatureClassifier(pipeline, matrix.names, split.classes, DEFAULT_STRENGTH, note)
     best: tuple[float, float, Any] | None = None
     ones = np.ones((1, int(split.validation.sum())))
     for strength in STRENGTHS:
-        pipeline = _pipeline(strength).fit(train.values, truth[split.train])
+        pipeline = logistic_pipeline(strength).fit(train.values, truth[split.train])
         found = _predictions(pipeline, validation, split.classes)
         judged = Predictions(found.classes, truth[split.validation], found.probability, found.specimen)
         area = float(np.nan_to_num(macro_auroc(judged, ones)[0], nan=0.5))

@@ -27,6 +27,7 @@ def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identit
         "classes": model.classes,
         "strength": model.strength,
         "note": model.note,
+        "temperature": model.temperature,
         "settings": asdict(settings),
         "identity": identity,
     }
@@ -61,5 +62,10 @@ def load_classifier(folder: Path) -> FeatureClassifier:
         raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
     pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
     return FeatureClassifier(
-        pipeline, tuple(facts["features"]), tuple(facts["classes"]), float(facts["strength"]), str(facts["note"])
+        pipeline=pipeline,
+        features=tuple(facts["features"]),
+        classes=tuple(facts["classes"]),
+        strength=float(facts["strength"]),
+        note=str(facts["note"]),
+        temperature=float(facts.get("temperature", 1.0)),
     )

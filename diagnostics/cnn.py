@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
 from torch import nn
 
+from diagnostics.augmentation import Augmentation, augmented
+from diagnostics.calibration import calibrated
 from diagnostics.evaluation import Predictions
 from diagnostics.seeding import Purpose, generator
 from diagnostics.splits import SpecimenSplit
@@ -46,6 +48,10 @@ class TrainingSettings:
         Windows per step.
     learning_rate, weight_decay : float
         Of AdamW.
+    augmentation : Augmentation or None
+        Random paths and noise on training windows; None shows them as they are.
+    device : str
+        `cpu`, or `cuda` with mixed precision.
     """
 
     most_epochs: int = 100
@@ -54,6 +60,8 @@ class TrainingSettings:
     batch: int = 32
     learning_rate: float = 2e-3
     weight_decay: float = 0.1
+    augmentation: Augmentation | None = field(default_factory=Augmentation)
+    device: str = "cpu"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +80,8 @@ class TrainedNetwork:
         Cross entropy by epoch; empty without validation specimens.
     note : str
         What was not as it should be, or empty.
+    temperature : float
+        Applied to the mean probabilities of a record; 1 leaves them.
     """
 
     network: WideKernelNetwork
@@ -80,6 +90,7 @@ class TrainedNetwork:
     epochs: int
     validation_loss: tuple[float, ...]
     note: str
+    temperature: float = 1.0
 
 
 class WideKernelNetwork(nn.Module):
@@ -147,6 +158,7 @@ def train_network(
         torch.manual_seed(seed)
         network = WideKernelNetwork(len(records.channels), len(split.classes), records.settings.samples_per_tooth)
         _normalise(network, records, np.flatnonzero(split.train))
+        network.to(chosen.device)
         return _fit(network, records, target, split, seed, chosen, advance)
 
 
@@ -196,7 +208,7 @@ def _fit(
         elif epoch - best_epoch >= settings.patience:
             break
     network.load_state_dict(best_weights)
-    network.eval()
+    network.to("cpu").eval()  # judged and saved there, whatever it was trained on
     note = (
         ""
         if validation.size
@@ -217,6 +229,8 @@ def _run_epoch(
     network.train()
     per_record = max(3, -(-settings.windows_per_epoch // train.size))
     windows = drawn_windows(records, train, per_record, rng)
+    if settings.augmentation:
+        windows = augmented(windows, settings.augmentation, rng)
     labels = np.repeat(target[train], per_record)
     order = rng.permutation(labels.size)
     for start in range(0, labels.size, settings.batch):
@@ -224,9 +238,18 @@ def _run_epoch(
         if batch.size < 2 and labels.size > 1:  # batch normalisation is undefined on a single window
             continue
         optimiser.zero_grad()
-        logits = network(torch.from_numpy(windows[batch]))
-        nn.functional.cross_entropy(logits, torch.from_numpy(labels[batch])).backward()
+        with _precision(settings.device):
+            logits = network(torch.from_numpy(windows[batch]).to(settings.device))
+        truth = torch.from_numpy(labels[batch]).to(settings.device)
+        nn.functional.cross_entropy(logits.float(), truth).backward()
         optimiser.step()
+
+
+def _precision(device: str) -> AbstractContextManager[None]:
+    """Return bfloat16 where it is fast; its range is that of float32, so that gradients need no scaling."""
+    if device == "cpu":
+        return nullcontext()
+    return torch.autocast(device, dtype=torch.bfloat16)
 
 
 def _weights(network: WideKernelNetwork) -> dict[str, torch.Tensor]:
@@ -248,13 +271,14 @@ def _loss(network: WideKernelNetwork, windows: torch.Tensor, labels: torch.Tenso
 def _logits(network: WideKernelNetwork, windows: torch.Tensor) -> torch.Tensor:
     network.eval()
     with torch.no_grad():
-        return torch.cat([network(part) for part in windows.split(JUDGING_BATCH)])
+        device = network.mean.device
+        return torch.cat([network(part.to(device)).float().cpu() for part in windows.split(JUDGING_BATCH)])
 
 
 def network_predictions(
     trained: TrainedNetwork, records: OrderRecords, chosen: np.ndarray, target: np.ndarray, specimen: np.ndarray
 ) -> Predictions:
-    """Return one vote per record: the mean of its windows' class probabilities.
+    """Return one vote per record: the mean of its windows' class probabilities, at the network's temperature.
 
     Parameters
     ----------
@@ -271,4 +295,5 @@ def network_predictions(
     for position in chosen:
         logits = _logits(trained.network, torch.from_numpy(record_windows(records, position)))
         votes.append(torch.softmax(logits.double(), dim=1).mean(dim=0).numpy())
-    return Predictions(trained.classes, target[chosen], np.stack(votes), specimen[chosen])
+    probability = np.stack(votes) if votes else np.empty((0, len(trained.classes)))
+    return calibrated(Predictions(trained.classes, target[chosen], probability, specimen[chosen]), trained.temperature)

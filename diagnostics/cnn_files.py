@@ -32,6 +32,8 @@ class NetworkFile:
         Normalisation per channel, already inside the network.
     identity : str
         Identity of the set it was trained on.
+    temperature : float
+        Applied to the mean probabilities of a record's windows, see `diagnostics.calibration`; not in the network.
     """
 
     classes: tuple[str, ...]
@@ -40,6 +42,7 @@ class NetworkFile:
     mean_m_s2: tuple[float, ...]
     scale_m_s2: tuple[float, ...]
     identity: str
+    temperature: float = 1.0
 
 
 def describe_network(
@@ -48,7 +51,7 @@ def describe_network(
     """Return what the file of a trained network says about it."""
     network = trained.network
     mean, scale = (tuple(float(x) for x in buffer.flatten()) for buffer in (network.mean, network.scale))
-    return NetworkFile(trained.classes, channels, windows, mean, scale, identity)
+    return NetworkFile(trained.classes, channels, windows, mean, scale, identity, trained.temperature)
 
 
 def save_network(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:
@@ -82,7 +85,8 @@ def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
 def _facts(found: dict[str, object]) -> NetworkFile:
     tuples = {name: tuple(value) for name, value in found.items() if isinstance(value, list)}
     windows = WindowSettings(**found["windows"])  # type: ignore[arg-type]
-    return NetworkFile(windows=windows, identity=str(found["identity"]), **tuples)
+    temperature = float(str(found.get("temperature", 1.0)))
+    return NetworkFile(windows=windows, identity=str(found["identity"]), temperature=temperature, **tuples)
 
 
 def export_onnx(network: WideKernelNetwork, facts: NetworkFile, path: Path) -> None:

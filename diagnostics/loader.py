@@ -107,7 +107,7 @@ class WindowStream(IterableDataset[Batch]):
 
     def _batches(self, chunks: list[np.ndarray], passed: int) -> Iterator[Batch]:
         """Cut the windows of the chunks into batches; chunks that were passed are not decoded."""
-        waiting: list[tuple[int, np.ndarray]] = []
+        waiting: list[tuple[int, list[np.ndarray]]] = []
         for chunk in chunks:
             rest, passed = chunk[passed:], max(passed - chunk.size, 0)
             if not rest.size:

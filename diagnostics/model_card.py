@@ -8,7 +8,8 @@ from diagnostics.evaluation import Interval
 from diagnostics.realism import meaning_of_scores
 
 if TYPE_CHECKING:
-    from diagnostics.training import Judged, Training
+    from diagnostics.judgement import Judged
+    from diagnostics.training import Training
 
 
 def model_card(training: Training, dataset: Any) -> str:
@@ -73,7 +74,8 @@ def _files(training: Training) -> str:
 
 
 def _scores(training: Training) -> str:
-    head = "| classifier | accuracy | macro-AUROC | macro-AUROC with permuted labels |\n|---|---|---|---|"
+    titles = "| classifier | accuracy | macro-AUROC | macro-AUROC with permuted labels | calibration error |"
+    head = f"{titles}\n|---|---|---|---|---|"
     return "\n".join([head, *(_row(found) for found in training.judged)]) + (
         "\n\nIntervals: 95 %, bootstrap over test specimens."
     )
@@ -81,7 +83,8 @@ def _scores(training: Training) -> str:
 
 def _row(found: Judged) -> str:
     permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
-    cells = (found.name, interval_text(found.scores.accuracy), interval_text(found.scores.macro_auroc), permuted)
+    scores = (found.scores.accuracy, found.scores.macro_auroc)
+    cells = (found.name, *map(interval_text, scores), permuted, interval_text(found.calibration.after))
     return f"| {' | '.join(cells)} |"
 
 

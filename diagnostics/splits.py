@@ -9,6 +9,7 @@ import numpy as np
 from siggen.errors import DatasetError
 
 TRAIN, VALIDATION, TEST = "train", "validation", "test"
+FEWEST_SPECIMENS = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,8 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
     Raises
     ------
     DatasetError
-        If a specimen is in two splits, training or test has no specimen, or training has a single state.
+        If a specimen is in two splits, training or test has no specimen, training has a single
+        state, or a single specimen of a state.
     """
     check_specimens(labels["specimen_id"], labels["split"])
     masks = {name: labels["split"] == name for name in (TRAIN, VALIDATION, TEST)}
@@ -65,10 +67,26 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
             )
     order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
     classes = tuple(sorted(order, key=lambda state: order[state]))
-    trained = sorted(set(labels["state"][masks[TRAIN]].tolist()))
-    if len(trained) < 2:
-        raise DatasetError(f"training has the single state {trained}; a classifier needs at least two states")
+    _check_states(labels, masks[TRAIN])
     return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], classes)
+
+
+def _check_states(labels: dict[str, np.ndarray], train: np.ndarray) -> None:
+    """Check that training has two states, and of each more than one specimen."""
+    specimens = {
+        state: int(np.unique(labels["specimen_id"][train & (labels["state"] == state)]).size)
+        for state in dict.fromkeys(labels["state"][train].tolist())
+    }
+    if len(specimens) < 2:
+        raise DatasetError(
+            f"training has the single state {sorted(specimens)}; a classifier needs at least two states. Add damaged "
+            "and healthy states under `states` in the configuration, and generate the set into a new folder."
+        )
+    if single := [state for state, count in specimens.items() if count < FEWEST_SPECIMENS]:
+        raise DatasetError(
+            f"training has one specimen of {', '.join(single)}; a classifier would learn that gearbox instead of its "
+            "state. Generate more specimens (`--set specimens=N`, new folder) or give `splits` a larger share of train."
+        )
 
 
 def _listed(counts: dict[str, int]) -> str:

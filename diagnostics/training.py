@@ -1,10 +1,11 @@
-"""All classifiers of one set, trained and judged the same way: indicators, RMS alone, network; each with a control."""
+"""All classifiers of one set, trained and judged the same way, compared on the same specimens, and saved."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -12,60 +13,58 @@ import pyarrow as pa
 from diagnostics.baselines import (
     PERMUTATIONS,
     FeatureClassifier,
+    calibrated_classifier,
     permutation_control,
-    permuted_target,
     rms_features,
-    state_index,
     train_classifier,
 )
-from diagnostics.evaluation import Predictions, Scores, macro_auroc, scores
+from diagnostics.boosting import train_boosting
+from diagnostics.comparison import Comparison, comparison, state_auc
+from diagnostics.evaluation import Interval, Predictions
 from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings
+from diagnostics.judgement import (
+    BOOSTING,
+    INDICATORS,
+    NETWORK,
+    RMS_ALONE,
+    Judged,
+    judged,
+    judged_metrics,
+)
+from diagnostics.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
+from diagnostics.other_set import classifier_predictions, network_predictions_of
 from diagnostics.progress import Stage, silent_stage
+from diagnostics.severity import AreaScores, area_predictions, area_scores, expected_area, mean_areas
 from diagnostics.splits import SpecimenSplit, specimen_split
 
-if TYPE_CHECKING:
-    from diagnostics.cnn import TrainedNetwork
-    from diagnostics.cnn_files import NetworkFile
-
-INDICATORS, RMS_ALONE, NETWORK = "indicators", "rms", "network"
-TITLES = {INDICATORS: "logistic regression on indicators", RMS_ALONE: "RMS alone", NETWORK: "1-D network"}
-PERMUTED_EPOCHS = 15
 MODEL_FILES = ("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md")
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
-    """One classifier on the test specimens.
+class OtherSet:
+    """Another set to judge on: what `siggen.open` returned, and its feature table."""
 
-    Attributes
-    ----------
-    name : str
-        `indicators`, `rms` or `network`.
-    scores : Scores
-        Accuracy, macro-AUROC, confusion matrix.
-    permuted_auroc : (repeats,) float64
-        Macro-AUROC of the same classifier trained on permuted labels; empty where not run.
-    details : dict
-        How it was chosen: C, epochs, notes.
-    """
-
-    name: str
-    scores: Scores
-    permuted_auroc: np.ndarray
-    details: dict[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class TrainedNetworkFile:
-    """A trained network and what its file says."""
-
-    trained: TrainedNetwork
-    facts: NetworkFile
+    dataset: Any
+    table: pa.Table
 
 
 @dataclass(frozen=True, slots=True)
 class Training:
-    """Everything that training a set gave: judged classifiers and the models to save."""
+    """Everything that training a set gave: judged classifiers and the models to save.
+
+    Attributes
+    ----------
+    judged, other : tuple of Judged
+        On the test specimens; on another set, empty without one.
+    other_name : str
+        Folder of the other set, or empty.
+    comparisons : tuple of Comparison
+        Paired differences on the test specimens.
+    rms_severe : Interval or None
+        AUC of RMS alone for the state with the largest damage against healthy.
+    severity : tuple of AreaScores
+        Damaged area as a number.
+    """
 
     judged: tuple[Judged, ...]
     classifier: FeatureClassifier
@@ -73,10 +72,21 @@ class Training:
     split: SpecimenSplit
     specimens: dict[str, int]
     notes: tuple[str, ...]
+    other: tuple[Judged, ...]
+    other_name: str
+    comparisons: tuple[Comparison, ...]
+    rms_severe: Interval | None
+    severity: tuple[AreaScores, ...]
 
 
 def train_models(
-    dataset: Any, table: pa.Table, seed: int, *, cnn: bool = True, stage: Stage = silent_stage
+    dataset: Any,
+    table: pa.Table,
+    seed: int,
+    *,
+    network: NetworkOptions | None = None,
+    other: OtherSet | None = None,
+    stage: Stage = silent_stage,
 ) -> Training:
     """Train and judge all classifiers of a set.
 
@@ -88,8 +98,10 @@ def train_models(
         Its feature table.
     seed : int
         Seeds bootstrap, permutations and network.
-    cnn : bool
-        Whether to train the network.
+    network : NetworkOptions, optional
+        Whether and how to train the network.
+    other : OtherSet, optional
+        A set to judge all classifiers on as well.
     stage : Stage
         Told of every step.
 
@@ -98,17 +110,32 @@ def train_models(
     DatasetError
         If the split cannot be used (see `specimen_split`) or records are too short for a window.
     """
+    options = network or NetworkOptions()
     matrix = feature_matrix(table)
     split = specimen_split(matrix.labels)
-    classifier, judged = _judge_indicators(matrix, split, seed, stage)
-    results = [judged, _judge_rms(matrix, split, seed)]
-    network = None
-    if cnn:
-        result, network = _judge_network(dataset, matrix, split, seed, stage)
-        results.append(result)
+    models = _feature_models(matrix, split, seed, stage)
+    with stage("permuted labels", PERMUTATIONS) as advance:
+        control = permutation_control(matrix, split, seed, advance=advance)
+    results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
+    trained = None
+    if options.cnn:
+        found, trained = judge_networks(dataset, matrix, split, seed, options, stage)
+        results += found
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
     notes = dict.fromkeys(str(found.details["note"]) for found in results if found.details.get("note"))
-    return Training(tuple(results), classifier, network, split, specimens, tuple(notes))
+    return Training(
+        judged=tuple(results),
+        classifier=models[INDICATORS],
+        network=trained,
+        split=split,
+        specimens=specimens,
+        notes=tuple(notes),
+        other=_judge_other(models, trained, results, other, seed, stage) if other else (),
+        other_name=other.dataset.path.name if other else "",
+        comparisons=_comparisons(results, seed),
+        rms_severe=_rms_severe(results, matrix, split, seed),
+        severity=_severity(results, matrix, split, seed),
+    )
 
 
 def _masks(split: SpecimenSplit) -> dict[str, np.ndarray]:
@@ -119,55 +146,97 @@ def _specimens(matrix: FeatureMatrix, mask: np.ndarray) -> int:
     return int(np.unique(matrix.labels["specimen_id"][mask]).size)
 
 
-def _judge_indicators(
+def _feature_models(
     matrix: FeatureMatrix, split: SpecimenSplit, seed: int, stage: Stage
-) -> tuple[FeatureClassifier, Judged]:
-    model = train_classifier(matrix, split)
-    with stage("permuted labels", PERMUTATIONS) as advance:
-        permuted = permutation_control(matrix, split, seed, advance=advance)
-    found = scores(model.predict(matrix.rows(split.test)), seed)
-    details = {"features": len(model.features), "strength": model.strength, "note": model.note}
-    return model, Judged(INDICATORS, found, permuted, details)
-
-
-def _judge_rms(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Judged:
+) -> dict[str, FeatureClassifier]:
+    """Return the calibrated classifiers on indicators by name."""
     alone = matrix.columns(rms_features(matrix.names))
-    model = train_classifier(alone, split)
-    details = {"features": len(model.features), "strength": model.strength, "note": model.note}
-    return Judged(RMS_ALONE, scores(model.predict(alone.rows(split.test)), seed), np.empty(0), details)
-
-
-def _judge_network(
-    dataset: Any, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, stage: Stage
-) -> tuple[Judged, TrainedNetworkFile]:
-    from diagnostics.cnn import TrainingSettings, network_predictions, train_network
-    from diagnostics.cnn_files import describe_network
-    from diagnostics.windows import order_records
-
-    with stage("order-resampled windows", len(matrix.values)) as advance:
-        records = order_records(dataset, advance=advance)
-    truth, settings = state_index(matrix, split.classes), TrainingSettings()
-    with stage("network", settings.most_epochs) as advance:
-        trained = train_network(records, truth, split, seed, settings, advance)
-    test, specimen = np.flatnonzero(split.test), matrix.labels["specimen_id"]
-    found = scores(network_predictions(trained, records, test, truth, specimen), seed)
-    short = TrainingSettings(most_epochs=PERMUTED_EPOCHS, patience=PERMUTED_EPOCHS)
-    with stage("network on permuted labels", PERMUTED_EPOCHS) as advance:
-        control = train_network(records, permuted_target(truth, split, seed, 0), split, seed, short, advance)
-    permuted = _plain_auroc(network_predictions(control, records, test, truth, specimen))
-    details = {
-        "best_epoch": trained.best_epoch,
-        "epochs": trained.epochs,
-        "revolutions_per_window": records.settings.revolutions,
-        "samples_per_revolution": records.settings.samples_per_revolution,
-        "note": trained.note,
+    trainers: dict[str, Callable[[], FeatureClassifier]] = {
+        INDICATORS: lambda: train_classifier(matrix, split),
+        BOOSTING: lambda: train_boosting(matrix, split, seed),
+        RMS_ALONE: lambda: train_classifier(alone, split),
     }
-    facts = describe_network(trained, records.channels, records.settings, set_identity(dataset))
-    return Judged(NETWORK, found, np.array([permuted]), details), TrainedNetworkFile(trained, facts)
+    models = {}
+    with stage("classifiers on indicators", len(trainers)) as advance:
+        for name, train in trainers.items():
+            models[name] = calibrated_classifier(train(), matrix, split)
+            advance()
+    return models
 
 
-def _plain_auroc(predictions: Predictions) -> float:
-    return float(macro_auroc(predictions, np.ones((1, predictions.truth.size)))[0])
+def _judge(
+    name: str,
+    model: FeatureClassifier,
+    matrix: FeatureMatrix,
+    split: SpecimenSplit,
+    control: np.ndarray,
+    seed: int,
+) -> Judged:
+    found = classifier_predictions(model, matrix.rows(split.test))
+    details = {"features": len(model.features), "strength": model.strength, "note": model.note}
+    permuted = control if name == INDICATORS else np.empty(0)
+    return judged(name, found, model.temperature, permuted, details, seed)
+
+
+def _judge_other(
+    models: dict[str, FeatureClassifier],
+    network: TrainedNetworkFile | None,
+    results: list[Judged],
+    other: OtherSet,
+    seed: int,
+    stage: Stage,
+) -> tuple[Judged, ...]:
+    """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
+    matrix = feature_matrix(other.table)
+    found: dict[str, tuple[Predictions, float]] = {
+        name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
+    }
+    if network:
+        with stage("network on the other set", 1) as advance:
+            votes = network_predictions_of(network, other.dataset, matrix)
+            advance()
+        found[NETWORK] = (votes, network.trained.temperature)
+    details = {result.name: result.details for result in results}
+    return tuple(judged(name, *votes, np.empty(0), details[name], seed) for name, votes in found.items())
+
+
+def _comparisons(results: list[Judged], seed: int) -> tuple[Comparison, ...]:
+    """Compare every pair of classifiers, the later one first, with RMS alone always second."""
+    order = sorted(results, key=lambda found: found.name == RMS_ALONE)
+    return tuple(
+        comparison((first.name, second.name), first.predictions, second.predictions, seed)
+        for position, second in enumerate(order)
+        for first in order[:position]
+    )
+
+
+def largest_state(matrix: FeatureMatrix, split: SpecimenSplit) -> str | None:
+    """Return the state with the largest mean damaged area of training records; None where there is no damage."""
+    areas = mean_areas(matrix, split)
+    return split.classes[int(np.argmax(areas))] if areas.max() > 0 else None
+
+
+def _rms_severe(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Interval | None:
+    severe = largest_state(matrix, split)
+    if severe is None or "healthy" not in split.classes:
+        return None
+    found = next(result.predictions for result in results if result.name == RMS_ALONE)
+    return state_auc(found, split.classes.index("healthy"), split.classes.index(severe), seed)
+
+
+def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[AreaScores, ...]:
+    """Judge the damaged area as a number, beside the median of the training records."""
+    test, alone = matrix.rows(split.test), matrix.columns(rms_features(matrix.names))
+    by_state = mean_areas(matrix, split)
+    predicted = {
+        "ridge regression on indicators": area_predictions(matrix, split),
+        "ridge regression on RMS": area_predictions(alone, split),
+        **{f"{found.name}, by its states": expected_area(found.predictions, by_state) for found in results},
+        "median of training": np.full(
+            test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
+        ),
+    }
+    return tuple(area_scores(title, area, test, seed) for title, area in predicted.items())
 
 
 def set_identity(dataset: Any) -> str:
@@ -181,21 +250,23 @@ def training_metrics(training: Training) -> dict[str, Any]:
         "states": list(training.split.classes),
         "specimens": training.specimens,
         "notes": list(training.notes),
-        "classifiers": {found.name: _judged_metrics(found) for found in training.judged},
-    }
-
-
-def _judged_metrics(found: Judged) -> dict[str, Any]:
-    return {
-        "title": TITLES[found.name],
-        "test_specimens": found.scores.specimens,
-        "test_records": found.scores.records,
-        "accuracy": found.scores.accuracy.numbers(),
-        "macro_auroc": found.scores.macro_auroc.numbers(),
-        "chance_accuracy": 1.0 / len(found.scores.classes),
-        "confusion": found.scores.confusion.tolist(),
-        "permuted_macro_auroc": [float(area) for area in found.permuted_auroc],
-        **{key: value for key, value in found.details.items() if value != ""},
+        "classifiers": {found.name: judged_metrics(found) for found in training.judged},
+        "other_set": training.other_name or None,
+        "classifiers_on_other_set": {found.name: judged_metrics(found) for found in training.other},
+        "comparisons": [
+            {
+                "first": pair.first,
+                "second": pair.second,
+                "accuracy": pair.accuracy.numbers(),
+                "macro_auroc": pair.macro_auroc.numbers(),
+            }
+            for pair in training.comparisons
+        ],
+        "rms_severe_auc": training.rms_severe.numbers() if training.rms_severe else None,
+        "damaged_area": [
+            {"title": s.title, "error_mm2": s.error_mm2.numbers(), "spearman": s.spearman.numbers()}
+            for s in training.severity
+        ],
     }
 
 

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.training_options import Augment, Channels, Device, Seed, TestSet, WithNetwork, WithStudies
+
 
 def report(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
@@ -16,17 +18,30 @@ def report(
             "--out", "-o", metavar="DIR2", help="Folder for the report; default DIR_report.", show_default=False
         ),
     ] = None,
-    cnn: Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the network too.")] = True,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of bootstrap, permutations and network.")] = 0,
+    test: TestSet = None,
+    channel: Channels = None,
+    studies: WithStudies = False,
+    cnn: WithNetwork = True,
+    device: Device = "cpu",
+    augment: Augment = True,
+    seed: Seed = 0,
 ) -> None:
     """Run everything and write report.html, metrics.json, tables, figures and models.
 
-    Example: siggen-diagnostics report data/quickstart
+    Example: siggen-diagnostics report data/quickstart --studies
     """
     from diagnostics.cli.progress import terminal_stage
+    from diagnostics.extras import missing_packages
+    from diagnostics.network_training import NetworkOptions, check_device
     from diagnostics.report.report import write_report
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.training_sets import open_sets
 
-    dataset = open_set(directory)
+    if cnn and not missing_packages("torch"):
+        check_device(device)
+    dataset, second = open_sets(directory, test, channel or ())
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_report")
-    typer.echo(str(write_report(dataset, folder, seed, cnn=cnn, stage=terminal_stage)))
+    options = NetworkOptions(cnn, device, augment, ablation=studies)
+    path = write_report(
+        dataset, folder, seed, network=options, other=second, with_studies=studies, stage=terminal_stage
+    )
+    typer.echo(str(path))

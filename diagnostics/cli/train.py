@@ -8,33 +8,48 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.training_options import Augment, Channels, Device, Seed, TestSet, WithNetwork, WithStudies
+
 
 def train(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="DIR2", help="Folder for the models.", show_default=False)
     ],
-    cnn: Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the network too.")] = True,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of bootstrap, permutations and network.")] = 0,
+    test: TestSet = None,
+    channel: Channels = None,
+    studies: WithStudies = False,
+    cnn: WithNetwork = True,
+    device: Device = "cpu",
+    augment: Augment = True,
+    seed: Seed = 0,
 ) -> None:
-    """Train classifiers on the training specimens and judge them on the test specimens.
+    """Train classifiers on the training specimens and judge them on the test specimens, and on another set.
 
-    Example: siggen-diagnostics train data/quickstart --out models --no-cnn
+    Example: siggen-diagnostics train data/quickstart --out models --test data/other_gears
     """
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.extras import require_packages
-    from diagnostics.feature_table import feature_table
-    from siggen.dataset.reading import open as open_set
+    from diagnostics.feature_table import feature_matrix
 
     require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if cnn else ()))
+    from diagnostics.network_training import NetworkOptions, check_device
+    from diagnostics.studies import run_studies, studies_metrics
     from diagnostics.training import save_models, train_models, training_metrics
+    from diagnostics.training_sets import open_sets, other_table, set_table
 
-    dataset = open_set(directory)
-    with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        table = feature_table(dataset, advance=advance)
-    training = train_models(dataset, table, seed, cnn=cnn, stage=terminal_stage)
+    if cnn:
+        check_device(device)
+    dataset, second = open_sets(directory, test, channel or ())
+    table = set_table(dataset, terminal_stage)
+    other = other_table(second, terminal_stage) if second else None
+    options = NetworkOptions(cnn, device, augment, ablation=studies)
+    training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
     notes = save_models(training, table, dataset, out)
     metrics = {**training_metrics(training), "seed": seed, "file_notes": notes}
+    if studies:
+        found = run_studies(dataset, feature_matrix(table), training.split, seed, second, terminal_stage)
+        metrics["studies"] = studies_metrics(found)
     (out / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     for note in (*training.notes, *notes):
         typer.echo(f"note: {note}", err=True)

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from diagnostics.feature_table import FeatureMatrix
+from diagnostics.judgement import TITLES
 from diagnostics.report import score_figures, stiffness_figures, vibration_figures
 from diagnostics.report.examples import HEALTHY, example_set, strongest_harmonic
 from diagnostics.report.style import state_colours
 from diagnostics.separability import Separability
-from diagnostics.training import TITLES, Training
+from diagnostics.training import Training
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

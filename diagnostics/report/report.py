@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,19 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.extras import missing_packages, require_packages
-from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings, feature_table, write_table
+from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings, write_table
+from diagnostics.judgement import TITLES
+from diagnostics.network_training import NetworkOptions
 from diagnostics.progress import Stage, silent_stage
 from diagnostics.report import html, tables
+from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.drawing import Drawing, draw
-from diagnostics.report.sentences import summary
+from diagnostics.report.sentences import area_sentence, summary
 from diagnostics.report.style import png_bytes, styled
 from diagnostics.separability import Separability, separability, separability_table
-from diagnostics.training import TITLES, Training, save_models, train_models, training_metrics
+from diagnostics.studies import Studies, run_studies, studies_metrics
+from diagnostics.training import OtherSet, Training, save_models, train_models, training_metrics
+from diagnostics.training_sets import other_table, set_table
 from siggen.errors import DatasetError
 
 SECTIONS = (
@@ -29,7 +35,16 @@ SECTIONS = (
 )
 
 
-def write_report(dataset: Any, folder: Path, seed: int, *, cnn: bool = True, stage: Stage = silent_stage) -> Path:
+def write_report(
+    dataset: Any,
+    folder: Path,
+    seed: int,
+    *,
+    network: NetworkOptions | None = None,
+    other: Any = None,
+    with_studies: bool = False,
+    stage: Stage = silent_stage,
+) -> Path:
     """Compute everything and write `report.html`, `metrics.json`, tables, figures and models; return the page's path.
 
     Parameters
@@ -40,8 +55,12 @@ def write_report(dataset: Any, folder: Path, seed: int, *, cnn: bool = True, sta
         Created where missing; files of an earlier report are replaced.
     seed : int
         Seeds bootstrap, permutations and network.
-    cnn : bool
-        Whether to train the network; without torch it is left out with a note.
+    network : NetworkOptions, optional
+        Whether and how to train the network; without torch it is left out with a note.
+    other : siggen Dataset, optional
+        Another set to judge on.
+    with_studies : bool
+        Whether to run what takes minutes: splits and learning curve.
     stage : Stage
         Told of every step.
 
@@ -52,22 +71,24 @@ def write_report(dataset: Any, folder: Path, seed: int, *, cnn: bool = True, sta
     """
     require_packages("the report", "matplotlib", "sklearn", "skops")
     folder.mkdir(parents=True, exist_ok=True)
-    with stage("indicators", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        table = feature_table(dataset, advance=advance)
+    table = set_table(dataset, stage)
+    second = other_table(other, stage) if other is not None else None
     matrix = feature_matrix(table)
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
         advance()
-    training, notes = _trained(dataset, table, folder / "models", seed, cnn, stage)
+    training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
+    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, states(matrix), training, found)
         advance()
-    drawing.notes += [*notes, *clipping_notes(dataset), *undefined_notes(table)]
+    drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
     _write_tables(table, found, folder)
     sentences = summary(dataset.config, training, found)
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
+    metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return _write_page(dataset, folder, matrix, training, found, drawing, sentences)
+    return _write_page(dataset, folder, matrix, training, studies, found, drawing, sentences)
 
 
 def states(matrix: FeatureMatrix) -> tuple[str, ...]:
@@ -77,21 +98,40 @@ def states(matrix: FeatureMatrix) -> tuple[str, ...]:
 
 
 def _trained(
-    dataset: Any, table: pa.Table, folder: Path, seed: int, cnn: bool, stage: Stage
+    dataset: Any,
+    table: pa.Table,
+    folder: Path,
+    seed: int,
+    options: NetworkOptions,
+    other: OtherSet | None,
+    stage: Stage,
 ) -> tuple[Training | None, list[str]]:
     """Train what the set allows; what it does not allow becomes a note, since the rest of the report stands."""
     notes = []
-    missing = missing_packages("torch", "safetensors") if cnn else ()
+    missing = missing_packages("torch", "safetensors") if options.cnn else ()
     if missing:
         notes.append(f"No network: {', '.join(missing)} not installed (pip install 'siggen[cnn]').")
-    for with_network in dict.fromkeys((cnn and not missing, False)):
+    for with_network in dict.fromkeys((options.cnn and not missing, False)):
         try:
-            training = train_models(dataset, table, seed, cnn=with_network, stage=stage)
+            chosen = replace(options, cnn=with_network)
+            training = train_models(dataset, table, seed, network=chosen, other=other, stage=stage)
         except DatasetError as error:
             notes.append(f"{'No network' if with_network else 'No classifier'}: {error}")
             continue
         return training, [*dict.fromkeys(notes), *training.notes, *save_models(training, table, dataset, folder)]
     return None, notes[-1:]
+
+
+def _studied(
+    dataset: Any, matrix: FeatureMatrix, training: Training | None, seed: int, other: Any, stage: Stage
+) -> tuple[Studies | None, list[str]]:
+    """Run the studies; a set that does not allow them gets a note."""
+    if training is None:
+        return None, ["No studies, since no classifier could be trained."]
+    try:
+        return run_studies(dataset, matrix, training.split, seed, other, stage), []
+    except DatasetError as error:
+        return None, [f"No studies: {error}"]
 
 
 def undefined_notes(table: pa.Table) -> list[str]:
@@ -159,6 +199,7 @@ def _write_page(
     folder: Path,
     matrix: FeatureMatrix,
     training: Training | None,
+    studies: Studies | None,
     found: list[Separability],
     drawing: Drawing,
     sentences: list[str],
@@ -178,6 +219,8 @@ def _write_page(
     for section, title in SECTIONS:
         blocks = [html.figure_block(*pictures[name]) for name in getattr(drawing, section)]
         parts += [html.heading(title), *_section_tables(section, training, found), html.figure_grid(blocks)]
+        if section == "scores" and training:
+            parts += [html.heading("Splits and training specimens"), *study_blocks(studies)]
     parts += [html.heading("Notes"), *(html.paragraph(note, "note") for note in (*drawing.notes, _provenance(dataset)))]
     path = folder / "report.html"
     path.write_text(html.page(f"Diagnostics of {dataset.path.name}", parts), encoding="utf-8")
@@ -187,7 +230,7 @@ def _write_page(
 def _section_tables(section: str, training: Training | None, found: list[Separability]) -> list[str]:
     if section == "scores":
         return (
-            [tables.score_table(training)]
+            [tables.score_table(training), *score_blocks(training)]
             if training
             else [html.paragraph("No classifier was trained, see the notes.")]
         )
@@ -197,7 +240,8 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
             "back. AUC 0.5 means "
             "no separation, 0 and 1 a perfect one. Limits: 95 %, resampled specimens. A click on a column's head sorts."
         )
-        return [html.paragraph(text), tables.separability_html(found)]
+        followed = area_sentence(found)
+        return [html.paragraph(" ".join([*followed, text])), tables.separability_html(found)]
     return []
 
 

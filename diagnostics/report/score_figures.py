@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnostics.feature_table import FeatureMatrix
+from diagnostics.judgement import TITLES, Judged
 from diagnostics.report.style import new_figure
 from diagnostics.separability import Separability
-from diagnostics.training import TITLES, Judged, Training
+from diagnostics.training import Training
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.comparison import SATURATED
 from diagnostics.evaluation import Interval, error_share_limit
+from diagnostics.judgement import NETWORK, RMS_ALONE, TITLES, Judged
 from diagnostics.realism import meaning_of_scores
 from diagnostics.separability import Separability
-from diagnostics.training import TITLES, Judged, Training
+from diagnostics.training import Training
 
 CHANCE_MARGIN = 0.1
 """A mean macro-AUROC under permuted labels that is farther from 0.5 than this is called suspicious."""
@@ -30,7 +32,7 @@ def summary(config: dict[str, Any], training: Training | None, found: list[Separ
     """
     sentences = [meaning_of_scores(config, scored=training is not None)]
     if training:
-        sentences += [scores_sentence(training), certainty_sentence(training), control_sentence(training)]
+        sentences += [scores_sentence(training), comparison_sentence(training), trust_sentence(training)]
     return [*sentences, *indicator_sentences(found)]
 
 
@@ -58,6 +60,50 @@ def scores_sentence(training: Training) -> str:
         f"{len(first.classes)} states was "
         f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(1.0 / len(first.classes))}."
     )
+
+
+def comparison_sentence(training: Training) -> str:
+    """Say which classifier is ahead of RMS alone and by how much, and whether the level alone already finds damage."""
+    pairs = [pair for pair in training.comparisons if pair.second == RMS_ALONE]
+    best = max(pairs, key=lambda pair: pair.macro_auroc.value)
+    limits = (
+        "no interval from one specimen"
+        if math.isnan(best.macro_auroc.low)
+        else f"{best.macro_auroc.low:+.2f} to {best.macro_auroc.high:+.2f}, paired"
+    )
+    text = (
+        f"Over RMS alone, {TITLES[best.first]} gains {best.macro_auroc.value:+.2f} of macro-AUROC ({limits})"
+        f"{_between(training, best.first)}"
+    )
+    severe = training.rms_severe
+    if severe is None or math.isnan(severe.value):
+        return f"{text}."
+    if severe.value > SATURATED:
+        return (
+            f"{text}; yet RMS alone already tells the most severe state from healthy with an AUC of "
+            f"{severe.value:.2f}, so its scores say little about finer methods."
+        )
+    return f"{text}; RMS alone tells the most severe state from healthy with an AUC of {severe.value:.2f} only."
+
+
+def _between(training: Training, best: str) -> str:
+    """Say whether the network is behind or ahead of the best other one, where there is one."""
+    pair = next(
+        (p for p in training.comparisons if NETWORK in (p.first, p.second) and best in (p.first, p.second)), None
+    )
+    if pair is None or math.isnan(pair.macro_auroc.low):
+        return ""
+    sign = 1.0 if pair.first == NETWORK else -1.0
+    low, high = sorted((sign * pair.macro_auroc.low, sign * pair.macro_auroc.high))
+    if low <= 0.0 <= high:
+        return ", from which the 1-D network cannot be told apart"
+    return f", the 1-D network being {sign * pair.macro_auroc.value:+.2f} from it ({low:+.2f} to {high:+.2f})"
+
+
+def trust_sentence(training: Training) -> str:
+    """Say how certain the scores are and what permuted labels give, in one sentence."""
+    certainty, control = certainty_sentence(training), control_sentence(training)
+    return f"{certainty[:-1]}; {control[0].lower()}{control[1:]}"
 
 
 def certainty_sentence(training: Training) -> str:
@@ -103,7 +149,7 @@ def _control(judged: Judged) -> str:
 
 
 def indicator_sentences(found: list[Separability]) -> list[str]:
-    """Say which state is hardest, which single indicator does best there, and what follows the damaged area."""
+    """Say which state is hardest, and which single indicator does best there."""
     sentences = []
     hardest = hardest_state(found)
     if hardest and math.isnan(hardest[1].auc[hardest[0]].low):
@@ -117,14 +163,19 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
             "on the same "
             "specimens, therefore optimistic)."
         )
-    followed = [entry for entry in found if math.isfinite(entry.spearman.value)]
-    if followed:
-        best = max(followed, key=lambda entry: abs(entry.spearman.value))
-        sentences.append(
-            f"The damaged area is followed best by {best.feature} (rank correlation {best.spearman.value:+.2f}, "
-            f"{best.spearman.low:+.2f} to {best.spearman.high:+.2f})."
-        )
     return sentences
+
+
+def area_sentence(found: list[Separability]) -> list[str]:
+    """Say which single indicator follows the damaged area best; nothing where none is defined."""
+    followed = [entry for entry in found if math.isfinite(entry.spearman.value)]
+    if not followed:
+        return []
+    best = max(followed, key=lambda entry: abs(entry.spearman.value))
+    return [
+        f"The damaged area is followed best by {best.feature} (rank correlation {best.spearman.value:+.2f}, "
+        f"{best.spearman.low:+.2f} to {best.spearman.high:+.2f})."
+    ]
 
 
 def hardest_state(found: list[Separability]) -> tuple[str, Separability] | None:

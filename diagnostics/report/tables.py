@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from diagnostics.evaluation import Interval
+from diagnostics.judgement import BOOSTING, TITLES
 from diagnostics.report.html import Cell, table
 from diagnostics.separability import Separability
-from diagnostics.training import TITLES, Training
+from diagnostics.training import Training
 
 
 def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
@@ -34,23 +35,29 @@ def score_table(training: Training) -> str:
         permuted = f"{judged.permuted_auroc.mean():.2f}" if judged.permuted_auroc.size else "–"
         rows.append(
             [
-                Cell(TITLES[judged.name], _details(judged.details)),
+                Cell(TITLES[judged.name], _details(judged.name, judged.details)),
                 interval_cell(judged.scores.accuracy),
                 interval_cell(judged.scores.macro_auroc),
                 Cell(permuted),
+                interval_cell(judged.calibration.after),
             ]
         )
-    return table(["Classifier", "Accuracy", "Macro-AUROC", "Macro-AUROC, permuted labels"], rows)
+    return table(["Classifier", "Accuracy", "Macro-AUROC", "Permuted labels", "Calibration error"], rows, sortable=True)
 
 
-def _details(details: dict[str, Any]) -> str:
+def _details(name: str, details: dict[str, Any]) -> str:
     if "strength" in details:
-        return f"{details['features']} features, C = {details['strength']:g}"
+        return f"{details['features']} features, {strength_text(name, details['strength'])}"
     return (
         f"windows of {details['revolutions_per_window']} pinion revolutions × "
         f"{details['samples_per_revolution']} samples, "
         f"epoch {details['best_epoch']} of {details['epochs']}"
     )
+
+
+def strength_text(name: str, strength: float) -> str:
+    """Return what was chosen on validation specimens."""
+    return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"
 
 
 def separability_html(found: list[Separability]) -> str:

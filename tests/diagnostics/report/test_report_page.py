@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from diagnostics.network_training import NetworkOptions
 from diagnostics.realism import meaning_of_scores
 from diagnostics.report.examples import OrderSpectrum, strongest_harmonic
 from diagnostics.report.report import write_report
@@ -21,7 +22,7 @@ from diagnostics.report.report import write_report
 @pytest.fixture(scope="module")
 def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report")
-    write_report(dataset, out, seed=0, cnn=False)
+    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False))
     return out
 
 
@@ -77,7 +78,7 @@ def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable
         path.write_bytes(b"of an earlier run")
     write_report(short, tmp_path, seed=0)
     metrics = json.loads((tmp_path / "metrics.json").read_text())
-    assert set(metrics["training"]["classifiers"]) == {"indicators", "rms"}
+    assert set(metrics["training"]["classifiers"]) == {"indicators", "boosting", "rms"}
     assert any(note.startswith("No network: record") for note in metrics["notes"])
     assert any("gear sidebands not resolved by 2 gear revolutions" in note for note in metrics["notes"])
     assert any("no validation specimens" in note for note in metrics["notes"])

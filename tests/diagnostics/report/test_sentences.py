@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from diagnostics.evaluation import Interval
-from diagnostics.report.sentences import indicator_sentences
+from diagnostics.report.sentences import area_sentence, indicator_sentences
 from diagnostics.separability import Separability
 
 
@@ -21,6 +21,7 @@ def test_one_specimen_makes_no_statement_about_others() -> None:
 
 
 def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
-    first, second = indicator_sentences([indicator(0.8, 0.95)])
+    (first,) = indicator_sentences([indicator(0.8, 0.95)])
+    (second,) = area_sentence([indicator(0.8, 0.95)])
     assert "0.90 (0.80 to 0.95" in first
     assert "+0.50" in second

@@ -1,0 +1,34 @@
+"""Options that `train` and `report` share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+TestSet = Annotated[
+    Path | None,
+    typer.Option(
+        "--test",
+        metavar="DIR3",
+        help="Judge on this set too: other gears, supports or paths, with the same channels, rate and states.",
+        show_default=False,
+    ),
+]
+Channels = Annotated[
+    list[str] | None,
+    typer.Option("--channel", metavar="NAME", help="Use this channel only; may be repeated.", show_default=False),
+]
+WithStudies = Annotated[
+    bool,
+    typer.Option(
+        "--studies", help="Also: what each way to split does to the score, a learning curve, an ablation (minutes)."
+    ),
+]
+WithNetwork = Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the network too.")]
+Device = Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the network.")]
+Augment = Annotated[
+    bool, typer.Option("--augment/--no-augment", help="Train the network with random transfer paths and noise.")
+]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of bootstrap, permutations and network.")]

@@ -1,0 +1,81 @@
+"""What is known about one classifier after its test: scores, calibration, control, predictions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from diagnostics.calibration import Calibration, calibrated, calibration
+from diagnostics.evaluation import Predictions, Scores, scores
+
+INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
+TITLES = {
+    INDICATORS: "logistic regression on indicators",
+    BOOSTING: "gradient boosting on indicators",
+    RMS_ALONE: "RMS alone",
+    NETWORK: "1-D network",
+    PLAIN_NETWORK: "1-D network without augmentation",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """One classifier on the test specimens.
+
+    Attributes
+    ----------
+    name : str
+        A key of `TITLES`.
+    scores : Scores
+        Accuracy, macro-AUROC, confusion matrix, of calibrated probabilities.
+    permuted_auroc : (repeats,) float64
+        Macro-AUROC of the same classifier trained on permuted labels; empty where not run.
+    details : dict
+        How it was chosen: C, epochs, notes.
+    calibration : Calibration
+        Expected calibration error on test specimens, and the temperature from validation specimens.
+    predictions : Predictions
+        Calibrated, of the test records in their order.
+    """
+
+    name: str
+    scores: Scores
+    permuted_auroc: np.ndarray
+    details: dict[str, Any]
+    calibration: Calibration
+    predictions: Predictions
+
+
+def judged(
+    name: str,
+    uncalibrated: Predictions,
+    temperature: float,
+    permuted_auroc: np.ndarray,
+    details: dict[str, Any],
+    seed: int,
+) -> Judged:
+    """Judge the test predictions of one classifier; its temperature comes from validation specimens."""
+    found = calibrated(uncalibrated, temperature)
+    return Judged(
+        name, scores(found, seed), permuted_auroc, details, calibration(uncalibrated, temperature, seed), found
+    )
+
+
+def judged_metrics(found: Judged) -> dict[str, Any]:
+    """Return what `metrics.json` says about one classifier."""
+    return {
+        "title": TITLES[found.name],
+        "test_specimens": found.scores.specimens,
+        "test_records": found.scores.records,
+        "accuracy": found.scores.accuracy.numbers(),
+        "macro_auroc": found.scores.macro_auroc.numbers(),
+        "chance_accuracy": 1.0 / len(found.scores.classes),
+        "confusion": found.scores.confusion.tolist(),
+        "permuted_macro_auroc": [float(area) for area in found.permuted_auroc],
+        "temperature": found.calibration.temperature,
+        "expected_calibration_error": found.calibration.after.numbers(),
+        "expected_calibration_error_uncalibrated": found.calibration.before.numbers(),
+        **{key: value for key, value in found.details.items() if value != ""},
+    }

@@ -1,0 +1,143 @@
+"""Tables of a report beside the scores: paired differences, damaged area, another set, splits, learning curve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from diagnostics.judgement import TITLES, Judged
+from diagnostics.learning_curve import CurvePoint
+from diagnostics.report.html import Cell, paragraph, table
+from diagnostics.report.tables import interval_cell
+from diagnostics.split_study import SplitScore
+from diagnostics.studies import Studies
+from diagnostics.training import Training
+
+
+def comparison_table(training: Training) -> str:
+    """Return the paired differences of classifiers; one whose interval holds zero is no difference."""
+    rows = [
+        [
+            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
+            interval_cell(pair.macro_auroc, sign=True),
+            interval_cell(pair.accuracy, sign=True),
+            Cell("yes" if differs(pair.macro_auroc.low, pair.macro_auroc.high) else "no"),
+        ]
+        for pair in training.comparisons
+    ]
+    return table(["Paired difference", "Macro-AUROC", "Accuracy", "Interval without 0"], rows, sortable=True)
+
+
+def differs(low: float, high: float) -> bool:
+    """Return whether an interval is defined and does not hold zero."""
+    return math.isfinite(low) and (low > 0.0 or high < 0.0)
+
+
+def severity_table(training: Training) -> str:
+    """Return how well the damaged area is told as a number."""
+    rows = [
+        [Cell(row.title), interval_cell(row.error_mm2), interval_cell(row.spearman, sign=True)]
+        for row in training.severity
+    ]
+    return table(["Damaged area by", "Mean absolute error [mm²]", "Rank correlation"], rows, sortable=True)
+
+
+def other_set_table(training: Training) -> str:
+    """Return the scores on another set beside those on the own test specimens."""
+    own = {found.name: found for found in training.judged}
+    rows = [_other_row(found, own[found.name]) for found in training.other]
+    head = ["Classifier", "Macro-AUROC there", "Macro-AUROC here", "Accuracy there", "Accuracy here"]
+    return table([*head, "Calibration error there"], rows, sortable=True)
+
+
+def _other_row(there: Judged, here: Judged) -> list[Cell]:
+    scores = [there.scores.macro_auroc, here.scores.macro_auroc, there.scores.accuracy, here.scores.accuracy]
+    return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
+
+
+def split_table(rows: tuple[SplitScore, ...]) -> str:
+    """Return what every way to split does to the score."""
+    cells = [
+        [
+            Cell(row.title, "shares gearboxes between both sides" if row.leaky else ""),
+            interval_cell(row.indicators.macro_auroc),
+            interval_cell(row.rms.macro_auroc),
+            interval_cell(row.indicators.accuracy),
+            Cell(str(row.folds), value=float(row.folds)),
+        ]
+        for row in rows
+    ]
+    head = ["Held out", "Macro-AUROC, indicators", "Macro-AUROC, RMS", "Accuracy, indicators", "Folds"]
+    return table(head, cells, sortable=True)
+
+
+def curve_table(points: tuple[CurvePoint, ...]) -> str:
+    """Return mean and range of macro-AUROC by number of training specimens."""
+    rows = [
+        [Cell(str(point.specimens), value=float(point.specimens)), _range(point.indicators), _range(point.rms)]
+        for point in points
+    ]
+    head = ["Training specimens", "Macro-AUROC, indicators", "Macro-AUROC, RMS"]
+    return table(head, rows, sortable=True)
+
+
+def _range(areas: np.ndarray) -> Cell:
+    defined = areas[np.isfinite(areas)]
+    if not defined.size:
+        return Cell("undefined", value=math.nan)
+    limits = "" if defined.size == 1 else f"{defined.min():.2f} … {defined.max():.2f}"
+    return Cell(f"{defined.mean():.2f}", limits, float(defined.mean()))
+
+
+def score_blocks(training: Training) -> list[str]:
+    """Return what the section of scores holds below its first table."""
+    blocks = [
+        paragraph(
+            "Differences are paired: both classifiers meet the same resampled specimens. Where the interval holds 0, "
+            "the set does not tell which one is better."
+        ),
+        comparison_table(training),
+        paragraph("Severity as a number, judged on the same test specimens; the median knows nothing of the signal."),
+        severity_table(training),
+    ]
+    if training.other:
+        there = training.other[0].scores
+        blocks += [
+            paragraph(
+                f"Judged on the other set {training.other_name}, without any training on it: {there.records} records "
+                f"of {there.specimens} specimens."
+            ),
+            other_set_table(training),
+        ]
+    return blocks
+
+
+def study_blocks(studies: Studies | None) -> list[str]:
+    """Return the section of studies, or how to have it."""
+    if studies is None:
+        return [paragraph("Not run; `siggen-diagnostics report DIR --studies` adds what each split does to the score.")]
+    return [
+        paragraph(split_sentence(studies.splits)),
+        split_table(studies.splits),
+        paragraph(
+            "Macro-AUROC on the test specimens by number of training specimens: mean and range of up to five draws."
+        ),
+        curve_table(studies.curve),
+    ]
+
+
+def split_sentence(rows: tuple[SplitScore, ...]) -> str:
+    """Say how much of the score by random windows is left where the gearbox is unseen."""
+    by_title = {row.title: row for row in rows}
+    leaky, strict = by_title.get("random windows (leaky)"), by_title.get("specimens")
+    first = "The same windows of 8 pinion revolutions and the same logistic regression, split in different ways."
+    if leaky is None or strict is None:
+        return first
+    values = [row.indicators.macro_auroc.value for row in (leaky, strict)]
+    change = values[1] - values[0]
+    verdict = f"loses {-change:.2f}" if change < -0.005 else "loses nothing"
+    return (
+        f"{first} Random windows give {values[0]:.2f}; held out by specimen the score {verdict} ({values[1]:.2f}). "
+        "Random windows have pieces of one record on both sides and are shown as the mistake they are."
+    )
