@@ -6,21 +6,27 @@ import json
 import zipfile
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from diagnostics.baselines import FeatureClassifier
 from diagnostics.features import FeatureSettings
 from siggen.errors import UsageError
 
-NAMES_FILE = "feature_names.json"
+CLASSIFIER_FILE, NAMES_FILE = "classifier.skops", "feature_names.json"
 TRUSTED_TYPES = ("numpy.dtype",)
 """Types besides those that skops trusts by itself: the imputer remembers the type of its input."""
 
 
-def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identity: str, folder: Path) -> Path:
-    """Write `classifier.skops` and `feature_names.json` (features, states, settings, identity); return the former."""
+def save_classifier(
+    model: FeatureClassifier, settings: FeatureSettings, identity: str, folder: Path, prefix: str = ""
+) -> Path:
+    """Write `classifier.skops` and `feature_names.json` (features, states, settings, identity); return the former.
+
+    A prefix before both names keeps variants of a classifier apart.
+    """
     import skops.io
 
-    path = folder / "classifier.skops"
+    path = folder / f"{prefix}{CLASSIFIER_FILE}"
     skops.io.dump(model.pipeline, path)
     facts = {
         "features": model.features,
@@ -31,7 +37,7 @@ def save_classifier(model: FeatureClassifier, settings: FeatureSettings, identit
         "settings": asdict(settings),
         "identity": identity,
     }
-    (folder / NAMES_FILE).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    (folder / f"{prefix}{NAMES_FILE}").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
     return path
 
 
@@ -42,7 +48,7 @@ def untrusted_types(path: Path) -> tuple[str, ...]:
     return tuple(name for name in skops.io.get_untrusted_types(file=path) if name not in TRUSTED_TYPES)
 
 
-def load_classifier(folder: Path) -> FeatureClassifier:
+def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
     """Read a classifier written by `save_classifier`.
 
     Raises
@@ -52,12 +58,12 @@ def load_classifier(folder: Path) -> FeatureClassifier:
     """
     import skops.io
 
-    path = folder / "classifier.skops"
+    path = folder / f"{prefix}{CLASSIFIER_FILE}"
     try:
         found = untrusted_types(path)
-        facts = json.loads((folder / NAMES_FILE).read_text(encoding="utf-8"))
+        facts = _facts(folder, prefix)
     except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise UsageError(f"{folder}: no readable classifier.skops with {NAMES_FILE} ({error})") from error
+        raise UsageError(f"{folder}: no readable {path.name} with {prefix}{NAMES_FILE} ({error})") from error
     if found:
         raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
     pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
@@ -69,3 +75,22 @@ def load_classifier(folder: Path) -> FeatureClassifier:
         note=str(facts["note"]),
         temperature=float(facts.get("temperature", 1.0)),
     )
+
+
+def load_settings(folder: Path) -> FeatureSettings:
+    """Read the settings of the features of a classifier written by `save_classifier`.
+
+    Raises
+    ------
+    UsageError
+        If they are missing or of another version.
+    """
+    try:
+        return FeatureSettings(**_facts(folder, "")["settings"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UsageError(f"{folder / NAMES_FILE}: no readable settings of features ({error})") from error
+
+
+def _facts(folder: Path, prefix: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / f"{prefix}{NAMES_FILE}").read_text(encoding="utf-8"))
+    return found

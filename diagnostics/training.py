@@ -37,7 +37,10 @@ from diagnostics.progress import Stage, silent_stage
 from diagnostics.severity import AreaScores, area_predictions, area_scores, expected_area, mean_areas
 from diagnostics.splits import SpecimenSplit, specimen_split
 
-MODEL_FILES = ("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md")
+MODEL_FILES = (
+    *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
+    *("model.json", "referenced_classifier.skops", "referenced_feature_names.json"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,6 +289,7 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
     """
     from diagnostics.classifier_file import save_classifier
     from diagnostics.model_card import model_card
+    from diagnostics.prediction.release import release, save_release
 
     folder.mkdir(parents=True, exist_ok=True)
     for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
@@ -301,5 +305,8 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
             export_onnx(network, facts, folder / "cnn.onnx")
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export failed: {error}")
+    released = release(training, table, dataset)
+    save_release(training, released, table, folder)
+    notes += [released.note] if released.note else []
     (folder / "model_card.md").write_text(model_card(training, dataset), encoding="utf-8")
     return notes

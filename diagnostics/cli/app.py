@@ -10,6 +10,7 @@ import typer
 from diagnostics.cli.audit import audit
 from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
+from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
 from diagnostics.cli.train import train
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenError
@@ -28,6 +29,7 @@ app.command()(indicators)
 app.command()(train)
 app.command()(report)
 app.command()(audit)
+app.command()(predict)
 
 
 def _show_version(wanted: bool) -> None:

@@ -1,0 +1,1 @@
+"""What saved models say about a recording, and whether it is like the records they were trained on."""

@@ -1,0 +1,247 @@
+"""State of a recording by the saved models, with probabilities, and the reasons for which no answer should be taken.
+
+The answer is withheld where the recording is unlike the training records: by distance, or by what is known of it
+(teeth, rate, speed, length). Source: derived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from diagnostics.prediction.log_features import log_mean, log_values
+from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
+from diagnostics.prediction.released_model import ReleasedModel
+from diagnostics.prediction.training_distance import TrainingDistance
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from siggen.errors import UsageError
+
+INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"
+
+
+@dataclass(frozen=True, slots=True)
+class Vote:
+    """Probability of every state by one classifier: mean over pieces, and the share of pieces that agree with it."""
+
+    classifier: str
+    probability: np.ndarray
+    agreement: float
+
+
+@dataclass(frozen=True, slots=True)
+class Nearness:
+    """Distance to the training records: median over pieces, threshold, and the features farthest off."""
+
+    distance: float
+    threshold: float
+    strangest: tuple[tuple[str, float], ...]
+
+    @property
+    def outside(self) -> bool:
+        """Whether the recording is unlike the training records."""
+        return not self.distance <= self.threshold
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """What the models say about one recording.
+
+    Attributes
+    ----------
+    recording : MeasuredRecording
+        At the rate of the model.
+    pulses : ShaftPulses
+    teeth : (int, int)
+    classes : tuple of str
+        States in the order of the probabilities.
+    votes : tuple of Vote
+        The first one is the answer.
+    nearness : Nearness
+        By the features that the answer uses.
+    plain_nearness : Nearness
+        By the features without a reference; the same where none was given.
+    reasons : tuple of str
+        Why no answer is given; empty where one is.
+    notes : tuple of str
+        What the reader should know besides.
+    pieces : RecordPieces
+        Indicators.
+    """
+
+    recording: MeasuredRecording
+    pulses: ShaftPulses
+    teeth: tuple[int, int]
+    classes: tuple[str, ...]
+    votes: tuple[Vote, ...]
+    nearness: Nearness
+    plain_nearness: Nearness
+    reasons: tuple[str, ...]
+    notes: tuple[str, ...]
+    pieces: RecordPieces
+
+    @property
+    def state(self) -> str:
+        """The state of largest probability, or `abstains`."""
+        return "abstains" if self.reasons else self.classes[int(self.votes[0].probability.argmax())]
+
+
+def predict_recording(
+    model: ReleasedModel,
+    recording: MeasuredRecording,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None = None,
+    references: tuple[MeasuredRecording, ...] = (),
+) -> Prediction:
+    """Return what the models of a folder say about a recording.
+
+    Parameters
+    ----------
+    model : ReleasedModel
+        The models.
+    recording : MeasuredRecording
+        With the model's channels.
+    teeth : (int, int)
+        Teeth of pinion and gear.
+    speed_range_hz : (float, float), optional
+        Where to look for the pinion's speed without a tacho.
+    references : tuple of MeasuredRecording
+        Recordings of the same machine in healthy state; with them the healthy-referenced variant answers.
+
+    Raises
+    ------
+    UsageError
+        If pulses cannot be found, or references were given to a model without the variant.
+    """
+    if references and model.referenced_classifier is None:
+        raise UsageError(
+            f"{model.folder}: was trained without the healthy-referenced variant, since its set had no second healthy "
+            "record per gearbox; leave --reference out, or train on a set with two operating points"
+        )
+    facts = model.facts
+    source = recording
+    recording = at_rate(recording, facts.fs_hz)
+    pulses = shaft_pulses(recording, teeth, speed_range_hz)
+    pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings)
+    plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)))
+    if references:
+        healthy = [_reference_pieces(model, reference, teeth, speed_range_hz) for reference in references]
+        answer, nearness = _referenced_vote(model, pieces, healthy)
+    else:
+        answer, nearness = _indicator_vote(model, pieces), plain
+    network, notes = _network_vote(model, recording, pulses, teeth)
+    undefined = int(np.isnan(pieces.columns(model.classifier.features)).any(axis=0).sum())
+    return Prediction(
+        recording=recording,
+        pulses=pulses,
+        teeth=teeth,
+        classes=facts.classes,
+        votes=(answer, *network),
+        nearness=nearness,
+        plain_nearness=plain,
+        reasons=_reasons(model, source, pulses, teeth, pieces, nearness),
+        notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
+        pieces=pieces,
+    )
+
+
+def _undefined_note(count: int) -> str:
+    return f"{count} indicators are undefined here; the classifier takes their training medians" if count else ""
+
+
+def _reference_pieces(
+    model: ReleasedModel,
+    reference: MeasuredRecording,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+) -> RecordPieces:
+    slow = at_rate(reference, model.facts.fs_hz)
+    pulses = shaft_pulses(slow, teeth, speed_range_hz)
+    return record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings)
+
+
+def _vote(name: str, probability: np.ndarray) -> Vote:
+    mean = probability.mean(axis=0)
+    return Vote(name, mean, float(np.mean(probability.argmax(axis=1) == mean.argmax())))
+
+
+def _pipeline_vote(name: str, classifier: Any, values: np.ndarray) -> Vote:
+    probability = np.zeros((len(values), len(classifier.classes)))
+    probability[:, classifier.pipeline.classes_] = classifier.pipeline.predict_proba(values)
+    return _vote(name, probability)
+
+
+def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:
+    return _pipeline_vote(INDICATORS, model.classifier, pieces.columns(model.classifier.features))
+
+
+def _referenced_vote(model: ReleasedModel, pieces: RecordPieces, healthy: list[RecordPieces]) -> tuple[Vote, Nearness]:
+    assert model.referenced_classifier is not None
+    assert model.referenced_distance is not None
+
+    def minus_reference(names: tuple[str, ...]) -> np.ndarray:
+        reference = log_mean(np.concatenate([found.columns(names) for found in healthy]))
+        return log_values(pieces.columns(names)) - reference
+
+    vote = _pipeline_vote(
+        REFERENCED, model.referenced_classifier, minus_reference(model.referenced_classifier.features)
+    )
+    return vote, _nearness(model.referenced_distance, minus_reference(model.referenced_distance.features))
+
+
+def _nearness(distance: TrainingDistance, logs: np.ndarray) -> Nearness:
+    found = distance.distance(logs)
+    middle = int(np.argsort(found)[len(found) // 2])
+    return Nearness(float(np.median(found)), distance.threshold, tuple(distance.strangest(logs[middle])))
+
+
+def _network_vote(
+    model: ReleasedModel, recording: MeasuredRecording, pulses: ShaftPulses, teeth: tuple[int, int]
+) -> tuple[tuple[Vote, ...], tuple[str, ...]]:
+    """Return the network's vote where it can take the recording, else why not."""
+    if model.network is None:
+        return (), ()
+    from diagnostics.prediction.network_vote import network_probabilities
+
+    facts = model.network[1]
+    if facts.windows.teeth != teeth[0]:
+        return (), (f"the network takes pinions with {facts.windows.teeth} teeth only: left out",)
+    if pulses.times_s.size <= facts.windows.revolutions:
+        return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
+    found = network_probabilities(*model.network, recording, pulses)
+    return (_vote(NETWORK, found),), ()
+
+
+def _reasons(
+    model: ReleasedModel,
+    recording: MeasuredRecording,
+    pulses: ShaftPulses,
+    teeth: tuple[int, int],
+    pieces: RecordPieces,
+    nearness: Nearness,
+) -> tuple[str, ...]:
+    facts, found = model.facts, []
+    if nearness.outside:
+        strangest = ", ".join(f"{name} {off:+.1f} spreads" for name, off in nearness.strangest)
+        found.append(
+            f"unlike the training records: distance {nearness.distance:.2f}, up to {nearness.threshold:.2f} was seen "
+            f"on held-out gearboxes; farthest off: {strangest}"
+        )
+    if teeth not in facts.teeth:
+        known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
+        found.append(f"{teeth[0]}/{teeth[1]} teeth; the training set knows {known} only")
+    if recording.fs_hz < facts.fs_hz * (1.0 - 1e-3):
+        found.append(
+            f"sampled at {recording.fs_hz:g} Hz, training at {facts.fs_hz:g} Hz: the band above "
+            f"{0.5 * recording.fs_hz:g} Hz is missing"
+        )
+    low, high = facts.speed_range_hz
+    if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
+        found.append(f"pinion speed of {pulses.speed_hz:.4g} Hz; the training set covers {low:.4g} to {high:.4g} Hz")
+    if pieces.revolutions < facts.fewest_revolutions - 1:  # one may be lost to where the piece begins
+        found.append(
+            f"averages over {pieces.revolutions} pinion revolutions; training has {facts.fewest_revolutions} or more"
+        )
+    return tuple(found)

@@ -1,0 +1,99 @@
+"""A recording cut into pieces as long as the training records, at their rate, with the features of each.
+
+Averages over more revolutions suppress more noise, and a wider band holds more of it, so indicators of records of other
+length or rate are other numbers. Pieces of the trained length keep them comparable. Source: derived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from diagnostics.features import FeatureSettings, record_features
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_pulses import ShaftPulses
+
+LARGEST_DENOMINATOR = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class RecordPieces:
+    """Features of the pieces of a recording.
+
+    Attributes
+    ----------
+    values : (pieces, features) float64
+        NaN where undefined.
+    names : tuple of str
+        Feature names.
+    revolutions : int
+        Pinion revolutions of the shortest piece.
+    notes : tuple of str
+        What is undefined and why.
+    """
+
+    values: np.ndarray
+    names: tuple[str, ...]
+    revolutions: int
+    notes: tuple[str, ...]
+
+    def columns(self, names: tuple[str, ...]) -> np.ndarray:
+        """Return the named features, (pieces, len(names)); those that were not taken are NaN."""
+        position = {name: k for k, name in enumerate(self.names)}
+        found = np.full((len(self.values), len(names)), np.nan)
+        for k, name in enumerate(names):
+            if name in position:
+                found[:, k] = self.values[:, position[name]]
+        return found
+
+
+def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
+    """Return the recording at the given rate if it was sampled faster, else as it is."""
+    if recording.fs_hz <= fs_hz * (1.0 + 1e-9):
+        return recording
+    from scipy.signal import resample_poly
+
+    ratio = Fraction(fs_hz / recording.fs_hz).limit_denominator(LARGEST_DENOMINATOR)
+    channels = {
+        name: np.asarray(resample_poly(signal, ratio.numerator, ratio.denominator))
+        for name, signal in recording.channels.items()
+    }
+    return MeasuredRecording(recording.path, channels, recording.fs_hz * float(ratio), recording.tacho_s)
+
+
+def record_pieces(
+    recording: MeasuredRecording,
+    pulses: ShaftPulses,
+    teeth: tuple[int, int],
+    duration_s: float,
+    settings: FeatureSettings,
+) -> RecordPieces:
+    """Return the features of consecutive pieces; a rest shorter than a piece is left out, unless it is all there is.
+
+    Parameters
+    ----------
+    recording : MeasuredRecording
+        At the rate of the model.
+    pulses : ShaftPulses
+        Of the pinion.
+    teeth : (int, int)
+        Teeth of pinion and gear.
+    duration_s : float
+        Length of a piece.
+    settings : FeatureSettings
+        How features are taken.
+    """
+    samples = next(iter(recording.channels.values())).size
+    length = min(round(duration_s * recording.fs_hz), samples)
+    found = []
+    for start in range(0, samples - length + 1, length):
+        begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
+        times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
+        piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
+        found.append(record_features(piece, times_s, recording.fs_hz, teeth, settings))
+    names = tuple(found[0].values)
+    values = np.array([[piece.values[name] for name in names] for piece in found])
+    notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))
+    return RecordPieces(values, names, min(piece.revolutions_pinion for piece in found), notes)

@@ -1,0 +1,144 @@
+"""What a model needs besides its classifier to be used on recordings: facts, distance, healthy-referenced variant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.baselines import FeatureClassifier, train_classifier
+from diagnostics.evaluation import Scores, scores
+from diagnostics.feature_table import FeatureMatrix, feature_matrix
+from diagnostics.prediction.log_features import healthy_referenced, log_values
+from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
+from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
+from diagnostics.splits import SpecimenSplit
+
+if TYPE_CHECKING:
+    from diagnostics.training import Training
+
+REFERENCED = "referenced_"
+"""Prefix of the files of the healthy-referenced variant."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferencedVariant:
+    """Classifier and distance on features minus those of the same machine in healthy state, and its test scores."""
+
+    classifier: FeatureClassifier
+    distance: TrainingDistance
+    scores: Scores
+    distances: np.ndarray
+    test: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class Release:
+    """Everything that goes along with a classifier.
+
+    Attributes
+    ----------
+    facts : ModelFacts
+    distance : TrainingDistance
+        On log features.
+    test_outside : float
+        Share of the test records that it calls unlike training; false alarms, since they are of the same family.
+    referenced : ReferencedVariant or None
+        None where healthy records do not suffice; `note` says why.
+    referenced_outside : float
+        As `test_outside`, of the variant; NaN without it.
+    note : str
+    """
+
+    facts: ModelFacts
+    distance: TrainingDistance
+    test_outside: float
+    referenced: ReferencedVariant | None
+    referenced_outside: float
+    note: str
+
+
+def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) -> Release:
+    """Return what goes along with the classifiers of a set; fitted on training, thresholds on held-out specimens.
+
+    Parameters
+    ----------
+    training : Training
+        The judged classifiers.
+    table : pyarrow.Table
+        Feature table of the set.
+    dataset : siggen Dataset
+        The set.
+    seed : int
+        Seeds the bootstrap of the variant's scores.
+    """
+    matrix, split = feature_matrix(table), training.split
+    distance, distances = _distance(log_values(matrix.values), matrix, split)
+    referenced, note = _referenced(matrix, split, seed)
+    return Release(
+        facts=model_facts(dataset, table, split.classes),
+        distance=distance,
+        test_outside=_share_outside(distances[split.test], distance),
+        referenced=referenced,
+        referenced_outside=(
+            _share_outside(referenced.distances[referenced.test], referenced.distance) if referenced else np.nan
+        ),
+        note=note,
+    )
+
+
+def _distance(logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit) -> tuple[TrainingDistance, np.ndarray]:
+    names = distance_features(matrix.names)
+    chosen = logs[:, [matrix.names.index(name) for name in names]]
+    found = calibrated_distance(chosen, names, split, matrix.labels["specimen_id"])
+    return found, found.distance(chosen)
+
+
+def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
+    return float(np.mean(distances > found.threshold))
+
+
+def _referenced(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[ReferencedVariant | None, str]:
+    differences, kept = healthy_referenced(matrix)
+    part = SpecimenSplit(split.train[kept], split.validation[kept], split.test[kept], split.classes)
+    states = np.unique(differences.labels["state"][part.train])
+    if states.size < 2 or not part.test.any():
+        return None, (
+            "no healthy-referenced variant: it needs healthy records of every specimen at two operating points or in "
+            "two repeats"
+        )
+    classifier = train_classifier(differences, part)
+    judged = scores(classifier.predict(differences.rows(part.test)), seed)
+    distance, distances = _distance(differences.values, differences, part)
+    return ReferencedVariant(classifier, distance, judged, distances, part.test), ""
+
+
+def release_scores(training: Training, found: Release) -> dict[str, Any]:
+    """Return the scores that `model.json` carries."""
+    scored = {judged.name: judged.scores for judged in training.judged}
+    if found.referenced:
+        scored["healthy_referenced"] = found.referenced.scores
+    return {
+        "test": {
+            name: {"accuracy": score.accuracy.numbers(), "macro_auroc": score.macro_auroc.numbers()}
+            for name, score in scored.items()
+        },
+        "test_records_outside": found.test_outside,
+        "referenced_test_records_outside": found.referenced_outside if found.referenced else None,
+    }
+
+
+def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
+    """Write `model.json`, and the variant's classifier under names that begin with `referenced_`."""
+    from diagnostics.classifier_file import save_classifier
+    from diagnostics.feature_table import feature_settings
+
+    variant = found.referenced
+    write_facts(
+        found.facts, found.distance, variant.distance if variant else None, release_scores(training, found), folder
+    )
+    if variant:
+        save_classifier(variant.classifier, feature_settings(table), found.facts.identity, folder, REFERENCED)

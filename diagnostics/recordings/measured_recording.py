@@ -1,0 +1,166 @@
+"""A recording in m/s^2 with channels under the model's names, from a file and what the user says about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.recordings.acceleration_unit import factor_to_m_s2
+from diagnostics.recordings.columns import Columns, read_columns
+from diagnostics.recordings.pulse_edges import pulse_edges
+from diagnostics.recordings.signal_problem import signal_problem
+from siggen.errors import UsageError
+
+OWN_COLUMN = "accel_{}_m_s2"
+OWN_TACHO = "tacho_s"
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingFacts:
+    """What the user says about files that they do not say themselves.
+
+    Attributes
+    ----------
+    fs_hz : float or None
+        Sampling frequency [Hz]; WAV files state it themselves.
+    columns : mapping of str to str
+        Channel name of the model to column of the file; empty where the file uses the model's names.
+    unit : str
+        Unit of all channels, see `factor_to_m_s2`.
+    sensitivity_mv_per_g : float or None
+        For voltages.
+    full_scale : float or None
+        What full scale of an integer WAV file means, in the unit.
+    tacho : str or None
+        Column with the tacho's waveform, or with pulse times [s] where it is called `tacho_s`.
+    tacho_pulses : int
+        Pulses of the tacho per pinion revolution.
+    row : int or None
+        Row of a Parquet file with one record per row.
+    """
+
+    fs_hz: float | None = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    unit: str = "m/s2"
+    sensitivity_mv_per_g: float | None = None
+    full_scale: float | None = None
+    tacho: str | None = None
+    tacho_pulses: int = 1
+    row: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredRecording:
+    """Channels (n,) [m/s^2] by the model's names, rate, and pulse times [s] of the pinion where there is a tacho."""
+
+    path: Path
+    channels: Mapping[str, np.ndarray]
+    fs_hz: float
+    tacho_s: np.ndarray | None
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the recording."""
+        return next(iter(self.channels.values())).size / self.fs_hz
+
+
+def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) -> MeasuredRecording:
+    """Read the named channels of a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    names : tuple of str
+        Channels that the model takes.
+    facts : RecordingFacts
+        Rate, columns, unit, tacho.
+
+    Raises
+    ------
+    UsageError
+        Naming the file and the way out: unreadable, unknown rate, columns that are not there, signals that are not
+        finite, constant or clipped.
+    """
+    found = read_columns(path, facts.row)
+    fs_hz = _rate(path, found, facts.fs_hz)
+    signals = {name: found.values[column] for name, column in _mapping(path, found, names, facts.columns).items()}
+    problems = {name: signal_problem(signal) for name, signal in signals.items()}
+    if any(problems.values()):
+        listed = "\n".join(f"  channel {name}: {text}" for name, text in problems.items() if text)
+        raise UsageError(f"{path}: cannot be used\n{listed}")
+    if len({signal.size for signal in signals.values()}) > 1:
+        listed = ", ".join(f"{name} {signal.size}" for name, signal in signals.items())
+        raise UsageError(f"{path}: channels differ in their number of samples ({listed}); record them together")
+    factor = factor_to_m_s2(facts.unit, facts.sensitivity_mv_per_g) * _full_scale(path, found, facts)
+    channels = {name: factor * signal for name, signal in signals.items()}
+    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts))
+
+
+def _rate(path: Path, found: Columns, said: float | None) -> float:
+    if found.fs_hz and said and abs(said / found.fs_hz - 1.0) > 1e-6:
+        raise UsageError(
+            f"{path}: states {found.fs_hz:g} Hz, received --fs {said:g}; leave --fs out or correct the file"
+        )
+    rate = said or found.fs_hz
+    if rate is None or not (np.isfinite(rate) and rate > 0.0):
+        raise UsageError(f"{path}: sampling rate: received {rate}; give the true one in Hz, e.g. --fs 51200")
+    return float(rate)
+
+
+def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[str, str]) -> dict[str, str]:
+    """Return column by channel: as said, else the channel's own name, else the name this package gives its columns."""
+    unknown = sorted(set(said) - set(names))
+    if unknown:
+        raise UsageError(f"{path}: the model knows no channel {', '.join(unknown)}; it was made for {', '.join(names)}")
+    chosen = {name: _column(found, name, said.get(name)) for name in names}
+    missing = [said.get(name, name) for name, column in chosen.items() if not column]
+    if missing:
+        example = " ".join(f"--channel {name}=COLUMN" for name in names)
+        raise UsageError(
+            f"{path}: no column {', '.join(missing)}; the model was made for the channels {', '.join(names)}, the file "
+            f"holds {', '.join(list(found.values)[:20])}. Say which is which: {example}; without the same sensors and "
+            "directions, train a model on the channels that you have."
+        )
+    if len(set(chosen.values())) < len(chosen):
+        raise UsageError(f"{path}: one column was named for several channels ({chosen}); each needs its own sensor")
+    return {name: column for name, column in chosen.items() if column}
+
+
+def _column(found: Columns, name: str, said: str | None) -> str | None:
+    for wanted in (said,) if said else (name, OWN_COLUMN.format(name)):
+        if wanted in found.values:
+            return wanted
+        if said and said.isdigit() and 1 <= int(said) <= len(found.values):
+            return list(found.values)[int(said) - 1]
+    return None
+
+
+def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
+    if not found.full_scale:
+        return 1.0
+    if facts.full_scale is None or not facts.full_scale > 0.0:
+        raise UsageError(
+            f"{path}: holds shares of full scale; received full scale {facts.full_scale}. Say what it means in "
+            f"{facts.unit}, e.g. --full-scale 50"
+        )
+    return facts.full_scale
+
+
+def _tacho(path: Path, found: Columns, fs_hz: float, facts: RecordingFacts) -> np.ndarray | None:
+    if facts.tacho is None:
+        return None
+    column = _column(found, facts.tacho, facts.tacho)
+    if column is None:
+        raise UsageError(f"{path}: no column {facts.tacho} for --tacho; the file holds {', '.join(found.values)}")
+    values = found.values[column]
+    times_s = values if column == OWN_TACHO else pulse_edges(values, fs_hz)
+    if times_s.size < 2 or not np.isfinite(times_s).all() or not (np.diff(times_s) > 0).all():
+        raise UsageError(
+            f"{path}: {times_s.size} pulses in column {column}, or not increasing; an angle needs two or more. Leave "
+            "--tacho out and give --speed-range."
+        )
+    return np.asarray(times_s[:: facts.tacho_pulses])

@@ -1,0 +1,23 @@
+"""What makes a channel of a recording unusable, and the way out of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
+
+
+def signal_problem(signal: np.ndarray) -> str:
+    """Return why a channel (n,) cannot be used, or nothing: not finite, constant, clipped."""
+    broken = int(np.count_nonzero(~np.isfinite(signal)))
+    if broken:
+        return f"{broken} of {signal.size} samples are not finite; cut the recording to where it is whole"
+    if signal.size == 0 or signal.min() == signal.max():
+        return f"constant over all {signal.size} samples; check sensor and cable, or name another column"
+    share = clipped_share(signal)
+    if share > LARGEST_CLIPPED_SHARE:
+        return (
+            f"{share:.2%} of the samples stand clipped at {signal.min():g} or {signal.max():g}, up to "
+            f"{LARGEST_CLIPPED_SHARE:.1%} is allowed; record again with a wider range"
+        )
+    return ""
