@@ -20,12 +20,15 @@ from numpy.typing import NDArray
 from siggen.gears.involute import half_thickness, height
 from siggen.gears.quadrature import NODES_4, NODES_6, NODES_16, WEIGHTS_4, WEIGHTS_6, WEIGHTS_16
 from siggen.gears.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
+from siggen.gears.visible_points import edge_square, shows
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 THIN, NARROW = 5e-4, 2e-2
 """Heights of pieces over the smallest semi-axis in them up to which fewer nodes do."""
+PARTS = 64
+"""Most parts that a piece between breaks is cut into."""
 
 
 @njit(cache=True)
@@ -72,6 +75,7 @@ def _add_piece(
     low: float,
     high: float,
     pits: FloatArray,
+    lowest: FloatArray,
     base_radius: float,
     half_angle: float,
     face_width: float,
@@ -86,7 +90,8 @@ def _add_piece(
     """Add a piece without kinks inside.
 
     Near the lowest or highest point of an ellipse or a dish roll = middle - half cos t turns its square-root end into
-    a smooth function of t; two widths away from every such point 6 plain nodes are exact to 1e-11 of the piece.
+    a smooth function of t; two heights of the piece away from every such point 6 plain nodes are exact to 1e-11 of the
+    piece, three heights away 4 nodes to 1e-9.
     A square root's end weighs as the 1.5th power of the piece's height over the damage's, so thin pieces do with fewer
     nodes: 1e-7 of what one damage adds, itself less than 1e-2 of a compliance.
     """
@@ -99,11 +104,14 @@ def _add_piece(
         i = active[k]
         smallest = min(smallest, pits[i, 3])
         if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
-            clearance = min(clearance, bottom - (pits[i, 0] - pits[i, 3]), pits[i, 0] + pits[i, 3] - top)
+            clearance = min(clearance, bottom - lowest[i], pits[i, 0] + pits[i, 3] - top)
     smooth = clearance >= 2.0 * (top - bottom) or top - bottom <= THIN * smallest
     nodes, weights = (NODES_6, WEIGHTS_6) if smooth else (NODES_16, WEIGHTS_16)
-    if top - bottom <= NARROW * smallest:
-        nodes, weights = (NODES_4, WEIGHTS_4) if smooth else (NODES_6, WEIGHTS_6)
+    narrow = top - bottom <= NARROW * smallest
+    if smooth and (narrow or clearance >= 3.0 * (top - bottom)):
+        nodes, weights = NODES_4, WEIGHTS_4
+    elif narrow and not smooth:
+        nodes, weights = NODES_6, WEIGHTS_6
     moments = np.empty(3)
     for node in range(nodes.size):
         if smooth:
@@ -126,49 +134,111 @@ def _add_piece(
 
 
 @njit(cache=True)
+def _lower_ends(pits: FloatArray) -> FloatArray:
+    """Return the height of each row's lower end (n,) [m]; -inf where a deeper row hides it: it must change no bit."""
+    out = pits[:, 0] - pits[:, 3]
+    for i in range(pits.shape[0]):
+        x, w = pits[i, 7], pits[i, 1]
+        if pits[i, 6] == 0.0 and not shows(x, w, edge_square(x, w, pits, i), pits, i, i):
+            out[i] = -np.inf
+    return out
+
+
+@njit(cache=True)
+def _stride(
+    roll: float,
+    pits: FloatArray,
+    lowest: FloatArray,
+    active: IntArray,
+    count: int,
+    base_radius: float,
+    half_angle: float,
+) -> float:
+    """Return how far to go on from a roll angle so that a piece keeps three heights away from square-root ends.
+
+    Beside such an end it is as high as 6 nodes allow. Rows above `roll` are not in `active`: they change nothing.
+    """
+    x = height(roll, base_radius, half_angle)
+    clearance = smallest = np.inf
+    for k in range(count):
+        i = active[k]
+        smallest = min(smallest, pits[i, 3])
+        if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
+            clearance = min(clearance, abs(x - lowest[i]), abs(pits[i, 0] + pits[i, 3] - x))
+    slope = base_radius * roll * cos(roll - half_angle)
+    return max(0.25 * clearance, 0.99 * NARROW * smallest) / slope if slope > 0.0 else np.inf
+
+
+@njit(cache=True)
 def pit_integrals(
     rolls: FloatArray, breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
 ) -> FloatArray:
     """Return what rows (n, 13) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
 
-    `breaks` are ascending rolls that hold every kink. Pieces between breaks are summed once, each contact adds its
-    own piece above the last break: nothing above a contact and no other contact changes a bit of its result. NaN
-    where a section is consumed.
+    `breaks` are ascending rolls that hold every kink. Pieces between breaks are cut into parts from below (`_stride`),
+    each summed once; a contact adds what lies above the last cut: nothing above a contact and no other contact changes
+    a bit of its result. NaN where a section is consumed.
     """
     out = np.zeros((4, rolls.size))
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    stretches = stretch_room(room)
+    stretches, lowest = stretch_room(room), _lower_ends(pits)
     highest = np.max(rolls) if rolls.size else breaks[0]
-    sums = np.zeros((breaks.size, 4))
+    total = np.zeros(4)
+    below = [breaks[0]]
+    sums = [total.copy()]
     for k in range(1, breaks.size):
-        if breaks[k] > highest:
+        if breaks[k - 1] >= highest:
             break
         low, high = breaks[k - 1], breaks[k]
         count = _active_between(low, high, pits, base_radius, half_angle, face_width, left, right, owner, active)
-        sums[k] = sums[k - 1]
-        _add_piece(
-            low, high, pits, base_radius, half_angle, face_width, left, right, owner, active, count, stretches, sums[k]
-        )
-    total = np.empty(4)
-    present, count = -1, 0
-    for i in range(rolls.size):
-        k = max(np.searchsorted(breaks, rolls[i], side="right") - 1, 0)
-        total[:] = sums[k]
-        if rolls[i] > breaks[k]:
-            low, high = breaks[k], rolls[i]
-            if k != present:
-                # Up to the next break the same rows are present, for however many contacts.
-                stop = breaks[k + 1] if k + 1 < breaks.size else high
-                count = _active_between(
-                    low, stop, pits, base_radius, half_angle, face_width, left, right, owner, active
-                )
-                present = k if k + 1 < breaks.size else -1
+        parts = 0
+        while low < breaks[k]:
+            high = breaks[k]
+            if count > 0 and parts < PARTS:
+                high = min(high, low + _stride(low, pits, lowest, active, count, base_radius, half_angle))
             _add_piece(
                 low,
                 high,
                 pits,
+                lowest,
+                base_radius,
+                half_angle,
+                face_width,
+                left,
+                right,
+                owner,
+                active,
+                count,
+                stretches,
+                total,
+            )
+            below.append(high)
+            sums.append(total.copy())
+            low = high
+            parts += 1
+            if low > highest:
+                break
+    cuts = np.array(below)
+    present, count = -1, 0
+    for i in range(rolls.size):
+        cut = max(np.searchsorted(cuts, rolls[i], side="right") - 1, 0)
+        total[:] = sums[cut]
+        if rolls[i] > cuts[cut]:
+            k = np.searchsorted(breaks, rolls[i], side="right") - 1
+            if k != present:
+                # Up to the next break the same rows are present, for however many contacts.
+                stop = breaks[k + 1] if k + 1 < breaks.size else rolls[i]
+                count = _active_between(
+                    breaks[k], stop, pits, base_radius, half_angle, face_width, left, right, owner, active
+                )
+                present = k if k + 1 < breaks.size else -1
+            _add_piece(
+                cuts[cut],
+                rolls[i],
+                pits,
+                lowest,
                 base_radius,
                 half_angle,
                 face_width,
