@@ -57,7 +57,8 @@ def test_internals_name_what_no_sensor_sees(config: Config) -> None:
     assert (base_radius * force + moment).mean() == pytest.approx(torque, rel=2e-3)
     of_pairs = (
         "force_n", "load_share", "friction_n", "friction_moment_pinion_nm", "friction_moment_gear_nm",
-        "damping_n_s_per_m", "friction_coefficient", "central_film_m", "film_ratio", "asperity_share", "hertz_pressure_pa", "sliding_m_s",
+        "damping_n_s_per_m", "friction_coefficient", "central_film_m", "film_ratio", "asperity_share",
+        "hertz_pressure_pa", "sliding_m_s",
     )  # fmt: skip
     expected = {f"pair_{slot}_{name}" for slot in range(2) for name in of_pairs}
     expected |= {"friction_force_n", "friction_moment_gear_nm", "mesh_damping_n_s_per_m", "transmission_error_m"}
