@@ -26,6 +26,7 @@ from siggen.dynamics.structure import Structure
 from siggen.dynamics.transient import settling_steps
 from siggen.errors import UsageError
 from siggen.simulation import limits_of, specimen_state, start_angle_rad
+from siggen.specimen_drive import record_drive
 from siggen.specimen_instrument import settle_s
 from siggen.specimen_motion import specimen_motion
 
@@ -50,6 +51,8 @@ def exported_model(config: Config, record_id: int) -> Model:
     ------
     SolverFailure
         If what was drawn cannot be built; says why.
+    UsageError
+        If speed, torque or other forces vary: the format holds a constant speed and torque alone.
     """
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
@@ -59,6 +62,12 @@ def exported_model(config: Config, record_id: int) -> Model:
     with limits_of("outside_model"):
         motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps))
         angle = start_angle_rad(config, state.pair, record)
+        driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
+        if driven.excitation is not None:
+            raise UsageError(
+                "export-model: received a configuration with variation, dynamics.unbalance or dynamics.bearing_tones; "
+                "allowed are constant speed and torque, without other forces: a model would lack them"
+            )
         grid = _time_grid(config, motion, point.speed_hz, angle, steps)
         start = motion.start(grid["start_pitches"])
     return {

@@ -55,8 +55,43 @@ def test_internals_name_what_no_sensor_sees(config: Config) -> None:
     assert force.mean() == pytest.approx(torque / base_radius, rel=0.01)
     moment = table["friction_moment_pinion_nm"].to_numpy()
     assert (base_radius * force + moment).mean() == pytest.approx(torque, rel=2e-3)
-    expected = ("friction_force_n", "phi_c_rad", "bearing_force_pinion_bearing_vertical_n", "pair_0_sliding_m_s")
-    assert set(expected) <= set(table.column_names)
+    of_pairs = (
+        "force_n", "load_share", "friction_n", "friction_moment_pinion_nm", "friction_moment_gear_nm",
+        "damping_n_s_per_m", "friction_coefficient", "central_film_m", "film_ratio", "asperity_share",
+        "hertz_pressure_pa", "sliding_m_s",
+    )  # fmt: skip
+    expected = {f"pair_{slot}_{name}" for slot in range(2) for name in of_pairs}
+    expected |= {"friction_force_n", "friction_moment_gear_nm", "mesh_damping_n_s_per_m", "transmission_error_m"}
+    expected |= {"x_c_m", "y_c_m", "phi_c_rad", "clean_accel_casing_lid_vertical_m_s2"}
+    expected |= {
+        f"bearing_force_{g}_bearing_{axis}_n" for g in ("pinion", "gear") for axis in ("vertical", "horizontal")
+    }
+    assert expected <= set(table.column_names)
+
+
+def test_flanks_inside_damage_run_on_thinner_films_and_rub_more(config: Config) -> None:
+    def of_contacts(record_id: int, name: str) -> np.ndarray:
+        table = internals_table(config, record_id)
+        slots = [table[f"pair_{slot}_{name}"].to_numpy() for slot in range(2)]
+        loads = [table[f"pair_{slot}_load_share"].to_numpy() for slot in range(2)]
+        # Loaded contacts alone: where a pair enters or leaves, films of light loads are thick whatever the flank.
+        return np.concatenate([values[load > 0.9] for values, load in zip(slots, loads, strict=True)])
+
+    # At the third speed 0.1 s holds more than three revolutions: healthy, severe pits, half-face spall.
+    ratios = {record_id: of_contacts(record_id, "film_ratio").min() for record_id in (2, 11, 14)}
+    assert ratios[11] < 0.8 * ratios[2]
+    assert ratios[14] < 0.8 * ratios[2]
+    rubbing = {record_id: of_contacts(record_id, "friction_coefficient").max() for record_id in (2, 11, 14)}
+    assert 1.1 * rubbing[2] < min(rubbing[11], rubbing[14])
+    assert max(rubbing.values()) <= 0.11  # the boundary coefficient
+
+
+def test_the_set_labels_healthy_pitted_and_spalled_gearboxes_at_three_speeds(config: Config) -> None:
+    assert len(config.operating_points) == 3
+    assert {(state.fault, state.severity) for state in config.states} == {
+        ("healthy", "healthy"), ("pitting", "slight"), ("pitting", "moderate"), ("pitting", "severe"),
+        ("spalling", "moderate"), ("spalling", "severe"),
+    }  # fmt: skip
 
 
 def test_internals_of_a_record_behind_a_transfer_path_hold_what_the_set_does() -> None:

@@ -64,6 +64,12 @@ def test_scipy_integrates_the_exported_slices_of_a_spall_to_the_same_motion() ->
     assert max(differences("configs/paper_b.yaml", *STIFF, *PINION, steps, record=16, samples=2200)) < 5e-3
 
 
+@pytest.mark.parametrize("varying", ["variation.speed.end_ratio=1.1", "dynamics.unbalance.grade_mm_s=6.3"])
+def test_a_record_that_the_format_cannot_hold_is_refused(varying: str) -> None:
+    with pytest.raises(UsageError, match="allowed are constant speed and torque, without other forces"):
+        exported_model(load_config(ROOT / "configs" / "paper_b.yaml", ["duration_s=0.01", varying]), 0)
+
+
 def test_what_the_script_does_not_know_is_refused_by_name() -> None:
     model = exported_model(load_config(ROOT / "configs" / "paper_b.yaml", ["duration_s=0.01"]), 16)
     with pytest.raises(ValueError, match=r"law\.damping_film_root_kg"):
