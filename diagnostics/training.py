@@ -35,6 +35,7 @@ from diagnostics.network_training import NetworkOptions, TrainedNetworkFile, jud
 from diagnostics.other_set import classifier_predictions, network_predictions_of
 from diagnostics.progress import Stage, silent_stage
 from diagnostics.severity import AreaScores, area_predictions, area_scores, expected_area, mean_areas
+from diagnostics.single_thread import single_thread
 from diagnostics.splits import SpecimenSplit, specimen_split
 
 MODEL_FILES = ("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md")
@@ -79,6 +80,7 @@ class Training:
     severity: tuple[AreaScores, ...]
 
 
+@single_thread
 def train_models(
     dataset: Any,
     table: pa.Table,
