@@ -27,6 +27,7 @@ from diagnostics.judgement import (
     INDICATORS,
     NETWORK,
     RMS_ALONE,
+    TITLES,
     Judged,
     judged,
     judged_metrics,
@@ -233,7 +234,7 @@ def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit
     predicted = {
         "ridge regression on indicators": area_predictions(matrix, split),
         "ridge regression on RMS": area_predictions(alone, split),
-        **{f"{found.name}, by its states": expected_area(found.predictions, by_state) for found in results},
+        **{f"{TITLES[found.name]}, by its states": expected_area(found.predictions, by_state) for found in results},
         "median of training": np.full(
             test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
         ),
