@@ -113,7 +113,7 @@ class WindowStream(IterableDataset[Batch]):
             if not rest.size:
                 continue
             for number, window in zip(rest.tolist(), self._windows(rest), strict=True):
-                waiting.append((number, np.asarray(window)))
+                waiting.append((number, window))
                 if len(waiting) == self.batch:
                     yield self._collated(waiting)
                     waiting = []

@@ -10,6 +10,7 @@ import numpy as np
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.learning_curve import CurvePoint, curve_sizes, learning_curve
 from diagnostics.progress import Stage
+from diagnostics.single_thread import single_thread
 from diagnostics.split_study import SplitScore, rows_of_study, split_study
 from diagnostics.splits import SpecimenSplit
 from diagnostics.window_features import window_matrix
@@ -23,6 +24,7 @@ class Studies:
     curve: tuple[CurvePoint, ...]
 
 
+@single_thread
 def run_studies(
     dataset: Any, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, other: Any, stage: Stage
 ) -> Studies:

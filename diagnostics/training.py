@@ -27,6 +27,7 @@ from diagnostics.judgement import (
     INDICATORS,
     NETWORK,
     RMS_ALONE,
+    TITLES,
     Judged,
     judged,
     judged_metrics,
@@ -35,6 +36,7 @@ from diagnostics.network_training import NetworkOptions, TrainedNetworkFile, jud
 from diagnostics.other_set import classifier_predictions, network_predictions_of
 from diagnostics.progress import Stage, silent_stage
 from diagnostics.severity import AreaScores, area_predictions, area_scores, expected_area, mean_areas
+from diagnostics.single_thread import single_thread
 from diagnostics.splits import SpecimenSplit, specimen_split
 
 MODEL_FILES = (
@@ -82,6 +84,7 @@ class Training:
     severity: tuple[AreaScores, ...]
 
 
+@single_thread
 def train_models(
     dataset: Any,
     table: pa.Table,
@@ -234,7 +237,7 @@ def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit
     predicted = {
         "ridge regression on indicators": area_predictions(matrix, split),
         "ridge regression on RMS": area_predictions(alone, split),
-        **{f"{found.name}, by its states": expected_area(found.predictions, by_state) for found in results},
+        **{f"{TITLES[found.name]}, by its states": expected_area(found.predictions, by_state) for found in results},
         "median of training": np.full(
             test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
         ),

@@ -42,10 +42,9 @@ def set_table(dataset: Any, stage: Stage, title: str = "indicators") -> pa.Table
     DatasetError
         If a channel is constant or not finite.
     """
+    check_channels(dataset)
     with stage(title, int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        table = feature_table(dataset, advance=advance)
-    check_channels(table, dataset)
-    return table
+        return feature_table(dataset, advance=advance)
 
 
 def other_table(other: Any, stage: Stage) -> OtherSet:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
+from diagnostics.recording import recordings
 from siggen.errors import DatasetError, UsageError
 
 RECORDS_SHOWN = 3
@@ -36,20 +36,24 @@ def with_channels(dataset: Any, names: Sequence[str]) -> Any:
     return view
 
 
-def check_channels(table: pa.Table, dataset: Any) -> None:
-    """Check by a feature table that every channel of every record has finite values that vary.
+def check_channels(dataset: Any) -> None:
+    """Check that every channel of every record has finite values that vary.
 
     Raises
     ------
     DatasetError
         Naming channels, records and the way to leave a channel out.
     """
-    found = {channel.name: _problem(table, channel.name) for channel in dataset.channels}
-    problems = {name: text for name, text in found.items() if text}
-    if not problems:
+    found: dict[tuple[str, str], list[int]] = {}
+    for record in recordings(dataset):
+        for name, signal in record.channels.items():
+            if problem := _problem(signal):
+                found.setdefault((name, problem), []).append(int(record.labels["record_id"]))
+    if not found:
         return
-    usable = [name for name in found if name not in problems]
-    listed = "; ".join(f"channel {name} {text}" for name, text in problems.items())
+    broken = {name for name, _ in found}
+    usable = [channel.name for channel in dataset.channels if channel.name not in broken]
+    listed = "; ".join(f"channel {name} {problem} in {_shown(records)}" for (name, problem), records in found.items())
     way_out = (
         f"Leave it out: {' '.join(f'--channel {name}' for name in usable)}"
         if usable
@@ -58,16 +62,13 @@ def check_channels(table: pa.Table, dataset: Any) -> None:
     raise DatasetError(f"{dataset.path}: {listed}; classifiers need signals that vary. {way_out}.")
 
 
-def _problem(table: pa.Table, channel: str) -> str:
-    """Return what is wrong with a channel, or an empty text; kurtosis is undefined exactly where nothing varies."""
-    level, shape = (
-        table.column(f"{name}__{channel}").to_numpy(zero_copy_only=False).astype(np.float64)
-        for name in ("rms", "kurtosis")
-    )
-    broken, constant = ~np.isfinite(level), np.isfinite(level) & ~np.isfinite(shape)
-    for mask, text in ((broken, "holds values that are not finite"), (constant, "is constant")):
-        if mask.any():
-            record = table.column("record_id").to_numpy()[mask]
-            shown = ", ".join(str(number) for number in record[:RECORDS_SHOWN])
-            return f"{text} in {record.size} of {mask.size} records (record {shown}{' ...' if record.size > 3 else ''})"
-    return ""
+def _problem(signal: np.ndarray) -> str:
+    """Return what is wrong with a signal, or an empty text."""
+    if not np.isfinite(signal).all():
+        return "holds values that are not finite"
+    return "" if (signal != signal[0]).any() else "is constant"
+
+
+def _shown(records: list[int]) -> str:
+    more = " ..." if len(records) > RECORDS_SHOWN else ""
+    return f"{len(records)} record(s) ({', '.join(str(number) for number in records[:RECORDS_SHOWN])}{more})"

@@ -26,7 +26,7 @@ def comparison_table(training: Training) -> str:
         ]
         for pair in training.comparisons
     ]
-    return table(["Paired difference", "Macro-AUROC", "Accuracy", "Interval without 0"], rows, sortable=True)
+    return table(["Paired difference", "Macro-AUROC", "Accuracy", "Macro-AUROC without 0"], rows, sortable=True)
 
 
 def differs(low: float, high: float) -> bool:

@@ -39,6 +39,9 @@ small{color:var(--soft)}
 code{overflow-wrap:anywhere;font-size:.88em}
 @media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
 th,td{padding:.3rem .4rem}th:first-child,td:first-child{min-width:8.5rem}}
+@media print{main{max-width:none;padding:0}.scroll{overflow:visible}.tall{max-height:none}
+thead th{position:static}thead th::after{content:""!important}figure,tr{break-inside:avoid}
+h2{break-after:avoid}table{font-size:.75rem}th,td{white-space:normal;padding:.2rem .3rem}}
 """
 
 SCRIPT = """

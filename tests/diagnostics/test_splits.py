@@ -46,5 +46,10 @@ def test_a_single_state_is_refused() -> None:
 
 
 def test_states_keep_the_order_of_the_configuration() -> None:
-    found = labels(["train", "test"], states=("z_first", "a_second"))
+    found = labels(["train", "train", "test"], states=("z_first", "a_second"))
     assert specimen_split(found).classes == ("z_first", "a_second")
+
+
+def test_one_training_specimen_of_a_state_is_refused_with_the_way_out() -> None:
+    with pytest.raises(DatasetError, match=r"one specimen of healthy, worn.*specimens=N"):
+        specimen_split(labels(["train", "test"]))
