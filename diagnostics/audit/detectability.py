@@ -29,7 +29,7 @@ TARGETS = (0.75, 0.85)
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """AUC of one state against healthy, with its damage: means of the size labels over its records."""
+    """AUC of one state against healthy, with its damage: kind of fault, and means of the size labels over its records."""
 
     state: str
     fault: str
@@ -108,8 +108,17 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
         )
         rows = labels["state"] == state
         sizes = {name: float(np.mean(labels[name][rows])) for name in SIZES if name in labels}
-        found.append(Detection(state, str(labels["fault"][rows][0]), sizes, auc, count))
-    return sorted(found, key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]])))
+        found.append(Detection(state, _kind(labels, rows), sizes, auc, count))
+    return sorted(
+        found, key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]), entry.sizes[SIZES[0]])
+    )
+
+
+def _kind(labels: dict[str, np.ndarray], rows: np.ndarray) -> str:
+    """Return the fault; damage through the face is another kind, since no land beside it carries at any length."""
+    fault = str(labels["fault"][rows][0])
+    through = "through_face" in labels and bool(np.all(labels["through_face"][rows]))
+    return f"{fault} through the face" if through else fault
 
 
 def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, seed: int) -> np.ndarray:

@@ -139,6 +139,23 @@ def test_coupling_softens_where_pairs_share_the_load_and_nowhere_else():
     assert np.all(mesh_stiffness(PAIR, angle, BODY, DAMAGE) <= mesh_stiffness(PAIR, angle, BODY) * (1 + 1e-14))
 
 
+def test_a_pair_without_contact_carries_nothing_and_its_neighbour_all():
+    # Damage through the face can leave one of two pairs open; the limit of a vanishing spring must be the open pair.
+    newest = np.array([PAIR.contact_start_m])
+    other = float(pair_stiffness(PAIR, newest + PAIR.base_pitch_m, BODY)[0])
+    open_pair = approach_forces(PAIR, BODY, newest, np.array([[0.0], [other]]))
+    np.testing.assert_array_equal(open_pair, [[0.0], [other]])
+    nearly = approach_forces(PAIR, BODY, newest, np.array([[1e-9 * other], [other]]))
+    np.testing.assert_allclose(nearly[1], other, rtol=1e-8)  # the spring's share of the load
+
+
+def test_the_loss_of_damage_through_the_face_is_known_with_coupling_where_two_pairs_share_the_load():
+    # An ellipse far wider than the face, 2 mm high about the pitch point: it reaches into the zone of two pairs, where
+    # the damaged pair is open beside another one.
+    through = pit(1.9, 10.0, 500.0, 1.0, 0.1)
+    assert largest_stiffness_loss(PAIR, (through,), BODY) == 1.0
+
+
 def test_forces_without_coupling_are_the_pairs_own_stiffness():
     stiffness = np.array([[1.0, 2.0], [3.0, 4.0]])
     newest = np.full(2, PAIR.contact_start_m)
