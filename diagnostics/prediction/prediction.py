@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.prediction.log_features import log_mean, log_values
+from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.prediction.training_distance import TrainingDistance
@@ -125,10 +126,10 @@ def predict_recording(
     recording = at_rate(recording, facts.fs_hz)
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
     pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings)
-    plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)))
+    plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)), pulses.speed_hz)
     if references:
         healthy = [_reference_pieces(model, reference, teeth, speed_range_hz) for reference in references]
-        answer, nearness = _referenced_vote(model, pieces, healthy)
+        answer, nearness = _referenced_vote(model, pieces, healthy, pulses.speed_hz)
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
     network, notes = _network_vote(model, recording, pulses, teeth)
@@ -141,7 +142,10 @@ def predict_recording(
         votes=(answer, *network),
         nearness=nearness,
         plain_nearness=plain,
-        reasons=_reasons(model, source, pulses, teeth, pieces, nearness),
+        reasons=(
+            *_distance_reasons(plain, nearness),
+            *_known_reasons(model.facts, source, pulses, teeth, pieces),
+        ),
         notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
         pieces=pieces,
     )
@@ -177,7 +181,9 @@ def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:
     return _pipeline_vote(INDICATORS, model.classifier, pieces.columns(model.classifier.features))
 
 
-def _referenced_vote(model: ReleasedModel, pieces: RecordPieces, healthy: list[RecordPieces]) -> tuple[Vote, Nearness]:
+def _referenced_vote(
+    model: ReleasedModel, pieces: RecordPieces, healthy: list[RecordPieces], speed_hz: float
+) -> tuple[Vote, Nearness]:
     assert model.referenced_classifier is not None
     assert model.referenced_distance is not None
 
@@ -188,13 +194,14 @@ def _referenced_vote(model: ReleasedModel, pieces: RecordPieces, healthy: list[R
     vote = _pipeline_vote(
         REFERENCED, model.referenced_classifier, minus_reference(model.referenced_classifier.features)
     )
-    return vote, _nearness(model.referenced_distance, minus_reference(model.referenced_distance.features))
+    logs = minus_reference(model.referenced_distance.features)
+    return vote, _nearness(model.referenced_distance, logs, speed_hz)
 
 
-def _nearness(distance: TrainingDistance, logs: np.ndarray) -> Nearness:
-    found = distance.distance(logs)
+def _nearness(distance: TrainingDistance, logs: np.ndarray, speed_hz: float) -> Nearness:
+    found = distance.distance(logs, np.full(len(logs), speed_hz))
     middle = int(np.argsort(found)[len(found) // 2])
-    return Nearness(float(np.median(found)), distance.threshold, tuple(distance.strangest(logs[middle])))
+    return Nearness(float(np.median(found)), distance.threshold, tuple(distance.strangest(logs[middle], speed_hz)))
 
 
 def _network_vote(
@@ -214,21 +221,34 @@ def _network_vote(
     return (_vote(NETWORK, found),), ()
 
 
-def _reasons(
-    model: ReleasedModel,
+def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:
+    """Return why the distance forbids an answer.
+
+    A foreign machine stays foreign with a reference: differences look alike on machines whose states they do not tell.
+    """
+    found = []
+    judged = {"training records": plain}
+    if nearness is not plain:
+        judged["differences to a reference in training"] = nearness
+    for what, near in judged.items():
+        if near.outside:
+            strangest = ", ".join(f"{name} {off:+.1f} spreads" for name, off in near.strangest)
+            found.append(
+                f"unlike the {what}: distance {near.distance:.2f}, up to {near.threshold:.2f} was seen on held-out "
+                f"gearboxes; farthest off: {strangest}"
+            )
+    return found
+
+
+def _known_reasons(
+    facts: ModelFacts,
     recording: MeasuredRecording,
     pulses: ShaftPulses,
     teeth: tuple[int, int],
     pieces: RecordPieces,
-    nearness: Nearness,
-) -> tuple[str, ...]:
-    facts, found = model.facts, []
-    if nearness.outside:
-        strangest = ", ".join(f"{name} {off:+.1f} spreads" for name, off in nearness.strangest)
-        found.append(
-            f"unlike the training records: distance {nearness.distance:.2f}, up to {nearness.threshold:.2f} was seen "
-            f"on held-out gearboxes; farthest off: {strangest}"
-        )
+) -> list[str]:
+    """Return what is known of the recording and was never trained."""
+    found = []
     if teeth not in facts.teeth:
         known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
         found.append(f"{teeth[0]}/{teeth[1]} teeth; the training set knows {known} only")
@@ -244,4 +264,4 @@ def _reasons(
         found.append(
             f"averages over {pieces.revolutions} pinion revolutions; training has {facts.fewest_revolutions} or more"
         )
-    return tuple(found)
+    return found

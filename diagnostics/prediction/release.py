@@ -93,8 +93,9 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
 def _distance(logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit) -> tuple[TrainingDistance, np.ndarray]:
     names = distance_features(matrix.names)
     chosen = logs[:, [matrix.names.index(name) for name in names]]
-    found = calibrated_distance(chosen, names, split, matrix.labels["specimen_id"])
-    return found, found.distance(chosen)
+    speed_hz = matrix.labels["speed_hz"].astype(np.float64)
+    found = calibrated_distance(chosen, speed_hz, names, split, matrix.labels["specimen_id"])
+    return found, found.distance(chosen, speed_hz)
 
 
 def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:

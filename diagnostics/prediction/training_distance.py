@@ -1,16 +1,20 @@
 """How far a record lies from the training records: robust Mahalanobis distance on log features, with a threshold.
 
 Few features, since the distance is estimated from few gearboxes: level, shape, mesh lines (what the transfer path
-makes of them), how much is synchronous, and sidebands. Centre and spread are medians, outliers are clipped before the
-covariance is taken, and the covariance is shrunk (Ledoit & Wolf 2004). The threshold comes from held-out gearboxes
-alone: the validation specimens, and every training specimen left out of the fit in turn. Source: standard literature;
-the threshold's rule is derived.
+makes of them), how much is synchronous, and sidebands; not those that damage moves most (FM4 and its like), which would
+make the states clusters. Speed moves all of them and is known, so a straight line in log speed is taken off first.
+Spreads are medians, no feature counts as more than six of them (a line near a node falls without limit in logarithms),
+and the covariance is shrunk (Ledoit & Wolf 2004).
+
+The threshold comes from held-out gearboxes alone: the validation specimens, and every training specimen left out of the
+fit in turn. Source: standard literature; the rule for the threshold is that of conformal prediction (Vovk 2005), with
+half of the allowed false alarms, since records of one gearbox are alike and the quantile scatters accordingly.
 """
 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,18 +22,20 @@ import numpy as np
 from diagnostics.splits import SpecimenSplit
 
 DEFINITIONS = (
-    *("rms", "kurtosis", "crest_factor", "average_rms_pinion", "energy_ratio_pinion", "fm4_pinion"),
+    *("rms", "kurtosis", "crest_factor", "average_rms_pinion", "energy_ratio_pinion"),
     *(f"mesh_amplitude_h{h}" for h in range(1, 6)),
     *(f"sideband_ratio_pinion_h{h}_k3" for h in range(1, 4)),
 )
-HELD_OUT_SHARE_INSIDE = 0.975
-"""Half of the false alarms that are allowed (5 %): held-out records of one specimen are alike, so the quantile itself
-scatters by about as much again."""
+SHARE_INSIDE = 0.975
+"""Share of held-out records that count as like training: half of the 5 % of false alarms that are allowed."""
 
 SMALLEST_SPREAD = 0.02
 """Two per cent: differences below the tolerance of a sensor's sensitivity make no machine foreign."""
 
-CLIPPED_AT = 3.0
+SMALLEST_SPEED_RANGE = 0.05
+"""Range of log speed below which no line is fitted."""
+
+CLIPPED_AT = 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,38 +46,47 @@ class TrainingDistance:
     ----------
     features : tuple of str
         Columns it takes.
-    centre, spread : (k,) float64
-        Median, and median absolute deviation times 1.4826, of the log features.
+    centre, slope : (k,) float64
+        Log features at a pinion speed of 1 Hz on the fitted line, and their slope over log speed.
+    spread : (k,) float64
+        Median absolute deviation from the line, times 1.4826.
     precision : (k, k) float64
         Inverse covariance of the standardised log features.
     threshold : float
         Largest distance that counts as like training; NaN before it is chosen.
-    held_out_records, held_out_specimens : int
-        What the threshold was chosen on.
+    held_out_specimens : int
+        How many gearboxes the threshold was chosen on.
     """
 
     features: tuple[str, ...]
     centre: np.ndarray
+    slope: np.ndarray
     spread: np.ndarray
     precision: np.ndarray
     threshold: float = np.nan
-    held_out_records: int = 0
     held_out_specimens: int = 0
 
-    def distance(self, logs: np.ndarray) -> np.ndarray:
+    def standardised(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
+        """Return how far log features (n, k) lie off the line at speeds (n,) [Hz], in spreads; 0 where undefined."""
+        line = self.centre + np.log(speed_hz)[:, None] * self.slope
+        return np.asarray(np.nan_to_num((logs - line) / self.spread))
+
+    def distance(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
         """Return the distance of records, (n,), one for a typical training record; undefined features count as typical.
 
         Parameters
         ----------
         logs : (n, k) float64
             Log features in the order of `features`.
+        speed_hz : (n,) float64
+            Mean speed of the pinion.
         """
-        standard = np.nan_to_num((logs - self.centre) / self.spread)
+        standard = np.clip(self.standardised(logs, speed_hz), -CLIPPED_AT, CLIPPED_AT)
         return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", standard, self.precision, standard) / logs.shape[1]))
 
-    def strangest(self, logs: np.ndarray, count: int = 3) -> list[tuple[str, float]]:
-        """Return the features of one record (k,) farthest off their centre, in spreads."""
-        off = np.nan_to_num((logs - self.centre) / self.spread)
+    def strangest(self, logs: np.ndarray, speed_hz: float, count: int = 3) -> list[tuple[str, float]]:
+        """Return the features of one record (k,) farthest off the line, in spreads."""
+        off = self.standardised(logs[None, :], np.array([speed_hz]))[0]
         return [(self.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
 
 
@@ -80,24 +95,35 @@ def distance_features(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for name in names if name.split("__")[0] in DEFINITIONS)
 
 
-def fit_distance(logs: np.ndarray, features: tuple[str, ...]) -> TrainingDistance:
-    """Return the distance to records (n, k), without a threshold."""
+def fit_distance(logs: np.ndarray, speed_hz: np.ndarray, features: tuple[str, ...]) -> TrainingDistance:
+    """Return the distance to records (n, k) at speeds (n,), without a threshold."""
     from sklearn.covariance import LedoitWolf
 
+    lines = np.array([_line(np.log(speed_hz), column) for column in logs.T])
+    off = logs - lines[:, 0] - np.log(speed_hz)[:, None] * lines[:, 1]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a feature that is undefined throughout stays out: zero below
-        centre = np.nan_to_num(np.nanmedian(logs, axis=0))
-        spread = np.nan_to_num(1.4826 * np.nanmedian(np.abs(logs - centre), axis=0))
+        warnings.simplefilter("ignore", RuntimeWarning)  # a feature that is undefined throughout has no median
+        spread = np.nan_to_num(1.4826 * np.nanmedian(np.abs(off), axis=0))
     spread = np.maximum(spread, SMALLEST_SPREAD)
-    clipped = np.clip(np.nan_to_num((logs - centre) / spread), -CLIPPED_AT, CLIPPED_AT)
+    clipped = np.clip(np.nan_to_num(off / spread), -CLIPPED_AT, CLIPPED_AT)
     covariance = LedoitWolf(assume_centered=True).fit(clipped).covariance_
-    # a feature that is undefined in all training records has no variance: unit variance leaves it without effect
-    covariance[np.diag_indices_from(covariance)] = np.where(np.diag(covariance) > 0.0, np.diag(covariance), 1.0)
-    return TrainingDistance(features, centre, spread, np.linalg.inv(covariance))
+    return TrainingDistance(features, lines[:, 0], lines[:, 1], spread, np.linalg.inv(covariance))
+
+
+def _line(log_speed: np.ndarray, column: np.ndarray) -> tuple[float, float]:
+    """Return intercept and slope of the least-squares line through the defined values; level where speeds are alike."""
+    defined = np.isfinite(column)
+    if not defined.any():
+        return 0.0, 0.0
+    x, y = log_speed[defined], column[defined]
+    if np.ptp(x) < SMALLEST_SPEED_RANGE:
+        return float(np.median(y)), 0.0
+    slope = float(np.cov(x, y, bias=True)[0, 1] / np.var(x))
+    return float(y.mean() - slope * x.mean()), slope
 
 
 def calibrated_distance(
-    logs: np.ndarray, features: tuple[str, ...], split: SpecimenSplit, specimen: np.ndarray
+    logs: np.ndarray, speed_hz: np.ndarray, features: tuple[str, ...], split: SpecimenSplit, specimen: np.ndarray
 ) -> TrainingDistance:
     """Return the distance to the training specimens with the threshold of the held-out ones; test is not touched.
 
@@ -105,6 +131,8 @@ def calibrated_distance(
     ----------
     logs : (records, k) float64
         Log features of all records.
+    speed_hz : (records,) float64
+        Their mean pinion speed.
     features : tuple of str
         Their names.
     split : SpecimenSplit
@@ -112,20 +140,18 @@ def calibrated_distance(
     specimen : (records,) int
         Specimen of every record.
     """
-    found = fit_distance(logs[split.train], features)
-    held_out = [found.distance(logs[split.validation])]
+    found = fit_distance(logs[split.train], speed_hz[split.train], features)
+    held_out = found.distance(logs, speed_hz)  # of the validation specimens so far
     trained = np.unique(specimen[split.train])
     for number in trained if trained.size > 2 else ():
         own = split.train & (specimen == number)
-        held_out.append(fit_distance(logs[split.train & ~own], features).distance(logs[own]))
-    distances = np.concatenate(held_out)
-    if not distances.size:
-        distances = found.distance(logs[split.train])
-    threshold = float(np.quantile(distances, HELD_OUT_SHARE_INSIDE, method="higher"))
-    specimens = int(np.unique(specimen[split.validation]).size) + (trained.size if trained.size > 2 else 0)
-    return TrainingDistance(
-        features, found.centre, found.spread, found.precision, threshold, int(distances.size), specimens
-    )
+        others = split.train & ~own
+        left = fit_distance(logs[others], speed_hz[others], features)
+        held_out[own] = left.distance(logs[own], speed_hz[own])
+    used = split.train | split.validation
+    ordered = np.sort(held_out[used])
+    rank = min(int(np.ceil(SHARE_INSIDE * (ordered.size + 1))), ordered.size)
+    return replace(found, threshold=float(ordered[rank - 1]), held_out_specimens=int(np.unique(specimen[used]).size))
 
 
 def distance_facts(found: TrainingDistance) -> dict[str, Any]:
@@ -133,10 +159,10 @@ def distance_facts(found: TrainingDistance) -> dict[str, Any]:
     return {
         "features": list(found.features),
         "centre": found.centre.tolist(),
+        "slope": found.slope.tolist(),
         "spread": found.spread.tolist(),
         "precision": found.precision.tolist(),
         "threshold": found.threshold,
-        "held_out_records": found.held_out_records,
         "held_out_specimens": found.held_out_specimens,
     }
 
@@ -149,14 +175,14 @@ def distance_from_facts(facts: dict[str, Any]) -> TrainingDistance:
     ValueError, KeyError
         If shapes do not fit or something is missing.
     """
-    features = tuple(facts["features"])
-    centre, spread, precision = (
-        np.asarray(facts[name], dtype=np.float64) for name in ("centre", "spread", "precision")
-    )
-    size = len(features)
-    if centre.shape != (size,) or spread.shape != (size,) or precision.shape != (size, size):
-        raise ValueError(f"distance: {size} features, but {centre.shape}, {spread.shape}, {precision.shape}")
+    features, size = tuple(facts["features"]), len(facts["features"])
+    arrays = {name: np.asarray(facts[name], dtype=np.float64) for name in ("centre", "slope", "spread", "precision")}
+    for name, array in arrays.items():
+        if array.shape != ((size, size) if name == "precision" else (size,)):
+            raise ValueError(f"distance: {size} features, but {name} has shape {array.shape}")
     return TrainingDistance(
-        features, centre, spread, precision, float(facts["threshold"]),
-        int(facts["held_out_records"]), int(facts["held_out_specimens"]),
-    )  # fmt: skip
+        features,
+        **arrays,
+        threshold=float(facts["threshold"]),
+        held_out_specimens=int(facts["held_out_specimens"]),
+    )
