@@ -8,12 +8,12 @@ cross-validation); choice of splits derived.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from diagnostics.baselines import logistic_pipeline, rms_features, state_index
-from diagnostics.evaluation import Predictions, Scores, scores
+from diagnostics.evaluation import Predictions, Scores, bootstrap_weights, interval, macro_auroc, scores
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.other_set import OTHER_SPECIMENS
 from diagnostics.seeding import Purpose, generator
@@ -142,19 +142,44 @@ def _score(
     matrix: FeatureMatrix, classes: tuple[str, ...], title: str, leaky: bool, folds: Sequence[Fold], seed: int
 ) -> SplitScore:
     alone = matrix.columns([*rms_features(matrix.names)] or ["rms"])
-    found = [scores(_out_of_fold(part, classes, folds), seed, RESAMPLES) for part in (matrix, alone)]
+    found = [fold_scores(*_out_of_fold(part, classes, folds), seed) for part in (matrix, alone)]
     return SplitScore(title, leaky, found[0], found[1], len(folds))
 
 
-def _out_of_fold(matrix: FeatureMatrix, classes: tuple[str, ...], folds: Sequence[Fold]) -> Predictions:
-    """Return the predictions of every row by the classifiers that were not trained on it."""
+def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> Scores:
+    """Judge out-of-fold predictions with the macro-AUROC averaged over folds, never ranked across them.
+
+    A state that is rare in a fold is frequent in its training; ranked across folds, even a classifier that knows
+    nothing but these frequencies would fall below chance.
+    """
+    weights = bootstrap_weights(found.specimen, seed, RESAMPLES)
+    areas, sizes = [], []
+    for one in np.unique(fold):
+        mine = fold == one
+        part = Predictions(found.classes, found.truth[mine], found.probability[mine], found.specimen[mine])
+        areas.append(macro_auroc(part, weights[:, mine]))
+        sizes.append(weights[:, mine].sum(axis=1))
+    area, size = np.stack(areas), np.where(np.isfinite(areas), sizes, 0.0)
+    with np.errstate(invalid="ignore"):
+        mean = (np.nan_to_num(area) * size).sum(axis=0) / size.sum(axis=0)
+    specimens = int(np.unique(found.specimen).size)
+    return replace(scores(found, seed, RESAMPLES), macro_auroc=interval(mean, specimens))
+
+
+def _out_of_fold(
+    matrix: FeatureMatrix, classes: tuple[str, ...], folds: Sequence[Fold]
+) -> tuple[Predictions, np.ndarray]:
+    """Return the predictions of every row by the classifiers that were not trained on it, and its fold."""
     truth = state_index(matrix, classes)
+    fold = np.zeros(truth.size, dtype=np.int64)
     probability = np.full((truth.size, len(classes)), np.nan)
-    for train, test in folds:
+    for number, (train, test) in enumerate(folds):
         if np.unique(truth[train]).size < 2:
             continue
+        fold[test] = number
         model = logistic_pipeline().fit(matrix.values[train], truth[train])
         probability[test] = 0.0
         probability[np.ix_(test, model.classes_)] = model.predict_proba(matrix.values[test])
     known = np.isfinite(probability[:, 0])
-    return Predictions(classes, truth[known], probability[known], matrix.labels["specimen_id"][known])
+    found = Predictions(classes, truth[known], probability[known], matrix.labels["specimen_id"][known])
+    return found, fold[known]

@@ -8,10 +8,11 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from diagnostics.evaluation import Predictions, macro_auroc
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
 from diagnostics.learning_curve import learning_curve
 from diagnostics.recording import recordings
-from diagnostics.split_study import crossed, held_out, speed_bands, split_study
+from diagnostics.split_study import crossed, fold_scores, held_out, speed_bands, split_study
 from diagnostics.splits import specimen_split
 from diagnostics.window_features import by_channel, window_matrix, windows_of
 
@@ -44,6 +45,16 @@ def test_random_windows_reward_memory_and_unseen_specimens_do_not() -> None:
     for title in ("specimens", "one speed band of other specimens", "single channel: one sensor of other specimens"):
         assert found[title] == pytest.approx(0.5, abs=0.3)
         assert found[title] < found["random windows (leaky)"] - 0.15
+
+
+def test_frequencies_that_differ_between_folds_do_not_push_a_blind_classifier_below_chance() -> None:
+    # it states the frequency of the other fold, the same for every row: no ranking within a fold, a wrong one across
+    truth = np.array([0] * 8 + [1] * 2 + [0] * 2 + [1] * 8)
+    fold = np.repeat([0, 1], 10)
+    worn = np.where(fold == 0, 0.8, 0.2)
+    found = Predictions(CLASSES, truth, np.stack([1 - worn, worn], axis=1), np.arange(20))
+    assert macro_auroc(found, np.ones((1, 20)))[0] < 0.3
+    assert fold_scores(found, fold, seed=0).macro_auroc.value == 0.5
 
 
 def test_the_other_set_is_tested_as_a_whole_and_never_trained_on() -> None:
