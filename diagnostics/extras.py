@@ -12,6 +12,7 @@ EXTRA_OF = {
     "skops": "diagnostics",
     "torch": "cnn",
     "safetensors": "cnn",
+    "onnx": "onnx",
 }
 """Import name of every optional package and the extra that brings it."""
 

@@ -219,6 +219,7 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
     from diagnostics.classifier_file import save_classifier
     from diagnostics.model_card import model_card
     from diagnostics.prediction.release import release, save_release
+    from diagnostics.prediction.release_card import release_card
 
     folder.mkdir(parents=True, exist_ok=True)
     for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
@@ -237,5 +238,6 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
     released = release(training, table, dataset)
     save_release(training, released, table, folder)
     notes += [released.note] if released.note else []
-    (folder / "model_card.md").write_text(model_card(training, dataset), encoding="utf-8")
+    card = f"{model_card(training, dataset)}\n{release_card(released)}"
+    (folder / "model_card.md").write_text(card, encoding="utf-8")
     return notes

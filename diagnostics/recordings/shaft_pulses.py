@@ -1,8 +1,9 @@
 """Pulse times of the pinion of a recording: from its tacho, or from the mesh lines in a range of speed of any width.
 
-A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits at twice and at half
-the speed. It is searched in parts narrower than that, and the lowest speed among the clear ones is doubled as long as
-its odd mesh lines are next to nothing beside the even ones. Source: derived; the search itself is in `tacholess_angle`.
+A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits in part at twice, half
+or two thirds of the speed. It is searched in parts narrower than that; among what is found, the fastest comb that holds
+practically all power in mesh lines is taken: slower ones hold it too, with empty lines between, faster ones lose lines.
+Source: derived; the search itself is in `tacholess_angle`.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ from siggen.errors import UsageError
 PART_RATIO = 1.6
 """High over low of one part; below two, so that a part holds one mesh harmonic only."""
 
-NEARLY_AS_CLEAR = 0.5
-"""At half the true speed at least every second line stands, so about half of the clarity is left or more."""
+CLEAR_ENOUGH = 0.5
+"""Clarity, relative to the clearest part, from which a part's speed is a candidate."""
 
-LEAST_ODD_SHARE = 0.1
-"""Odd over even mesh lines, rms of amplitudes; at half the true speed the odd ones are far sidebands or noise."""
+POWER_KEPT = 0.99
+"""Share of the power in mesh lines that a faster comb must still hold; what lies between true lines is sidebands and
+noise, at -20 dB and below."""
 
 LINES_COMPARED = 10
 
@@ -85,17 +87,22 @@ def shaft_pulses(
 
 def _from_mesh(recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]) -> ShaftPulses:
     try:
-        channel, ridge = _clearest(recording, teeth, speed_range_hz)
-        signal, speeds = recording.channels[channel], ridge.speed_hz
-        pulses = _pulses_around(signal, recording.fs_hz, teeth, speeds)
-        while 2.0 * np.median(speeds) <= speed_range_hz[1] and (
-            odd_share(signal, recording.fs_hz, teeth, pulses) < LEAST_ODD_SHARE
-        ):
-            speeds = 2.0 * speeds
-            pulses = _pulses_around(signal, recording.fs_hz, teeth, speeds)
+        channel, candidates = _candidates(recording, teeth, speed_range_hz)
+        signal, fs_hz = recording.channels[channel], recording.fs_hz
+        found = [_pulses_around(signal, fs_hz, teeth, speeds) for speeds in candidates]
     except UsageError as error:
         raise UsageError(f"{recording.path}: {error}") from error
-    return ShaftPulses(pulses, channel)
+    if len(found) == 1:
+        return ShaftPulses(found[0], channel)
+    fastest_hz = max(_mean_speed(pulses) for pulses in found)
+    highest_hz = min(LINES_COMPARED * teeth * fastest_hz, 0.45 * fs_hz)
+    power = np.array([line_power(signal, fs_hz, teeth, pulses, highest_hz) for pulses in found])
+    kept = [pulses for pulses, share in zip(found, power / power.max(), strict=True) if share >= POWER_KEPT]
+    return ShaftPulses(max(kept, key=_mean_speed), channel)
+
+
+def _mean_speed(pulses_s: np.ndarray) -> float:
+    return float((pulses_s.size - 1) / (pulses_s[-1] - pulses_s[0]))
 
 
 def _pulses_around(signal: np.ndarray, fs_hz: float, teeth: int, speeds_hz: np.ndarray) -> np.ndarray:
@@ -103,32 +110,37 @@ def _pulses_around(signal: np.ndarray, fs_hz: float, teeth: int, speeds_hz: np.n
     return tacholess_pulses(signal, fs_hz, teeth, (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin))
 
 
-def odd_share(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarray) -> float:
-    """Return the rms amplitude of the odd mesh lines over that of the even ones, among the first ten in the band."""
+def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarray, highest_hz: float) -> float:
+    """Return the power in the mesh lines up to a frequency, in squared units of the signal."""
     spectrum = order_spectrum(signal, pulses_s, fs_hz, teeth)
-    highest = min(LINES_COMPARED, int(0.5 * fs_hz * float(np.diff(pulses_s).min()) / teeth))
-    lines = spectrum.amplitude_m_s2[np.arange(1, highest + 1) * teeth * spectrum.revolutions]
-    return float(np.sqrt(np.mean(lines[::2] ** 2) / np.mean(lines[1::2] ** 2))) if highest > 1 else np.inf
+    count = max(1, int(highest_hz / (teeth * _mean_speed(pulses_s))))
+    lines = np.arange(1, count + 1) * teeth * spectrum.revolutions
+    return float(np.sum(spectrum.amplitude_m_s2[lines[lines < spectrum.order.size]] ** 2))
 
 
-def _clearest(recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]) -> tuple[str, MeshRidge]:
-    """Return the channel and ridge of the clearest part of the range, the lower speed among nearly equal ones."""
+def _candidates(
+    recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]
+) -> tuple[str, list[np.ndarray]]:
+    """Return the clearest channel and the speeds over time that its parts of the range show, and twice those."""
     samples = round(SEARCHED_S * recording.fs_hz)
-    found = [
-        (name, mesh_ridge(signal[:samples], recording.fs_hz, teeth, part))
-        for part in range_parts(speed_range_hz)
+    found: dict[str, list[MeshRidge]] = {
+        name: [mesh_ridge(signal[:samples], recording.fs_hz, teeth, part) for part in range_parts(speed_range_hz)]
         for name, signal in recording.channels.items()
-    ]
-    clearest = max(ridge.clarity for _, ridge in found)
+    }
+    channel = max(found, key=lambda name: max(ridge.clarity for ridge in found[name]))
+    clearest = max(ridge.clarity for ridge in found[channel])
     if clearest < LEAST_CLARITY:
         raise UsageError(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of pinion "
             f"speed (clarity {clearest:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
         )
-    near = [entry for entry in found if entry[1].clarity >= NEARLY_AS_CLEAR * clearest]
-    lowest = min(float(np.median(ridge.speed_hz)) for _, ridge in near)
-    same = [entry for entry in near if float(np.median(entry[1].speed_hz)) < 1.05 * lowest]
-    return max(same, key=lambda entry: entry[1].clarity)
+    clear = [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
+    doubled = [2.0 * speeds for speeds in clear if 2.0 * np.median(speeds) <= speed_range_hz[1]]
+    distinct: list[np.ndarray] = []
+    for speeds in (*clear, *doubled):
+        if all(abs(np.median(speeds) / np.median(known) - 1.0) > 0.01 for known in distinct):
+            distinct.append(speeds)
+    return channel, distinct
 
 
 def range_parts(speed_range_hz: tuple[float, float]) -> list[tuple[float, float]]:

@@ -24,7 +24,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return int(stop.value.code or 0)
 
 
-@pytest.mark.parametrize("command", [[], ["features"], ["indicators"], ["train"], ["report"]])
+@pytest.mark.parametrize("command", [[], ["features"], ["indicators"], ["train"], ["report"], ["predict"]])
 def test_every_command_explains_itself_with_an_example(
     command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

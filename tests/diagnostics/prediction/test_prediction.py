@@ -1,0 +1,170 @@
+"""From a trained folder to an answer, or to none: distances, reasons, references, and files that are refused."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnostics.cli.app import main
+from diagnostics.feature_table import feature_matrix, feature_table
+from diagnostics.prediction.log_features import healthy_referenced
+from diagnostics.prediction.model_facts import manifest_digest
+from diagnostics.prediction.released_model import load_model
+from diagnostics.prediction.training_distance import fit_distance
+from diagnostics.training import save_models, train_models
+from siggen.dataset.manifest import sealed
+from siggen.errors import UsageError
+
+FS_HZ = 12_800.0
+
+
+@pytest.fixture(scope="module")
+def folder(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    found = tmp_path_factory.mktemp("models")
+    save_models(train_models(dataset, features, 0, cnn=False), features, dataset, found)
+    return found
+
+
+def save(path: Path, dataset: Any, record: int, gain: float = 1.0) -> Path:
+    row = dataset.record(record)
+    signals = {name: gain * row[f"accel_{name}_m_s2"] for name in ("bearing_vertical", "bearing_horizontal")}
+    np.savez(path, **signals)
+    return path
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return int(stop.value.code or 0)
+
+
+def options(*more: str) -> tuple[str, ...]:
+    return ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", *more)
+
+
+def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
+    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)  # severe
+    assert run(monkeypatch, str(folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    assert "answer:               severe" in capsys.readouterr().out
+    found = json.loads((tmp_path / "out" / "prediction.json").read_text())
+    assert found["state"] == "severe"
+    assert found["mesh_frequency_hz"] == pytest.approx(540.0, rel=1e-3)
+    assert sum(found["probabilities"]["indicators"][state] for state in ("healthy", "slight", "severe")) == (
+        pytest.approx(1.0)
+    )
+    assert (tmp_path / "out" / "sidebands_bearing_vertical.png").read_bytes().startswith(b"\x89PNG")
+    assert "severe" in (tmp_path / "out" / "prediction.html").read_text()
+
+
+def test_a_foreign_level_and_foreign_teeth_get_no_answer(
+    folder: Path, dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = save(tmp_path / "run.npz", dataset, 0, gain=300.0)
+    assert run(monkeypatch, str(folder), str(file), *options()) == 0
+    found = capsys.readouterr().out
+    assert "answer:               abstains" in found
+    assert "unlike the training records" in found
+    file = save(tmp_path / "run.npz", dataset, 0)
+    assert run(monkeypatch, str(folder), str(file), *options("--teeth", "18,31")) == 0
+    assert "18/31 teeth; the training set knows 18/47 only" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--fs", "12800", "--speed-range", "20,50"), "teeth unknown"),
+        (("--fs", "12800", "--teeth", "18,47"), "neither tacho nor speed"),
+        (("--teeth", "18,47", "--speed-range", "20,50"), "sampling rate"),
+        (options("--channel", "casing=x"), "the model knows no channel casing"),
+        (options("--reference", "run.npz"), "without the healthy-referenced variant"),
+    ],
+)
+def test_what_is_missing_is_a_usage_error_with_a_way_out(
+    arguments: tuple[str, ...], message: str, folder: Path, dataset: Any, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    save(tmp_path / "run.npz", dataset, 0)
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, str(folder), "run.npz", *arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+class Trap:
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (pytest.fail, ("a pickle was executed",))
+
+
+@pytest.mark.parametrize("name", ["classifier.skops", "cnn.safetensors", "model.json"])
+def test_loading_never_unpickles(name: str, folder: Path, tmp_path: Path) -> None:
+    for file in folder.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / name).write_bytes(pickle.dumps(Trap()))
+    with pytest.raises(UsageError, match=Path(name).stem):
+        load_model(tmp_path)
+    with pytest.raises(UsageError, match="not read"):
+        load_model(tmp_path / name)
+
+
+def test_the_digest_is_the_one_that_the_manifest_carries() -> None:
+    manifest = {"name": "häufig", "identity": "0", "shards": [{"file": "a", "sha256": "b"}]}
+    assert manifest_digest(manifest) == json.loads(sealed(manifest))["digest"]
+
+
+def test_a_healthy_record_is_never_its_own_reference(dataset: Any) -> None:
+    matrix = feature_matrix(feature_table(dataset, splits=("test",)))
+    assert not healthy_referenced(matrix)[1].any()  # one operating point, one repeat: nothing to compare with
+    rows = np.arange(len(matrix.values))
+    matrix.labels["operating_point_id"] = rows % 2  # states of a specimen now stand at two operating points
+    found, kept = healthy_referenced(matrix)
+    healthy = matrix.labels["state"] == "healthy"
+    assert not kept[healthy].any()
+    other = [
+        matrix.labels["operating_point_id"][(matrix.labels["specimen_id"] == s) & healthy][0] != k % 2
+        for k, s in enumerate(matrix.labels["specimen_id"])
+    ]
+    np.testing.assert_array_equal(kept, other)
+    assert found.values.shape[0] == kept.sum()
+
+
+def test_distance_is_one_for_typical_records_whatever_the_speed_and_grows_off_them() -> None:
+    rng = np.random.default_rng(4)
+    speed = rng.uniform(10.0, 40.0, 2000)
+    mixing = rng.standard_normal((5, 5))
+    logs = rng.standard_normal((2000, 5)) @ mixing + 2.0 * np.log(speed)[:, None]
+    found = fit_distance(logs, speed, ("a", "b", "c", "d", "e"))
+    # mean square of five unit Gaussians over five is one; clipping and the MAD leave a few per cent
+    assert np.mean(found.distance(logs, speed) ** 2) == pytest.approx(1.0, rel=0.1)
+    shifted = logs + 3.0 * mixing[0]
+    assert np.median(found.distance(shifted, speed)) > 1.5
+    level = fit_distance(np.c_[logs[:, :1], np.full(2000, np.nan)], speed, ("a", "undefined"))
+    assert np.isfinite(level.distance(np.c_[logs[:, :1], np.full(2000, np.nan)], speed)).all()
+
+
+def test_onnx_gives_the_logits_of_torch(tmp_path: Path) -> None:
+    onnxruntime = pytest.importorskip("onnxruntime")
+    torch = pytest.importorskip("torch")
+    from diagnostics.cnn import WideKernelNetwork
+    from diagnostics.cnn_files import NetworkFile, export_onnx
+    from diagnostics.windows import WindowSettings
+
+    windows = WindowSettings(teeth=18)
+    torch.manual_seed(0)
+    network = WideKernelNetwork(2, 3, windows.samples_per_tooth).eval()
+    facts = NetworkFile(("a", "b", "c"), ("x", "y"), windows, (0.0, 0.0), (1.0, 1.0), "identity")
+    export_onnx(network, facts, tmp_path / "cnn.onnx")
+    session = onnxruntime.InferenceSession(tmp_path / "cnn.onnx")
+    signal = np.random.default_rng(0).standard_normal((4, 2, windows.samples)).astype(np.float32)
+    with torch.no_grad():
+        expected = network(torch.from_numpy(signal)).numpy()
+    np.testing.assert_allclose(session.run(None, {"windows": signal})[0], expected, atol=1e-5)

@@ -1,0 +1,128 @@
+"""One signal through every kind of file, units, tacho, and what is refused."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from scipy.io import savemat, wavfile
+
+from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from siggen.errors import UsageError
+
+FS_HZ = 8000
+NAMES = ("vertical", "horizontal")
+
+
+def signals() -> np.ndarray:
+    return 5.0 * np.random.default_rng(3).standard_normal((2, 4000))
+
+
+def write(path: Path, kind: str) -> Path:
+    first, second = signals()
+    file = path / f"run.{kind}"
+    if kind == "csv":
+        np.savetxt(file, np.stack([first, second], axis=1), delimiter=",", header="vertical,horizontal", comments="")
+    elif kind == "npy":
+        np.save(file, np.stack([first, second]))
+    elif kind == "npz":
+        np.savez(file, vertical=first, horizontal=second, fs=FS_HZ)
+    elif kind == "mat":
+        savemat(file, {"vertical": first, "horizontal": second, "note": "text"})
+    elif kind == "wav":
+        wavfile.write(file, FS_HZ, np.stack([first, second], axis=1).astype(np.float32))
+    else:
+        pq.write_table(pa.table({"vertical": first, "horizontal": second}), file)
+    return file
+
+
+@pytest.mark.parametrize("kind", ["csv", "npy", "npz", "mat", "wav", "parquet"])
+def test_every_kind_of_file_gives_the_same_signals(kind: str, tmp_path: Path) -> None:
+    columns = {"vertical": "1", "horizontal": "2"} if kind in ("npy", "wav") else {}
+    found = read_recording(write(tmp_path, kind), NAMES, RecordingFacts(fs_hz=FS_HZ, columns=columns, unit="g"))
+    for name, expected in zip(NAMES, signals(), strict=True):  # WAV holds float32
+        np.testing.assert_allclose(found.channels[name], 9.80665 * expected, rtol=1e-6)
+    assert found.fs_hz == FS_HZ
+    assert found.duration_s == pytest.approx(0.5)
+
+
+def test_integer_wav_needs_its_full_scale(tmp_path: Path) -> None:
+    samples = np.array([[-16384, 8192], [16384, 0], [0, -8192]] * 50, dtype=np.int16)
+    wavfile.write(tmp_path / "run.wav", FS_HZ, samples)
+    columns = {"vertical": "1", "horizontal": "2"}
+    with pytest.raises(UsageError, match=r"run.wav: holds shares of full scale.*--full-scale 50"):
+        read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(columns=columns))
+    found = read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(columns=columns, full_scale=50.0))
+    np.testing.assert_array_equal(found.channels["vertical"][:3], [-25.0, 25.0, 0.0])
+
+
+def test_millivolts_take_the_sensitivity(tmp_path: Path) -> None:
+    file = write(tmp_path, "npz")
+    with pytest.raises(UsageError, match="sensitivity"):
+        read_recording(file, NAMES, RecordingFacts(fs_hz=FS_HZ, unit="mV"))
+    found = read_recording(file, NAMES, RecordingFacts(fs_hz=FS_HZ, unit="mV", sensitivity_mv_per_g=100.0))
+    np.testing.assert_allclose(found.channels["vertical"], signals()[0] / 100.0 * 9.80665)
+
+
+def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("vertical;horizontal\n" + "1,5;-2,25\n0,5;3,0\n-1,0;1,0\n")
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    np.testing.assert_array_equal(found.channels["horizontal"], [-2.25, 3.0, 1.0])
+
+
+def test_a_record_of_this_package_is_read_by_row_with_its_pulses(tmp_path: Path) -> None:
+    first, second = signals().astype(np.float32)
+    rows = {"accel_vertical_m_s2": [first, second], "accel_horizontal_m_s2": [second, first]}
+    pq.write_table(pa.table({**rows, "tacho_s": [[0.1, 0.2], [0.1, 0.3]], "record_id": [0, 1]}), tmp_path / "a.parquet")
+    with pytest.raises(UsageError, match=r"holds 2 records.*--row, from 0 to 1"):
+        read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    found = read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ, row=1, tacho="tacho_s"))
+    np.testing.assert_array_equal(found.channels["vertical"], second)
+    assert found.tacho_s is not None
+    np.testing.assert_array_equal(found.tacho_s, [0.1, 0.3])
+
+
+def test_pulses_of_a_sampled_tacho_lie_between_samples(tmp_path: Path) -> None:
+    time_s = np.arange(4000) / FS_HZ
+    noise = 0.02 * np.random.default_rng(1).standard_normal(4000)
+    tacho = np.clip(40.0 * np.sin(2 * np.pi * 25.3 * time_s - 1.0), -1.0, 1.0) + noise
+    first, second = signals()
+    np.savez(tmp_path / "run.npz", vertical=first, horizontal=second, t=tacho)
+    found = read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(fs_hz=FS_HZ, tacho="t"))
+    assert found.tacho_s is not None
+    expected = (np.arange(found.tacho_s.size) + 1.0 / (2 * np.pi)) / 25.3
+    np.testing.assert_allclose(found.tacho_s, expected, atol=0.2 / FS_HZ)  # a fifth of a sample
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (lambda x: np.where(np.arange(x.size) == 7, np.nan, x), "1 of 4000 samples are not finite"),
+        (np.zeros_like, "constant over all 4000 samples"),
+        (lambda x: np.clip(x, -4.0, 4.0), "stand clipped"),
+        (lambda x: x[:-5], "differ in their number of samples"),
+    ],
+)
+def test_unusable_signals_name_file_and_way_out(spoil: object, message: str, tmp_path: Path) -> None:
+    first, second = signals()
+    np.savez(tmp_path / "run.npz", vertical=spoil(first), horizontal=second)  # type: ignore[operator]
+    with pytest.raises(UsageError, match=message) as error:
+        read_recording(tmp_path / "run.npz", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    assert "run.npz" in str(error.value)
+
+
+def test_rate_channels_and_pickled_arrays_are_refused(tmp_path: Path) -> None:
+    file = write(tmp_path, "npz")
+    with pytest.raises(UsageError, match=r"run.npz: sampling rate: received None.*--fs"):
+        read_recording(file, NAMES, RecordingFacts())
+    with pytest.raises(UsageError, match=r"no column axial.*--channel axial=COLUMN"):
+        read_recording(file, ("axial",), RecordingFacts(fs_hz=FS_HZ))
+    np.save(tmp_path / "objects.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    (tmp_path / "pickled.npy").write_bytes(pickle.dumps([1.0, 2.0]))
+    for name in ("objects.npy", "pickled.npy"):
+        with pytest.raises(UsageError, match="cannot be read as arrays of numbers"):
+            read_recording(tmp_path / name, NAMES, RecordingFacts(fs_hz=FS_HZ))
