@@ -29,7 +29,7 @@ TARGETS = (0.75, 0.85)
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """AUC of one state against healthy, with its damage: kind of fault, and means of the size labels over its records."""
+    """AUC of one state against healthy; its damage by kind of fault and by the means of its size labels."""
 
     state: str
     fault: str

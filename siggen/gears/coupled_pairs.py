@@ -44,7 +44,7 @@ def approach_forces(
         between = body_coupling(pair, options, newest_m + later * pair.base_pitch_m)
         for apart in range(1, count - later):
             cross[later, later + apart] = cross[later + apart, later] = between[apart - 1]
-    # In stiffness, not compliance: a pair that damage through the face leaves without contact has none, and carries none.
+    # In stiffness, not compliance: a pair that damage through the face leaves without contact carries nothing.
     share = cross * stiffness_n_per_m[..., np.newaxis, :, :]
     if count == 2:
         own, mate = share[..., 1, 0, :], share[..., 0, 1, :]
