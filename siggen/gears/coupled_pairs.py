@@ -51,7 +51,8 @@ def approach_forces(
         deflection = np.stack([1.0 - mate, 1.0 - own], axis=-2) / (1.0 - own * mate)[..., np.newaxis, :]
     else:
         matrix = np.eye(count) + np.moveaxis(share, -1, -3)
-        deflection = np.moveaxis(np.linalg.solve(matrix, np.ones((*matrix.shape[:-1], 1)))[..., 0], -1, -2)
+        solved: FloatArray = np.linalg.solve(matrix, np.ones((*matrix.shape[:-1], 1)))[..., 0].astype(np.float64)
+        deflection = np.moveaxis(solved, -1, -2)
     if not (np.all(share < 1.0) and np.all(deflection > 0.0)):
         raise ValueError(
             "coupling 'body': a tooth's own compliance is below its neighbour's effect on it; allowed: stiffness "
