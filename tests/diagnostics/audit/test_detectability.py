@@ -106,6 +106,13 @@ def entry(length: float, auc: float, fault: str = "spalling") -> Detection:
     return Detection(f"s{length}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
 
 
+def test_damage_through_the_face_is_a_kind_of_its_own(repeated: MeasuredSet) -> None:
+    through = repeated.labels["state"] == "severe"
+    labelled = replace(repeated, labels={**repeated.labels, "through_face": through})
+    kinds = {entry.state: entry.fault for entry in detections(labelled, features(labelled))}
+    assert kinds["severe"] == f"{kinds['slight']} through the face"
+
+
 def test_length_at_an_auc_is_interpolated_between_states_of_one_fault() -> None:
     found = length_at([entry(0.5, 0.6), entry(1.0, 0.8), entry(2.0, 0.9), entry(1.0, 0.5, "pitting")], 0.85)
     assert found["spalling"] is not None

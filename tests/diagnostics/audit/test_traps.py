@@ -32,6 +32,11 @@ def test_a_set_without_traps_gives_no_finding(clean: MeasuredSet) -> None:
     assert "No trap" in verdict([])
 
 
+def test_labels_of_the_damage_itself_are_no_tie(clean: MeasuredSet) -> None:
+    severe = clean.labels["state"] == "severe"
+    assert traps(relabelled(clean, through_face=severe, sink_depth_um=12.0 * severe)) == []
+
+
 @pytest.mark.parametrize(
     ("plant", "expected"),
     [

@@ -14,6 +14,7 @@ import pytest
 
 from diagnostics.cli.app import main
 from diagnostics.feature_table import feature_matrix, feature_table
+from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.log_features import healthy_referenced
 from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.released_model import load_model
@@ -28,7 +29,7 @@ FS_HZ = 12_800.0
 @pytest.fixture(scope="module")
 def folder(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     found = tmp_path_factory.mktemp("models")
-    save_models(train_models(dataset, features, 0, cnn=False), features, dataset, found)
+    save_models(train_models(dataset, features, 0, network=NetworkOptions(cnn=False)), features, dataset, found)
     return found
 
 
