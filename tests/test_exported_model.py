@@ -54,7 +54,7 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     assert max(coarse) > 2.0 * max(fine)
 
 
-@pytest.mark.parametrize("name", ["paper_a", "paper_b", "quickstart"])
+@pytest.mark.parametrize("name", ["paper_a", "paper_b", "linear_pits"])
 def test_every_key_is_described(name: str) -> None:
     model = exported_model(load_config(ROOT / "configs" / f"{name}.yaml", ["duration_s=0.01"]), 0)
     missing = [key for key in model if f"`{key}`" not in PAGE]
@@ -65,7 +65,7 @@ def test_every_key_is_described(name: str) -> None:
 def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_path: Path) -> None:
     files = [tmp_path / "a.npz", tmp_path / "b.npz"]
     for file in files:
-        arguments = ["configs/quickstart.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
+        arguments = ["configs/linear_pits.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
         result = runner.invoke(app, ["export-model", *arguments], catch_exceptions=False)
         assert result.output.strip() == str(file)
     assert files[0].read_bytes() == files[1].read_bytes()
