@@ -8,7 +8,7 @@ from siggen.config import Config
 from siggen.loading import load_config
 
 ROOT = Path(__file__).resolve().parents[1]
-QUICKSTART = ROOT / "configs" / "quickstart.yaml"
+QUICKSTART = ROOT / "configs" / "linear_pits.yaml"
 PAPER_A = ROOT / "configs" / "paper_a.yaml"
 PAPER_B = ROOT / "configs" / "paper_b.yaml"
 

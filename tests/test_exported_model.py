@@ -80,7 +80,7 @@ def test_what_the_script_does_not_know_is_refused_by_name() -> None:
     ("name", "record", "overrides"),
     [
         ("paper_a", 0, []),
-        ("quickstart", 0, []),
+        ("linear_pits", 0, []),
         ("paper_b", 0, []),
         ("paper_b", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
     ],
@@ -95,7 +95,7 @@ def test_every_key_is_described(name: str, record: int, overrides: list[str]) ->
 def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_path: Path) -> None:
     files = [tmp_path / "a.npz", tmp_path / "b.npz"]
     for file in files:
-        arguments = ["configs/quickstart.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
+        arguments = ["configs/linear_pits.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
         result = runner.invoke(app, ["export-model", *arguments], catch_exceptions=False)
         assert result.output.strip() == str(file)
     assert files[0].read_bytes() == files[1].read_bytes()

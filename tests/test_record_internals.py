@@ -14,7 +14,7 @@ from siggen.simulation import simulate
 SHORT = ["duration_s=0.05", "specimens=2"]
 
 
-@pytest.mark.parametrize("name", ["quickstart", "paper_b"])
+@pytest.mark.parametrize("name", ["linear_pits", "paper_b"])
 def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None:
     config = load_config(f"configs/{name}.yaml", [*SHORT, "internals.records=all"])
     names = {column.name for column in stored_quantities(config)}
@@ -26,7 +26,7 @@ def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None
 
 
 def test_stored_series_are_those_of_the_command(tmp_path) -> None:
-    config = load_config("configs/quickstart.yaml", [*SHORT, "internals.records=first_of_state"])
+    config = load_config("configs/linear_pits.yaml", [*SHORT, "internals.records=first_of_state"])
     stored, unchosen = simulate(config, [2, 3])
     table = internals_table(config, 2)
     assert unchosen.internals is None
@@ -39,7 +39,7 @@ def test_stored_series_are_those_of_the_command(tmp_path) -> None:
 
 def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
     with_them, without = (
-        simulate(load_config("configs/quickstart.yaml", [*SHORT, *extra]), [1])[0]
+        simulate(load_config("configs/linear_pits.yaml", [*SHORT, *extra]), [1])[0]
         for extra in (["internals.records=all"], [])
     )
     for channel, signal in without.channels.items():
@@ -58,6 +58,6 @@ def test_units_follow_from_the_names() -> None:
 
 
 def test_only_quantities_that_the_model_has_can_be_stored() -> None:
-    config = load_config("configs/quickstart.yaml", [*SHORT, "internals.quantities=[mesh_force_n, x_c_m]"])
+    config = load_config("configs/linear_pits.yaml", [*SHORT, "internals.quantities=[mesh_force_n, x_c_m]"])
     with pytest.raises(ConfigError, match=r"internals\.quantities: received x_c_m; .*transmission_error_m"):
         stored_quantities(config)

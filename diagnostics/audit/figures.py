@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 3
 BINS = 40
+MARKERS = "osD^v"
 RANGE_COLOUR = "#cfe8d5"
 
 
@@ -49,23 +50,24 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 
 
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
-    """Return AUC over profile length with intervals, a line per variant and fault; dashed: chance, dotted: targets."""
-    figure, axes = new_figure(height_in=3.6)
+    """Return AUC over profile length with intervals; a colour per variant, a marker per fault; dotted: targets."""
+    figure, axes = new_figure(height_in=4.2)
     axis = axes[0, 0]
     lines = [
         (name, fault, [entry for entry in entries if entry.fault == fault and np.isfinite(entry.auc.value)])
         for name, entries in variants.items()
         for fault in dict.fromkeys(entry.fault for entry in entries)
     ]
-    for position, (name, fault, entries) in enumerate(line for line in lines if line[2]):
+    variant, kind = (list(dict.fromkeys(line[place] for line in lines)).index for place in (0, 1))
+    for name, fault, entries in (line for line in lines if line[2]):
         length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
         value = np.array([entry.auc.value for entry in entries])
         low = np.array([entry.auc.low for entry in entries])
         high = np.array([entry.auc.high for entry in entries])
         limits = np.nan_to_num([value - low, high - value]).clip(0.0)
-        colour = FAULT_COLOURS[position % len(FAULT_COLOURS)]
+        colour, marker = FAULT_COLOURS[variant(name) % len(FAULT_COLOURS)], MARKERS[kind(fault) % len(MARKERS)]
         axis.errorbar(
-            length, value, limits, marker="o", markersize=4, color=colour, label=f"{fault}, {name}", capsize=2
+            length, value, limits, marker=marker, markersize=4, color=colour, label=f"{fault}, {name}", capsize=2
         )
     axis.axhline(0.5, color="#9aa7b2", linestyle="--", linewidth=0.8)
     for target in TARGETS:

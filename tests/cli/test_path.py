@@ -33,6 +33,6 @@ def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> N
 
 
 def test_a_set_without_paths_says_how_to_add_one() -> None:
-    result = runner.invoke(app, ["path", "configs/quickstart.yaml"])
+    result = runner.invoke(app, ["path", "configs/linear_pits.yaml"])
     assert isinstance(result.exception, UsageError)
     assert "path: {kind: modal}" in str(result.exception)

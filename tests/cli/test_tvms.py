@@ -48,7 +48,7 @@ def test_the_interpolation_error_of_the_tables_is_told_and_falls_with_their_poin
     errors = []
     for points in (129, 4097):
         said = run(
-            "configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", "--set", f"stiffness.table_points={points}"
+            "configs/linear_pits.yaml", "--out", tmp_path / "tvms.csv", "--set", f"stiffness.table_points={points}"
         )
         found = re.search(r"tables of (\d+) points, .* within ([\d.e-]+) %", said)
         assert found is not None
@@ -60,7 +60,7 @@ def test_the_interpolation_error_of_the_tables_is_told_and_falls_with_their_poin
 def test_coupled_teeth_are_softer_in_double_contact_and_the_same_in_single_contact(tmp_path: Path) -> None:
     curves = []
     for coupling in ("none", "body"):
-        run("configs/quickstart.yaml", "--out", tmp_path / "tvms.parquet", "--set", f"stiffness.coupling={coupling}")
+        run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--set", f"stiffness.coupling={coupling}")
         curves.append(pyarrow.parquet.read_table(tmp_path / "tvms.parquet")["healthy_n_per_m"].to_numpy())
     ratio = curves[1] / curves[0]
     # About a third of a pitch is single contact (contact ratio 1.64); elsewhere the teeth share two bodies.
@@ -100,7 +100,7 @@ def test_pitches_say_how_much_is_computed(tmp_path: Path) -> None:
 def test_limits_of_the_models_are_told_beside_the_table(tmp_path: Path) -> None:
     out = str(tmp_path / "tvms.csv")
     result = runner.invoke(
-        app, ["tvms", "configs/quickstart.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
+        app, ["tvms", "configs/linear_pits.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
     )
     assert result.exit_code == 0
     assert "gear (47 teeth): calibration: h_f" in result.stderr
