@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.calibration import tempered
 from diagnostics.prediction.log_features import log_mean, log_values
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
@@ -166,15 +167,15 @@ def _reference_pieces(
     return record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings)
 
 
-def _vote(name: str, probability: np.ndarray) -> Vote:
-    mean = probability.mean(axis=0)
+def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
+    mean = tempered(probability.mean(axis=0, keepdims=True), temperature)[0]
     return Vote(name, mean, float(np.mean(probability.argmax(axis=1) == mean.argmax())))
 
 
 def _pipeline_vote(name: str, classifier: Any, values: np.ndarray) -> Vote:
     probability = np.zeros((len(values), len(classifier.classes)))
     probability[:, classifier.pipeline.classes_] = classifier.pipeline.predict_proba(values)
-    return _vote(name, probability)
+    return _vote(name, probability, classifier.temperature)
 
 
 def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:
@@ -218,7 +219,7 @@ def _network_vote(
     if pulses.times_s.size <= facts.windows.revolutions:
         return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
     found = network_probabilities(*model.network, recording, pulses)
-    return (_vote(NETWORK, found),), ()
+    return (_vote(NETWORK, found, facts.temperature),), ()
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

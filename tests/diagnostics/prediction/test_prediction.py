@@ -6,19 +6,23 @@ import json
 import pickle
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from diagnostics.calibration import tempered
 from diagnostics.cli.app import main
 from diagnostics.feature_table import feature_matrix, feature_table
 from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.log_features import healthy_referenced
 from diagnostics.prediction.model_facts import manifest_digest
+from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.training_distance import fit_distance
+from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.training import save_models, train_models
 from siggen.dataset.manifest import sealed
 from siggen.errors import UsageError
@@ -169,3 +173,17 @@ def test_onnx_gives_the_logits_of_torch(tmp_path: Path) -> None:
     with torch.no_grad():
         expected = network(torch.from_numpy(signal)).numpy()
     np.testing.assert_allclose(session.run(None, {"windows": signal})[0], expected, atol=1e-5)
+
+
+def test_probabilities_are_calibrated_as_the_models_own_are(
+    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path
+) -> None:
+    model = load_model(folder)
+    file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
+    recording = read_recording(file, model.facts.channels, RecordingFacts(FS_HZ))
+    found = {}
+    for temperature in (1.0, 3.0):
+        tempered_model = replace(model, classifier=replace(model.classifier, temperature=temperature))
+        found[temperature] = predict_recording(tempered_model, recording, (18, 47), (20.0, 50.0)).votes[0].probability
+    assert found[3.0] == pytest.approx(tempered(found[1.0][np.newaxis], 3.0)[0], rel=1e-12)
+    assert found[3.0].max() < found[1.0].max()
