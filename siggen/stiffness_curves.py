@@ -104,19 +104,23 @@ def _curve(
 ) -> StiffnessCurve:
     options = stiffness_options(specimen.stiffness)
     offset = engagement * 2 * pi / pair.pinion.teeth
-    stiffness = mesh_stiffness(pair, angle + offset, options, damage)
-    return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement))
+    open_face = damage_is_geometry(specimen.dynamics)
+    stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
+    return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement, open_face))
 
 
 def _parts(
-    pair: GearPair, options: StiffnessOptions, damage: Damage, angle: FloatArray, engagement: int
+    pair: GearPair, options: StiffnessOptions, damage: Damage, angle: FloatArray, engagement: int, open_face: bool
 ) -> dict[str, FloatArray]:
-    """Return the compliances of one engagement's pair over the angle since it entered contact, (k,) each [m/N]."""
+    """Return the compliances of one engagement's pair over the angle since it entered contact, (k,) each [m/N].
+
+    With `open_face` the contact's may be infinite: damage through the face leaves none.
+    """
     position = pair.contact_start_m + pair.pinion.base_radius_m * angle
     inside = (angle >= 0.0) & (position <= pair.contact_end_m)
     on_pinion = pits_of(damage, "pinion", engagement % pair.pinion.teeth)
     on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
-    found = pair_compliance(pair, position[inside], options, on_pinion, on_gear)
+    found = pair_compliance(pair, position[inside], options, on_pinion, on_gear, through_face=open_face)
     parts = {
         f"{name}_{part}": getattr(getattr(found, name), part) for name in ("pinion", "gear") for part in TOOTH_PARTS
     }

@@ -40,7 +40,9 @@ def stiffness_figure(curves: Sequence[StiffnessCurve], *, parts: bool = False) -
             loss = 1.0 - curve.mesh_stiffness_n_per_m / reference.mesh_stiffness_n_per_m
             below.plot(degrees, 100.0 * loss, lw=1.2, zorder=9 - depth, color=above.lines[-1].get_color())
     above.set_ylabel("mesh stiffness [10⁸ N/m]")
-    figure.legend(*above.get_legend_handles_labels(), loc="outside upper center", frameon=False, ncols=len(curves))
+    figure.legend(
+        *above.get_legend_handles_labels(), loc="outside upper center", frameon=False, ncols=min(len(curves), 5)
+    )
     below.set_ylabel(f"loss against {reference.state} [%]")
     below.margins(x=0)
     if parts:

@@ -137,6 +137,8 @@ def pair_compliance(
     options: StiffnessOptions,
     pinion_pits: Iterable[Pit | Spall] = (),
     gear_pits: Iterable[Pit | Spall] = (),
+    *,
+    through_face: bool = False,
 ) -> PairCompliance:
     """Return the compliance of one tooth pair in its parts, (k,) each [m/N].
 
@@ -148,7 +150,7 @@ def pair_compliance(
     pinion_pits, gear_pits = tuple(pinion_pits), tuple(gear_pits)
     roll_pinion, roll_gear = rolls_at(pair, position)
     return PairCompliance(
-        contact=contact_compliance(pair, position, pinion_pits, gear_pits, options),
+        contact=contact_compliance(pair, position, pinion_pits, gear_pits, options, through_face=through_face),
         pinion=tooth_compliance(pair, "pinion", roll_pinion, options, pinion_pits),
         gear=tooth_compliance(pair, "gear", roll_gear, options, gear_pits),
     )
@@ -160,6 +162,8 @@ def pair_stiffness(
     options: StiffnessOptions,
     pinion_pits: Iterable[Pit | Spall] = (),
     gear_pits: Iterable[Pit | Spall] = (),
+    *,
+    through_face: bool = False,
 ) -> FloatArray:
     """Return the stiffness of one tooth pair at contact positions s (k,) [N/m].
 
@@ -171,18 +175,27 @@ def pair_stiffness(
     options : StiffnessOptions
     pinion_pits, gear_pits : iterables of Pit or Spall
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
+    through_face : bool
+        Whether a contact may lose its whole length; the pair has no stiffness there.
 
     Raises
     ------
     ValueError
-        If a position is off the path of contact, or the pits leave no contact or no section.
+        If a position is off the path of contact, or the pits leave no section, or no contact where that is not allowed.
 
     Source: paper A, section 2.2.
     """
-    return 1.0 / pair_compliance(pair, position_m, options, pinion_pits, gear_pits).total
+    return 1.0 / pair_compliance(pair, position_m, options, pinion_pits, gear_pits, through_face=through_face).total
 
 
-def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptions, damage: Damage = ()) -> FloatArray:
+def mesh_stiffness(
+    pair: GearPair,
+    angle_rad: ArrayLike,
+    options: StiffnessOptions,
+    damage: Damage = (),
+    *,
+    through_face: bool = False,
+) -> FloatArray:
     """Return the mesh stiffness over the pinion's angle (k,) [N/m].
 
     Parameters
@@ -195,11 +208,13 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
     options : StiffnessOptions
     damage : tuple of Pit or Spall
         On any teeth of both gears.
+    through_face : bool
+        Whether a contact may lose its whole length; such a pair adds nothing.
 
     Raises
     ------
     ValueError
-        If an angle is not finite, or the pits leave no contact or no section.
+        If an angle is not finite, or the pits leave no section, or no contact where that is not allowed.
 
     Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer); with coupling 'body'
     derived (`siggen.gears.coupled_pairs`).
@@ -217,7 +232,9 @@ def mesh_stiffness(pair: GearPair, angle_rad: ArrayLike, options: StiffnessOptio
     for first, second in sorted(set(zip(pinion_key.tolist(), gear_key.tolist(), strict=True))):
         chosen = (pinion_key == first) & (gear_key == second)
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
-        stiffness[chosen] = pair_stiffness(pair, position[chosen], options, pinion_pits, gear_pits)
+        stiffness[chosen] = pair_stiffness(
+            pair, position[chosen], options, pinion_pits, gear_pits, through_face=through_face
+        )
         np.add.at(total, index[chosen], stiffness[chosen])
     if options.coupling == "none":
         return total

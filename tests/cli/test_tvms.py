@@ -111,3 +111,15 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
     with pytest.raises(UsageError, match="allowed are"):
         run("configs/paper_a.yaml", "--out", tmp_path / "tvms.csv", "--png", tmp_path / "tvms.bmp")
     assert not (tmp_path / "tvms.csv").exists()
+
+
+def test_damage_through_the_face_leaves_the_pair_no_stiffness_where_it_acts_as_geometry(tmp_path: Path) -> None:
+    run("configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", "--parts")
+    table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
+    healthy, severe = (np.array(table[f"{state}_n_per_m"]) for state in ("healthy", "severe"))
+    # In single contact nothing is left; in double contact the other pair alone, which is softer than both.
+    assert severe.min() == 0.0
+    assert ((severe > 0.0) & (severe < 0.9 * healthy)).any()
+    assert np.isfinite(severe).all()
+    contact = table["severe_contact_m_per_n"].to_numpy(zero_copy_only=False)
+    assert np.isinf(contact[severe == 0.0]).all()
