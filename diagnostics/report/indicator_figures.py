@@ -19,6 +19,8 @@ from diagnostics.report.style import FAULT_COLOURS, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+CROWDED = 8
+"""Columns beyond which their names stand upright and numbers are small."""
 ROWS_SHOWN = 36
 CAUSES = ("speed", "load", "sensor", "noise", "specimen")
 CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
@@ -68,15 +70,17 @@ def _heat_map(
     values: np.ndarray, rows: list[str], columns: list[str], limits: tuple[float, float], colours: str, title: str
 ) -> Figure:
     figure, axes = new_figure(height_in=1.2 + 0.215 * len(rows))
-    axis = axes[0, 0]
+    axis, crowded = axes[0, 0], len(columns) > CROWDED
     picture = axis.imshow(values, cmap=colours, vmin=limits[0], vmax=limits[1], aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if math.isfinite(value):
             dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
-            axis.text(
-                column, row, f"{value:.2f}", ha="center", va="center", fontsize=7, color="white" if dark else "#1c2733"
-            )
-    axis.set_xticks(range(len(columns)), columns, fontsize=8)
+            size, colour = 5.5 if crowded else 7, "white" if dark else "#1c2733"
+            axis.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=size, color=colour)
+    if crowded:
+        axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7, rotation=90)
+    else:
+        axis.set_xticks(range(len(columns)), columns, fontsize=8)
     axis.xaxis.tick_top()
     axis.set_yticks(range(len(rows)), rows, fontsize=7.5)
     axis.grid(visible=False)
@@ -103,7 +107,7 @@ def severity_figure(
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
         axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=8)
-        axis.set_xticks(range(len(ladder)), ladder, fontsize=8, rotation=20)
+        axis.set_xticks(range(len(ladder)), ladder, fontsize=8, rotation=20 if len(ladder) <= CROWDED else 60)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.judgement import TITLES, Judged
-from diagnostics.report.style import new_figure
+from diagnostics.report.style import new_figure, state_ticks
 from diagnostics.separability import Separability
 from diagnostics.training import Training
 
@@ -48,7 +48,7 @@ def confusion_figure(judged: Judged) -> Figure:
     for (row, column), count in np.ndenumerate(counts):
         colour = "white" if share[row, column] > 0.55 else "#1c2733"
         axis.text(column, row, f"{count}\n{share[row, column]:.0%}", ha="center", va="center", color=colour, fontsize=9)
-    axis.set_xticks(range(len(classes)), classes)
+    state_ticks(axis, classes)
     axis.set_yticks(range(len(classes)), classes)
     axis.grid(visible=False)
     axis.set_xlabel("Predicted state")
@@ -85,7 +85,7 @@ def indicator_figure(
     figure, axes = new_figure(len(found), 1, height_in=0.6 + 1.25 * len(found), sharex=True)
     for axis, entry in zip(axes[:, 0], found, strict=True):
         _draw_indicator(axis, matrix, entry.feature, classes, colours)
-    axes[-1, 0].set_xticks(range(len(classes)), classes)
+    state_ticks(axes[-1, 0], classes)
     axes[-1, 0].set_xlabel("State (one dot per record)")
     return figure
 

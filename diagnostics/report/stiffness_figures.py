@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.report.style import new_figure
+from diagnostics.report.style import new_figure, state_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,7 +44,7 @@ def stiffness_loss_figure(labels: dict[str, np.ndarray], classes: tuple[str, ...
         loss = 100.0 * labels["mesh_stiffness_loss"][chosen][first]
         spread = 0.5 * (np.arange(loss.size) / max(loss.size - 1, 1) - 0.5)
         axis.plot(position + spread, loss, linestyle="none", marker="o", markersize=4, alpha=0.7, color=colours[state])
-    axis.set_xticks(range(len(classes)), classes)
+    state_ticks(axis, classes)
     axis.set_xlabel("State (one dot per specimen)")
     axis.set_ylabel("Largest stiffness loss [%]")
     axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 WIDTH_IN = 5.6
@@ -61,3 +63,9 @@ def png_bytes(figure: Figure) -> bytes:
     with styled():
         figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)
     return stream.getvalue()
+
+
+def state_ticks(axis: Axes, names: Sequence[str]) -> None:
+    """Name the places 0, 1, ... along the bottom; many names stand slanted."""
+    many = len(names) > 5
+    axis.set_xticks(range(len(names)), names, rotation=50 if many else 0, ha="right" if many else "center")
