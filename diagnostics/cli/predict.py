@@ -25,7 +25,7 @@ def predict(
         list[str] | None, typer.Option(metavar="NAME=COLUMN", help="Column of a channel of the model; repeat.")
     ] = None,
     unit: Annotated[str, typer.Option(help="m/s2, mm/s2, g, mg, mV or V.")] = "m/s2",
-    sensitivity: Annotated[float | None, typer.Option(help="Accelerometer [mV per g], for mV and V.")] = None,
+    sensitivity: Annotated[float | None, typer.Option(help="Of the accelerometer in mV per g, for mV and V.")] = None,
     full_scale: Annotated[float | None, typer.Option(help="Full scale of an integer WAV file, in the unit.")] = None,
     tacho: Annotated[str | None, typer.Option(metavar="COLUMN", help="Tacho's waveform, or `tacho_s`.")] = None,
     tacho_pulses: Annotated[int, typer.Option(min=1, help="Pulses per pinion revolution.")] = 1,

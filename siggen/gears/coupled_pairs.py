@@ -93,7 +93,8 @@ def coupled_sum(
     slots[age, index] = stiffness_n_per_m
     first = np.zeros(size)
     first[index[age == 0]] = position[age == 0]
-    pairs = np.count_nonzero(slots, axis=0)
+    # Not the stiff ones alone: a pair that damage through the face leaves without contact keeps its place.
+    pairs = np.bincount(index, minlength=size)
     total = np.zeros(size)
     for number in np.unique(pairs[pairs > 0]):
         chosen = pairs == number

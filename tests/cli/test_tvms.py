@@ -119,6 +119,7 @@ def test_damage_through_the_face_leaves_the_pair_no_stiffness_where_it_acts_as_g
     healthy, severe = (np.array(table[f"{state}_n_per_m"]) for state in ("healthy", "severe"))
     # In single contact nothing is left; in double contact the other pair alone, which is softer than both.
     assert severe.min() == 0.0
+    assert healthy[severe == 0.0].max() < 0.85 * healthy.max()
     assert ((severe > 0.0) & (severe < 0.9 * healthy)).any()
     assert np.isfinite(severe).all()
     contact = table["severe_contact_m_per_n"].to_numpy(zero_copy_only=False)
