@@ -15,7 +15,10 @@ from benchmarks.machine import load_average, machine_lines
 from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
-TOPICS = ("startup", "stiffness", "integration", "record", "sensing", "storage", "loader", "workers", "quickstart")
+TOPICS = (
+    *("startup", "stiffness", "integration", "record", "sensing", "storage", "loader", "indicators", "workers"),
+    "quickstart",
+)
 
 
 def main() -> int:

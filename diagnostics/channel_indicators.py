@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnostics.features import FeatureSettings
 from diagnostics.indicators.amplitude_modulation import amplitude_modulation
-from diagnostics.indicators.cepstral_peak import cepstral_peak, shaft_cepstrum
+from diagnostics.indicators.cepstral_peak import cepstral_peak, shaft_log_spectrum
 from diagnostics.indicators.crest_factor import crest_factor
 from diagnostics.indicators.energy_operator_lebold import energy_operator_lebold
 from diagnostics.indicators.energy_operator_teager import energy_operator_teager
@@ -34,10 +34,9 @@ from diagnostics.indicators.sideband_power import sideband_power
 from diagnostics.indicators.sideband_ratio import sideband_ratio
 from diagnostics.indicators.spectral_kurtosis_maximum import spectral_kurtosis_maximum
 from diagnostics.shaft_signals import Shaft, ShaftSignals, shaft_signals
-from diagnostics.signal.analytic_signal import envelope
 from diagnostics.signal.averaging_bias import noise_share
 from diagnostics.signal.demodulation import demodulated
-from diagnostics.signal.mesh_band import mesh_band
+from diagnostics.signal.mesh_band import mesh_baseband
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.spectral_kurtosis import FRAME_SAMPLES, spectral_kurtosis
 
@@ -108,7 +107,7 @@ def channel_indicators(
     for shaft in shafts:
         if shaft.revolutions < 1:
             continue
-        found = _shaft_indicators(steps, shaft, settings)
+        found = shaft_indicators(steps, shaft, settings)
         values |= found.values
         moments |= found.moments
     if grid is not None:
@@ -121,17 +120,28 @@ def _cepstral_peaks(steps: np.ndarray, fs_hz: float, grid: AngleGrid, shafts: tu
     pinion, gear = shafts
     band = 0.5 * min(fs_hz / grid.slowest_hz, float(grid.samples_per_revolution))
     highest = int(CEPSTRUM_BAND * band)
-    cepstrum = shaft_cepstrum(steps, grid.revolutions, pinion.teeth, highest)
+    spectrum = shaft_log_spectrum(steps, grid.revolutions, pinion.teeth, highest)
     periods = {"pinion": 2.0 * highest, "gear": 2.0 * highest * gear.teeth / pinion.teeth}
     return {
-        f"cepstral_peak_{shaft.name}": cepstral_peak(cepstrum, periods[shaft.name])
+        f"cepstral_peak_{shaft.name}": cepstral_peak(spectrum, periods[shaft.name])
         if shaft.revolutions >= 2
         else math.nan
         for shaft in shafts
     }
 
 
-def _shaft_indicators(steps: np.ndarray, shaft: Shaft, settings: IndicatorSettings) -> ChannelIndicators:
+def shaft_indicators(steps: np.ndarray, shaft: Shaft, settings: IndicatorSettings) -> ChannelIndicators:
+    """Return every indicator of one shaft.
+
+    Parameters
+    ----------
+    steps : (n,) float64
+        Angle signal, at least one revolution of the shaft; one revolution may be a given average.
+    shaft : Shaft
+        Whose revolutions are averaged.
+    settings : IndicatorSettings
+        Harmonics, sidebands, angle steps.
+    """
     order = settings.order_domain
     signals = shaft_signals(steps, shaft, order.samples_per_tooth, order.shaft_orders, order.difference_sidebands)
     values = _average_indicators(signals, order.mesh_harmonics)
@@ -206,6 +216,6 @@ def _moments(signals: ShaftSignals, order: FeatureSettings) -> dict[str, float]:
     }
     width = half_width(teeth, order.sidebands)
     for harmonic in range(1, order.mesh_harmonics + 1):
-        moments = central_moments(envelope(mesh_band(signals.average, teeth, harmonic, width)))
+        moments = central_moments(np.abs(mesh_baseband(signals.average, teeth, harmonic, width)))
         found[f"envelope_fourth_{name}_h{harmonic}"], found[f"envelope_second_{name}_h{harmonic}"] = moments
     return found

@@ -102,9 +102,8 @@ def clipped_share(signal: np.ndarray) -> float:
     """Return the share of samples that stand in runs of at least three at the largest or the smallest value."""
     share = 0
     for limit in (signal.max(), signal.min()):
-        at = np.concatenate([[0], (signal == limit).astype(np.int8), [0]])
-        edges = np.flatnonzero(np.diff(at))
-        runs = edges[1::2] - edges[::2]
+        at = np.flatnonzero(signal == limit)
+        runs = np.diff(np.flatnonzero(np.diff(at, prepend=-2, append=signal.size + 1) > 1))
         share += int(runs[runs >= CLIPPED_RUN].sum())
     return share / signal.size
 

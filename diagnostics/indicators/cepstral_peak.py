@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from diagnostics.signal.cepstrum import log_amplitude, real_cepstrum, without_lines
+from diagnostics.signal.cepstrum import cepstrum_at, log_amplitude, without_lines
 
 
-def shaft_cepstrum(angle_signal: np.ndarray, revolutions: int, teeth: int, highest_order: int) -> np.ndarray:
-    """Return the real cepstrum over pinion angle, mesh lines taken out of the log spectrum first.
+def shaft_log_spectrum(angle_signal: np.ndarray, revolutions: int, teeth: int, highest_order: int) -> np.ndarray:
+    """Return the log spectrum over orders of the pinion, mesh lines and mean taken out.
 
     Parameters
     ----------
@@ -25,21 +25,21 @@ def shaft_cepstrum(angle_signal: np.ndarray, revolutions: int, teeth: int, highe
 
     Returns
     -------
-    (2 highest_order revolutions,) float64
-        Quefrency in steps of 1 / (2 highest_order) pinion revolutions.
+    (highest_order revolutions + 1,) float64
+        Nepers; its cepstrum has 2 highest_order steps per pinion revolution.
     """
     kept = log_amplitude(angle_signal)[: highest_order * revolutions + 1]
     flat = without_lines(kept, teeth * revolutions)
-    return real_cepstrum(flat - flat.mean())
+    return np.asarray(flat - flat.mean())
 
 
-def cepstral_peak(cepstrum: np.ndarray, period_steps: float) -> float:
-    """Return the largest value within one step of a quefrency; NaN where the cepstrum does not reach it.
+def cepstral_peak(log_spectrum: np.ndarray, period_steps: float) -> float:
+    """Return the largest cepstrum within one step of a quefrency; NaN where the cepstrum does not reach it.
 
     Parameters
     ----------
-    cepstrum : (n,) float64
-        Real cepstrum.
+    log_spectrum : (k,) float64
+        One-sided log amplitude; its cepstrum has 2 (k - 1) values.
     period_steps : float
         Quefrency of the shaft's revolution in steps of the cepstrum; both shafts differ by the tooth ratio.
 
@@ -48,6 +48,6 @@ def cepstral_peak(cepstrum: np.ndarray, period_steps: float) -> float:
     An echo of share a at that delay: a/2. Dimensionless (nepers). Source: Randall 2017.
     """
     middle = round(period_steps)
-    if middle < 2 or 2 * (middle + 1) > cepstrum.size:
+    if middle < 2 or middle + 1 > log_spectrum.size - 1:
         return math.nan
-    return float(cepstrum[middle - 1 : middle + 2].max())
+    return float(cepstrum_at(log_spectrum, np.arange(middle - 1, middle + 2)).max())

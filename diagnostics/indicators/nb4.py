@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnostics.indicators.na4 import na4
-from diagnostics.signal.analytic_signal import envelope
-from diagnostics.signal.mesh_band import mesh_band
+from diagnostics.signal.mesh_band import mesh_baseband
 
 
 def nb4(averages: Sequence[np.ndarray], teeth: int, harmonic: int, half_width: int) -> float:
@@ -30,7 +29,7 @@ def nb4(averages: Sequence[np.ndarray], teeth: int, harmonic: int, half_width: i
     Envelope of band-passed Gaussian noise (Rayleigh): 3.245 at the first record. NaN where no envelope varies. Source:
     Zakrajsek, Handschuh & Decker 1994.
     """
-    return na4([envelope(mesh_band(average, teeth, harmonic, half_width)) for average in averages])
+    return na4([np.abs(mesh_baseband(average, teeth, harmonic, half_width)) for average in averages])
 
 
 def dominant_harmonic(amplitude: np.ndarray, teeth: int, harmonics: int) -> int:

@@ -6,7 +6,11 @@ Randall 2017, standard literature.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+
+from diagnostics.signal.synchronous_average import hann_weights
 
 FLOOR = 1e-9
 """Amplitudes below this share of the strongest line count as that much: the logarithm of an empty bin says nothing."""
@@ -22,8 +26,7 @@ def log_amplitude(signal: np.ndarray) -> np.ndarray:
     """
     from scipy import fft
 
-    weights = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(signal.size) / signal.size)
-    amplitude = np.abs(fft.rfft(signal * weights))
+    amplitude = np.abs(fft.rfft(signal * hann_weights(signal.size)))
     return np.log(np.maximum(amplitude, FLOOR * amplitude.max() + 1e-300))
 
 
@@ -44,6 +47,36 @@ def real_cepstrum(log_spectrum: np.ndarray) -> np.ndarray:
     from scipy import fft
 
     return np.asarray(fft.irfft(log_spectrum, n=2 * (log_spectrum.size - 1)))
+
+
+def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
+    """Return the real cepstrum at a few quefrencies: the cosine sum of `real_cepstrum`, without its transform.
+
+    A transform of a length with a large prime factor, as a whole number of revolutions often gives, costs several
+    times more than one of a round length; a sum does not.
+
+    Parameters
+    ----------
+    log_spectrum : (k,) float64
+        As of `real_cepstrum`.
+    quefrency : (m,) int
+        Indices into what `real_cepstrum` returns.
+
+    Returns
+    -------
+    (m,) float64
+    """
+    length = 2 * (log_spectrum.size - 1)
+    block = math.isqrt(log_spectrum.size) + 1
+    weighted = np.zeros(block * block)
+    weighted[: log_spectrum.size] = 2.0 * log_spectrum
+    weighted[[0, log_spectrum.size - 1]] = log_spectrum[[0, -1]]
+    # bin a * block + b: the phases of a and b add up, so that 2 sqrt(k) phases per quefrency do for all bins
+    step = np.arange(block)[:, None]
+    fine = np.exp(2j * np.pi * (step * quefrency % length) / length)
+    coarse = np.exp(2j * np.pi * (step * block * quefrency % length) / length)
+    rows = weighted.reshape(block, block)
+    return ((rows @ fine.real) * coarse.real - (rows @ fine.imag) * coarse.imag).sum(axis=0) / length
 
 
 def short_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:

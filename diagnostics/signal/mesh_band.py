@@ -33,6 +33,45 @@ def mesh_band(average: np.ndarray, teeth: int, harmonic: int, half_width: int) -
     """
     from scipy import fft
 
+    centre = harmonic * teeth
+    kept = np.zeros(average.size // 2 + 1, dtype=np.complex128)
+    kept[centre - half_width : centre + half_width + 1] = _lines(average, teeth, harmonic, half_width)
+    return np.asarray(fft.irfft(kept, n=average.size))
+
+
+def mesh_baseband(average: np.ndarray, teeth: int, harmonic: int, half_width: int) -> np.ndarray:
+    """Return the analytic signal of the mesh band, shifted down to order zero: complex amplitude of the harmonic.
+
+    Parameters
+    ----------
+    average, teeth, harmonic, half_width
+        As of `mesh_band`.
+
+    Returns
+    -------
+    (n,) complex128
+        Its magnitude is the envelope of the band.
+
+    Raises
+    ------
+    ValueError
+        As of `mesh_band`.
+    """
+    from scipy import fft
+
+    lines = 2.0 * _lines(average, teeth, harmonic, half_width)
+    if 2 * (harmonic * teeth + half_width) == average.size:
+        lines[-1] /= 2.0  # the last line of an even length is its own mirror image
+    kept = np.zeros(average.size, dtype=np.complex128)
+    kept[: half_width + 1] = lines[half_width:]
+    kept[average.size - half_width :] = lines[:half_width]
+    return np.asarray(fft.ifft(kept))
+
+
+def _lines(average: np.ndarray, teeth: int, harmonic: int, half_width: int) -> np.ndarray:
+    """Return the lines of the transform within a mesh band."""
+    from scipy import fft
+
     spectrum = fft.rfft(average)
     centre = harmonic * teeth
     if not 0 <= 2 * half_width < teeth or centre + half_width >= spectrum.size:
@@ -40,6 +79,4 @@ def mesh_band(average: np.ndarray, teeth: int, harmonic: int, half_width: int) -
             f"band of {half_width} orders round {centre}: allowed are 0 <= half width < {teeth / 2:g} and orders "
             f"below {spectrum.size}"
         )
-    kept = np.zeros_like(spectrum)
-    kept[centre - half_width : centre + half_width + 1] = spectrum[centre - half_width : centre + half_width + 1]
-    return np.asarray(fft.irfft(kept, n=average.size))
+    return np.asarray(spectrum[centre - half_width : centre + half_width + 1])

@@ -9,6 +9,7 @@ tracking by interpolation is standard literature; the B-spline prefilter follows
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -128,11 +129,18 @@ def _spline_coefficients(padded: np.ndarray, limit: float) -> np.ndarray:
     from scipy import fft
 
     spectrum = fft.rfft(padded)
-    cycles = np.arange(spectrum.size) / padded.size
-    angle = 2.0 * np.pi * cycles / OVERSAMPLING
-    spline_response = (66.0 + 52.0 * np.cos(angle) + 2.0 * np.cos(2.0 * angle)) / 120.0
-    gain = OVERSAMPLING / spline_response
+    spectrum *= _spline_gain(padded.size)
     if limit < 0.5:
         start = limit * (1.0 - BAND_TAPER)
-        gain *= 0.5 + 0.5 * np.cos(np.pi * np.clip((cycles - start) / (limit - start), 0.0, 1.0))
-    return np.asarray(fft.irfft(spectrum * gain, n=padded.size * OVERSAMPLING))
+        cycles = np.arange(spectrum.size) / padded.size
+        spectrum *= 0.5 + 0.5 * np.cos(np.pi * np.clip((cycles - start) / (limit - start), 0.0, 1.0))
+    return np.asarray(fft.irfft(spectrum, n=padded.size * OVERSAMPLING))
+
+
+@lru_cache(maxsize=2)
+def _spline_gain(samples: int) -> np.ndarray:
+    """Return what oversampling and spline prefilter multiply a spectrum by; kept, since records of a set are alike."""
+    angle = 2.0 * np.pi * np.arange(samples // 2 + 1) / samples / OVERSAMPLING
+    gain = OVERSAMPLING / ((66.0 + 52.0 * np.cos(angle) + 2.0 * np.cos(2.0 * angle)) / 120.0)
+    gain.flags.writeable = False
+    return gain

@@ -7,6 +7,7 @@ periods, a gear revolution z2 (gear angle = pinion angle z1/z2). Source: synchro
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,4 +71,13 @@ def synchronous_average(
 
 def hann_weights(samples: int) -> np.ndarray:
     """Return the periodic Hann window of the given length."""
-    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(samples) / samples)
+    # cos(a + b) of coarse and fine steps: some 2 sqrt(n) cosines instead of n, within 1e-15 of them
+    fine = math.isqrt(samples) + 1
+    coarse_angle = 2.0 * np.pi * np.arange(0, samples, fine)[:, None] / samples
+    fine_angle = 2.0 * np.pi * np.arange(fine) / samples
+    cosine = np.cos(coarse_angle) * np.cos(fine_angle)
+    cosine -= np.sin(coarse_angle) * np.sin(fine_angle)
+    weights = cosine.ravel()[:samples]
+    weights *= -0.5
+    weights += 0.5
+    return np.maximum(weights, 0.0, out=weights)

@@ -200,3 +200,5 @@ def test_two_samples_at_the_peak_are_no_clipping() -> None:
     signal = np.array([0.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0])
     assert clipped_share(signal) == pytest.approx(3 / 8)
     assert clipped_share(np.sin(np.arange(100.0))) == 0.0
+    # runs of three and more at either end, and of two, which does not count
+    assert clipped_share(np.array([2.0, 2, 2, 0, 1, 2, 2, 0, 0, 0, 0])) == pytest.approx(7 / 11)

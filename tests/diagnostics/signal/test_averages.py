@@ -14,7 +14,7 @@ from diagnostics.signal.averaging_bias import comb_gain, noise_share
 from diagnostics.signal.demodulation import demodulated
 from diagnostics.signal.difference_signal import separated_average
 from diagnostics.signal.hunting_average import hunting_average, hunting_meshes
-from diagnostics.signal.mesh_band import mesh_band
+from diagnostics.signal.mesh_band import mesh_band, mesh_baseband
 from diagnostics.signal.synchronous_average import synchronous_average
 from siggen.errors import UsageError
 
@@ -99,3 +99,18 @@ def test_amplitude_and_phase_are_read_apart() -> None:
 def test_number_of_removed_harmonics_can_be_stated() -> None:
     average = sum(np.cos(18 * h * ANGLE) for h in (1, 2, 3))
     np.testing.assert_allclose(separated_average(average, 18, harmonics=2).residual, np.cos(54 * ANGLE), atol=1e-12)
+
+
+@pytest.mark.parametrize(("harmonic", "half_width"), [(1, 6), (3, 8), (1, 0)])
+def test_baseband_has_the_envelope_and_the_lines_of_the_mesh_band(harmonic: int, half_width: int) -> None:
+    average = np.random.default_rng(4).standard_normal(18 * 128)
+    band = mesh_band(average, 18, harmonic, half_width)
+    baseband = mesh_baseband(average, 18, harmonic, half_width)
+    np.testing.assert_allclose(np.abs(baseband), envelope(band), rtol=1e-12, atol=1e-14)
+    carrier = np.exp(2j * np.pi * (harmonic * 18 * np.arange(average.size) % average.size) / average.size)
+    np.testing.assert_allclose((baseband * carrier).real, band, atol=1e-14)
+
+
+def test_baseband_weighs_the_last_line_of_an_even_length_once() -> None:
+    average = np.random.default_rng(4).standard_normal(2 * (18 + 4))
+    np.testing.assert_allclose(np.abs(mesh_baseband(average, 18, 1, 4)), envelope(mesh_band(average, 18, 1, 4)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import stft
 
-from diagnostics.signal.cepstrum import log_amplitude, long_pass, real_cepstrum, short_pass, without_lines
+from diagnostics.signal.cepstrum import cepstrum_at, log_amplitude, long_pass, real_cepstrum, short_pass, without_lines
 from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
 from siggen.errors import UsageError
 
@@ -70,3 +70,12 @@ def test_spectral_kurtosis_is_that_of_scipys_short_spectra() -> None:
 def test_record_of_too_few_frames_is_refused() -> None:
     with pytest.raises(UsageError, match="need 2304"):
         spectral_kurtosis(np.ones(1000))
+
+
+@pytest.mark.parametrize("size", [3, 100, 1001, 204_537])
+def test_cepstrum_at_a_few_quefrencies_is_that_of_the_transform(size: int) -> None:
+    log_spectrum = np.random.default_rng(5).standard_normal(size)
+    whole = real_cepstrum(log_spectrum)
+    few = np.array([0, 1, size // 2, size - 1, whole.size - 1])
+    # both sum rounding errors of 1e-16 of values of order one
+    np.testing.assert_allclose(cepstrum_at(log_spectrum, few), whole[few], rtol=1e-12, atol=1e-15)

@@ -56,3 +56,12 @@ def test_less_than_a_revolution_is_refused() -> None:
     assert whole_revolutions(np.zeros(GEAR * STEPS - 1), GEAR, STEPS) == 0
     with pytest.raises(ValueError, match="one revolution needs 752"):
         synchronous_average(np.zeros(GEAR * STEPS - 1), GEAR, STEPS)
+
+
+@pytest.mark.parametrize("samples", [1, 2, 7, 2304, 293 * 2304])
+def test_hann_weights_are_those_of_one_cosine_per_sample(samples: int) -> None:
+    direct = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(samples) / samples)
+    found = hann_weights(samples)
+    assert found.shape == (samples,)
+    assert found.min() >= 0.0
+    np.testing.assert_allclose(found, direct, rtol=0.0, atol=1e-15)  # a few roundings of values up to one

@@ -1,0 +1,109 @@
+"""What all indicators of a record of 10 s cost: from the raw record, from given averages, step by step, and a set's."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import replace
+from multiprocessing import get_context
+
+import numpy as np
+
+from benchmarks.row import Row, cost_row, duration_text
+from benchmarks.timing import Candidate, medians
+from diagnostics.channel_indicators import CEPSTRUM_BAND, IndicatorSettings, shaft_indicators
+from diagnostics.indicator_table import CHUNK_RECORDS, RecordIndicators, chunk_indicators, record_indicators
+from diagnostics.indicators.cepstral_peak import shaft_log_spectrum
+from diagnostics.record_problems import record_problems
+from diagnostics.recording import Recording
+from diagnostics.shaft_signals import record_shafts
+from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
+from diagnostics.signal.synchronous_average import synchronous_average
+
+FS_HZ = 51_200.0
+DURATION_S = 10.0
+SPEED_HZ = 30.0
+TEETH = (18, 47)
+GOAL_RAW_S = 120e-3
+GOAL_AVERAGE_S = 20e-3
+GOAL_SET_S = 60.0
+SET_RECORDS = 1000
+WORKERS = 2
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield the CPU time of one record and channel and of its steps, and the wall time of a set by two workers."""
+    record = modulated_record()
+    cost = medians(_candidates(record), rounds=5 if quick else 25)
+    whole = cost.pop("raw")
+    goal_ms = f"<= {GOAL_RAW_S * 1e3:.0f} ms"
+    real = f"real time of the signal: {DURATION_S:g} s"
+    yield Row("raw record of 10 s, one channel, CPU", duration_text(whole), real, None, goal_ms, whole <= GOAL_RAW_S)
+    average = cost.pop("average")
+    yield cost_row("from given averages of both shafts, CPU", average, "raw record", whole, GOAL_AVERAGE_S)
+    for name, step in cost.items():
+        yield cost_row(f"of it: {name}", step, "raw record", whole)
+    yield _set_row(record, 100 if quick else SET_RECORDS)
+
+
+def modulated_record() -> Recording:
+    """Return five mesh harmonics, modulated by both shafts, with noise and a little speed variation, and pulses."""
+    time_s = np.arange(round(FS_HZ * DURATION_S)) / FS_HZ
+    turns = SPEED_HZ * time_s + 0.02 * np.sin(2 * np.pi * 0.3 * time_s)
+    depth = 1.0 + 0.1 * np.cos(2 * np.pi * turns) + 0.05 * np.cos(2 * np.pi * turns * TEETH[0] / TEETH[1])
+    mesh = sum(np.cos(2 * np.pi * h * TEETH[0] * turns + h) / h for h in range(1, 6))
+    # a fixed generator: every run measures the same record
+    signal = depth * mesh + 0.3 * np.random.default_rng(0).standard_normal(time_s.size)
+    pulses = np.interp(np.arange(1, int(turns[-1])), turns, time_s)
+    gears = {"teeth_pinion": TEETH[0], "teeth_gear": TEETH[1]}
+    labels = {"record_id": 0, **gears, "speed_hz": SPEED_HZ, "torque_nm": 50.0}
+    return Recording(labels, {"casing": signal.astype(np.float32)}, pulses, FS_HZ)
+
+
+def _candidates(record: Recording) -> dict[str, Candidate]:
+    settings = IndicatorSettings()
+    signal = record.channels["casing"].astype(np.float64)
+    tooth = settings.order_domain.samples_per_tooth
+    grid = angle_grid(record.tacho_s, TEETH[0] * tooth)
+    steps = resample_to_angle(signal, FS_HZ, grid)
+    shafts = record_shafts(grid, TEETH, tooth, settings.order_domain.sidebands)
+    # an average is a record of one revolution: what it costs to average is then nothing
+    averages = [synchronous_average(steps, shaft.teeth, tooth).signal for shaft in shafts]
+    single = [replace(shaft, revolutions=1) for shaft in shafts]
+    highest = int(CEPSTRUM_BAND * 0.5 * min(FS_HZ / grid.slowest_hz, float(grid.samples_per_revolution)))
+    functions: dict[str, Callable[[], object]] = {
+        "raw": lambda: record_indicators(record, (), settings),
+        "average": lambda: [shaft_indicators(a, s, settings) for a, s in zip(averages, single, strict=True)],
+        "checks of the record": lambda: record_problems(record, settings.frame_samples, needs_tacho=True),
+        "times of the angle steps": lambda: angle_grid(record.tacho_s, TEETH[0] * tooth),
+        "resampling to angle": lambda: resample_to_angle(signal, FS_HZ, grid),
+        "averages and indicators of both shafts": lambda: [shaft_indicators(steps, s, settings) for s in shafts],
+        "log spectrum over orders": lambda: shaft_log_spectrum(steps, grid.revolutions, TEETH[0], highest),
+        "spectral kurtosis": lambda: spectral_kurtosis(signal, settings.frame_samples),
+    }
+    return {name: Candidate(lambda _, call=call: call()) for name, call in functions.items()}  # type: ignore[misc]
+
+
+def _set_row(record: Recording, count: int) -> Row:
+    """Return the wall time of so many records by two workers, their start and the way of the records there included."""
+    # copies: the same object eight times would cross to the worker once
+    chunk = [replace(record, channels={n: s.copy() for n, s in record.channels.items()}) for _ in range(CHUNK_RECORDS)]
+    chunks = [chunk] * (count // CHUNK_RECORDS)
+    begin = time.perf_counter()
+    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
+        waiting: deque[Future[list[RecordIndicators]]] = deque()
+        for part in chunks:
+            waiting.append(pool.submit(chunk_indicators, part, (), IndicatorSettings()))
+            # as `indicator_table` hands them out: two chunks per worker on the way
+            if len(waiting) >= 2 * WORKERS:
+                waiting.popleft().result()
+        while waiting:
+            waiting.popleft().result()
+    wall = time.perf_counter() - begin
+    done = CHUNK_RECORDS * len(chunks)
+    scaled = wall * SET_RECORDS / done
+    what = f"{done} such records, {WORKERS} workers, wall" + ("" if done == SET_RECORDS else f", for {SET_RECORDS}")
+    return Row(what, duration_text(scaled), goal=f"<= {GOAL_SET_S:g} s", met=scaled <= GOAL_SET_S)
