@@ -102,9 +102,15 @@ def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> fl
 
 
 def record_response(
-    config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord, *, internals: bool = False
+    config: Config,
+    specimen: Specimen,
+    state: SpecimenState,
+    record: PlannedRecord,
+    *,
+    internals: bool = False,
+    driven: RecordDrive | None = None,
 ) -> tuple[Response, OperatingPoint]:
-    """Return the clean response of one record and its operating point.
+    """Return the clean response of one record and its operating point; `driven` is drawn unless it is at hand.
 
     Raises
     ------
@@ -114,7 +120,7 @@ def record_response(
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
     with limits_of("outside_model"):
-        driven = _driven(config, specimen, state, record)
+        driven = _driven(config, specimen, state, record) if driven is None else driven
         response = response_of(
             specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
             driven.rotation,
@@ -142,12 +148,14 @@ def _simulated(
     config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
 ) -> Record:
     with_internals = has_internals(config, planned)
-    response, point = record_response(config, specimen, state, planned, internals=with_internals)
+    with limits_of("outside_model"):
+        driven = _driven(config, specimen, state, planned)
+    response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
     channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     labels = {
         **state.labels,
         **operating_labels(state.pair, point, response),
-        **variation_labels(config, _driven(config, specimen, state, planned)),
+        **variation_labels(config, driven),
         "start_angle_rad": float(response.angle_rad[0]),
         "contact_loss_share": response.contact_loss_share,
         "status": response.status,

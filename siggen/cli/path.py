@@ -27,7 +27,7 @@ def path(
     The table of --out has one row per frequency and two columns per channel and bearing force, in the form that a
     sensor's path of kind measured reads.
 
-    Example: siggen path configs/casing_path.yaml --png path.png
+    Example: siggen path configs/transfer_path.yaml --png path.png
     """
     from siggen.dataset.table_file import check_table_file, write_table_file
     from siggen.loading import load_config
