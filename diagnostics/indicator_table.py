@@ -18,6 +18,7 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.channel_indicators import IndicatorSettings, channel_indicators
+from diagnostics.chosen_states import chosen_states
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.indicators.own_indicator import Gears, OwnIndicator, registered
 from diagnostics.record_problems import RecordProblem, problem_list, record_problems
@@ -87,6 +88,7 @@ def indicator_table(
     *,
     workers: int = 1,
     leave_out: bool = False,
+    states: Sequence[str] = (),
     advance: Callable[[], None] | None = None,
 ) -> IndicatorTable:
     """Return all indicators of a set.
@@ -103,6 +105,8 @@ def indicator_table(
         Processes; 1 computes in this one.
     leave_out : bool
         Leave records and channels out that cannot be used, instead of stopping.
+    states : sequence of str
+        Damaged states to take besides the healthy ones; all where empty.
     advance : callable, optional
         Called after every record.
 
@@ -111,12 +115,12 @@ def indicator_table(
     DatasetError
         If the set holds no records, or some cannot be used and `leave_out` is not set.
     UsageError
-        If two indicators have one name or an own indicator fails.
+        If two indicators have one name, an own indicator fails, or the set has no such state.
     """
     chosen = settings or IndicatorSettings()
     mine = _distinct((*registered(), *own))
     found: list[RecordIndicators] = []
-    chunks = _chunks(recordings(dataset), CHUNK_RECORDS)
+    chunks = _chunks(recordings(dataset, states=chosen_states(dataset, states)), CHUNK_RECORDS)
     for results in _mapped(chunks, mine, chosen, workers):
         for result in results:
             found.append(result)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
 
 LABEL_NAMES = (
     *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
@@ -29,7 +31,9 @@ class Recording:
     fs_hz: float
 
 
-def recordings(dataset: Any, splits: Sequence[str] | None = None) -> Iterator[Recording]:
+def recordings(
+    dataset: Any, splits: Sequence[str] | None = None, states: Sequence[str] | None = None
+) -> Iterator[Recording]:
     """Yield the records of a set.
 
     Parameters
@@ -38,11 +42,17 @@ def recordings(dataset: Any, splits: Sequence[str] | None = None) -> Iterator[Re
         What `siggen.open` returned.
     splits : sequence of str, optional
         Splits to read, in this order; default all.
+    states : sequence of str, optional
+        States to read; default all.
     """
     columns = [*LABEL_NAMES, *(channel.column for channel in dataset.channels), TACHO_NAME]
     for split in dataset.splits if splits is None else splits:
         for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
-            yield from _rows(batch, dataset)
+            yield from _rows(batch if states is None else _in_states(batch, states), dataset)
+
+
+def _in_states(batch: Any, states: Sequence[str]) -> Any:
+    return batch.filter(pc.is_in(batch.column("state"), value_set=pa.array(states)))
 
 
 def _rows(batch: Any, dataset: Any) -> Iterator[Recording]:

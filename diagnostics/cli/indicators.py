@@ -36,6 +36,15 @@ def indicators(
             show_default=False,
         ),
     ] = None,
+    state: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="A damaged state to judge beside the healthy ones; may be given several times; default all. Sizes and "
+            "trends mean something along one ladder of damage only.",
+            show_default=False,
+        ),
+    ] = None,
     leave_out: Annotated[bool, typer.Option("--leave-out", help="Leave unusable records and channels out.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
 ) -> None:
@@ -45,6 +54,7 @@ def indicators(
     """
     from diagnostics.assessment.assessment import AssessmentSettings
     from diagnostics.channel_indicators import IndicatorSettings
+    from diagnostics.chosen_states import chosen_states
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.extras import require_packages
     from diagnostics.indicator_table import indicator_table
@@ -59,8 +69,12 @@ def indicators(
     own = [load_indicator(reference) for reference in indicator or ()]
     dataset = open_set(directory)
     settings = IndicatorSettings(speed_range_hz=speed_range)
-    with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        table = indicator_table(dataset, own, settings, workers=workers, leave_out=leave_out, advance=advance)
+    states = chosen_states(dataset, state or ())
+    records = sum(name in states for name in dataset.labels(columns=["state"]).column("state").to_pylist())
+    with terminal_stage("indicators", records) as advance:
+        table = indicator_table(
+            dataset, own, settings, workers=workers, leave_out=leave_out, states=states, advance=advance
+        )
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
     typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))

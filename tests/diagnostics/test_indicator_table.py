@@ -184,7 +184,7 @@ def test_record_that_cannot_be_used_is_left_out_with_its_reason(small: Any, chan
 def test_unusable_record_stops_the_set_unless_it_is_left_out(small: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     good = list(recordings(small))
     broken = [changed(good[0], samples=[np.nan]), *good[1:]]
-    monkeypatch.setattr("diagnostics.indicator_table.recordings", lambda dataset: iter(broken))
+    monkeypatch.setattr("diagnostics.indicator_table.recordings", lambda dataset, states=None: iter(broken))
     with pytest.raises(
         DatasetError, match=r"(?s)memory_set: 1 problems.*record 0, channel bearing_vertical.*--leave-out"
     ):
@@ -202,3 +202,18 @@ def test_two_samples_at_the_peak_are_no_clipping() -> None:
     assert clipped_share(np.sin(np.arange(100.0))) == 0.0
     # runs of three and more at either end, and of two, which does not count
     assert clipped_share(np.array([2.0, 2, 2, 0, 1, 2, 2, 0, 0, 0, 0])) == pytest.approx(7 / 11)
+
+
+def test_named_states_and_the_healthy_one_are_a_ladder_of_their_own(small: Any, table: IndicatorTable) -> None:
+    ladder = indicator_table(small, states=("severe",))
+    assert set(ladder.matrix.labels["state"].tolist()) == {"healthy", "severe"}
+    severe = table.matrix.labels["state"] == "severe"
+    both = [name for name in ladder.matrix.names if not name.startswith(("na4", "nb4"))]
+    of_ladder = ladder.matrix.labels["state"] == "severe"
+    for name in both:
+        np.testing.assert_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
+    # the slight state is not in the history any more
+    name = next(name for name in ladder.matrix.names if name.startswith("na4_pinion"))
+    assert not np.array_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
+    with pytest.raises(UsageError, match="no state rusty; it has healthy, slight, severe"):
+        indicator_table(small, states=("rusty",))

@@ -1,0 +1,34 @@
+"""The states of a set that a judgement takes: the healthy ones, and the damages that the user names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from diagnostics.separability import HEALTHY
+from siggen.errors import UsageError
+
+
+def chosen_states(dataset: Any, names: Sequence[str]) -> tuple[str, ...]:
+    """Return all healthy states and the named ones, in the order of the set.
+
+    A set may hold several ladders of damage, such as pits beside spalls of growing length. Sizes, trends and histories
+    only mean something along one of them.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    names : sequence of str
+        States to take besides the healthy ones; all where empty.
+
+    Raises
+    ------
+    UsageError
+        If the set has no state of that name.
+    """
+    labels = dataset.labels(columns=["state_id", "state", "fault"]).to_pylist()
+    faults = {row["state"]: row["fault"] for row in sorted(labels, key=lambda row: row["state_id"])}
+    if unknown := [name for name in names if name not in faults]:
+        raise UsageError(f"{dataset.path}: has no state {', '.join(unknown)}; it has {', '.join(faults)}")
+    return tuple(state for state, fault in faults.items() if not names or fault == HEALTHY or state in names)
