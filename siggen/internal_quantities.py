@@ -9,7 +9,7 @@ from siggen.config import constant
 from siggen.dataset.record import Column
 from siggen.dataset.specimen import Specimen
 from siggen.dynamics.response import Response
-from siggen.dynamics.structure import Structure
+from siggen.quantity_names import acceleration_name, bearing_force_name
 
 FloatArray = NDArray[np.float64]
 
@@ -37,22 +37,11 @@ def internal_quantities(specimen: Specimen, response: Response) -> dict[str, Flo
     """Return name -> (n,) at the samples of a response that holds its internals."""
     return {
         "pinion_angle_rad": np.mod(response.angle_rad, 2.0 * np.pi),
-        **{_acceleration(place): a for place, a in response.acceleration_m_s2.items()},
-        **{_bearing_force(place): f for place, f in response.bearing_force_n.items()},
+        **{acceleration_name(place): a for place, a in response.acceleration_m_s2.items()},
+        **{bearing_force_name(place): f for place, f in response.bearing_force_n.items()},
         **response.internals,
         "transmission_error_m": _transmission_error(response.internals["approach_m"], specimen),
     }
-
-
-def quantity_names(structure: Structure, internal_names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names that `internal_quantities` gives for a motion of this structure with these internals."""
-    return (
-        "pinion_angle_rad",
-        *(_acceleration(place) for place in structure.motions),
-        *(_bearing_force(place) for place in structure.bearing_forces),
-        *internal_names,
-        "transmission_error_m",
-    )
 
 
 def quantity_column(name: str) -> Column:
@@ -72,11 +61,3 @@ def _transmission_error(approach_m: FloatArray, specimen: Specimen) -> FloatArra
         return approach_m
     half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
     return approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m)
-
-
-def _acceleration(place: str) -> str:
-    return f"clean_accel_{place.replace('/', '_')}_m_s2"
-
-
-def _bearing_force(place: str) -> str:
-    return f"bearing_force_{place.replace('/', '_')}_n"

@@ -23,6 +23,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     # compile nothing, but load the physics
     from siggen.measured_response import response_problems, with_measured_responses
     from siggen.physical_problems import physical_problems
+    from siggen.quantity_names import quantity_problems
 
     is_file = isinstance(source, (str, Path))
     raw = read_yaml(source) if isinstance(source, (str, Path)) else source
@@ -30,6 +31,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     filled, unread = with_measured_responses(apply_overrides(raw, overrides), folder)
     parsed = parse(filled)
     problems = [*parsed.problems, *physical_problems(parsed), *unread, *response_problems(parsed.sections)]
+    if parsed.config is not None and not problems:
+        problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
         raise ConfigError(problems, str(source) if is_file else "configuration")
     return parsed.config

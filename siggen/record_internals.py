@@ -5,19 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
-from siggen.config import Config, corners
+from siggen.config import Config
 from siggen.dataset.plan import planned_record
 from siggen.dataset.record import Column
-from siggen.dataset.specimen import draw_operating_point, draw_specimen
-from siggen.errors import ConfigError, Problem
-from siggen.gears.geometry import GearPair
-from siggen.gears.tables import mesh_tables
-from siggen.internal_quantities import internal_quantities, quantity_column, quantity_names
+from siggen.dataset.specimen import draw_specimen
+from siggen.errors import ConfigError
+from siggen.internal_quantities import internal_quantities, quantity_column
+from siggen.quantity_names import available_quantities, quantity_problems
 from siggen.sensor_channels import measured_channels
 from siggen.simulation import record_response, specimen_state
-from siggen.specimen_motion import SpecimenMesh, specimen_motion, teeth_missing
-from siggen.specimen_physics import gear_pair, stiffness_options
-from siggen.specimen_structure import structure
 
 
 def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
@@ -60,9 +56,6 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
 def stored_quantities(config: Config) -> tuple[Column, ...]:
     """Return the columns of `internals/` that a configuration asks for; none without the section `internals`.
 
-    They follow from the configuration alone: the gears of the ranges with the longest path of contact have as many
-    pairs in reach as any.
-
     Raises
     ------
     ConfigError
@@ -70,29 +63,8 @@ def stored_quantities(config: Config) -> tuple[Column, ...]:
     """
     if config.internals is None:
         return ()
-    available = _available(config)
-    asked = available if config.internals.stores_all else config.internals.quantities
-    unknown = [name for name in asked if name not in available]
-    if unknown:
-        received, allowed = ", ".join(unknown), f"allowed with this model: [all], or any of {', '.join(available)}"
-        raise ConfigError([Problem("internals.quantities", received, allowed)])
+    problems = quantity_problems(config)
+    if problems:
+        raise ConfigError(problems)
+    asked = available_quantities(config) if config.internals.stores_all else config.internals.quantities
     return tuple(quantity_column(name) for name in dict.fromkeys(asked))
-
-
-def _available(config: Config) -> tuple[str, ...]:
-    specimen, point = draw_specimen(config, 0), draw_operating_point(config, 0, 0)
-    pair = max((gear_pair(corner) for corner in corners(config.gears)), key=_contact_ratio)
-    points = specimen.stiffness.table_points
-    mesh = SpecimenMesh(
-        pair,
-        structure(specimen.dynamics, pair, specimen.sensors),
-        mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=points),
-        teeth_missing(specimen.dynamics, pair, points),
-    )
-    step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
-    motion = specimen_motion(specimen.dynamics, mesh, point, step_s)
-    return quantity_names(motion.structure, motion.internal_names)
-
-
-def _contact_ratio(pair: GearPair) -> float:
-    return (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m

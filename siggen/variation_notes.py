@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.config import Config, Number, bounds
+from siggen.config.variation import RARE
 
 
 def variation_notes(config: Config) -> tuple[str, ...]:
     """Return what varies and which forces the shafts bring; nothing for constant speed and torque alone."""
     return (*_speed(config), *_torque(config), *_forces(config), *_limits(config))
+
+
+def reversal_notes(config: Config) -> tuple[str, ...]:
+    """Return whose torque may change its sign within a record, at the largest draws and rare random values."""
+    return tuple(_reversals(config))
 
 
 def _speed(config: Config) -> Iterator[str]:
@@ -33,6 +39,18 @@ def _torque(config: Config) -> Iterator[str]:
         yield f"load torque pulsates by {_percent(torque.load_once)} once per revolution of its shaft"
     if _some(torque.line_ripple):
         yield f"motor torque pulsates by {_percent(torque.line_ripple)} at twice {_span(torque.line_hz)} Hz"
+
+
+def _reversals(config: Config) -> Iterator[str]:
+    torque = config.variation.torque
+    slow = RARE * bounds(torque.random_rms)[1]
+    for body, number, then in (
+        ("load", torque.load_once, "the load drives then"),
+        ("motor", torque.line_ripple, "the motor brakes then"),
+    ):
+        least = 1.0 - slow - bounds(number)[1]
+        if least < 0.0:
+            yield f"{body} torque falls to {100.0 * least:.3g} % of its mean: {then}, and teeth may part or change flanks"
 
 
 def _forces(config: Config) -> Iterator[str]:

@@ -34,6 +34,7 @@ FLOORS = {
     "siggen.state_damage": 5.1,
     "siggen.variation_problems": 5.1,
     "siggen.physical_problems": 5.2,
+    "siggen.quantity_names": 5.25,
     "siggen.loading": 5.3,
     "siggen.record_labels": 5.35,
     "siggen.specimen_housing": 5.05,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from siggen.config import parse, parse_yaml
 from siggen.dataset.record import Record
 from siggen.errors import ConfigError
 from siggen.loading import load_config
@@ -57,7 +60,18 @@ def test_units_follow_from_the_names() -> None:
     assert {name: units[name] for name in expected} == expected
 
 
-def test_only_quantities_that_the_model_has_can_be_stored() -> None:
-    config = load_config("configs/linear_pits.yaml", [*SHORT, "internals.quantities=[mesh_force_n, x_c_m]"])
-    with pytest.raises(ConfigError, match=r"internals\.quantities: received x_c_m; .*transmission_error_m"):
-        stored_quantities(config)
+def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_names() -> None:
+    asked = "internals.quantities=[mesh_force_n, mesh_stifness, all, x_c_m]"
+    with pytest.raises(ConfigError) as caught:
+        load_config("configs/linear_pits.yaml", [*SHORT, asked])
+    first, second = caught.value.problems
+    assert (first.path, first.received) == ("internals.quantities.1", "'mesh_stifness'")
+    assert "nearest: mesh_stiffness_n_per_m, " in first.allowed
+    assert second.path == "internals.quantities.3"
+    assert len(str(second)) < 300  # not the list of all names
+
+
+def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_stored() -> None:
+    parsed = parse(parse_yaml(Path("configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n"))
+    with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_c_m'"):
+        stored_quantities(parsed.config)

@@ -39,7 +39,7 @@ def plan(
     console.print(_overview(summary))
     console.print(_states(summary))
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
-    for note in (*summary["stiffness_notes"], *summary["lubrication_notes"]):
+    for note in (*summary["stiffness_notes"], *summary["lubrication_notes"], *summary["torque_notes"]):
         console.print(f"note: {note}", highlight=False, markup=False)
 
 
@@ -49,7 +49,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen_physics import model_notes
     from siggen.stiffness_curves import table_error_text
-    from siggen.variation_notes import variation_notes
+    from siggen.variation_notes import reversal_notes, variation_notes
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
@@ -78,6 +78,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "manufacture": _manufacture(config),
         "variation": list(variation_notes(config)),
         "lubrication_notes": list(contact_notes(config)),
+        "torque_notes": list(reversal_notes(config)),
     }
 
 

@@ -31,3 +31,8 @@ class Internals(Section):
     def stores_all(self) -> bool:
         """Whether all quantities of the model are stored."""
         return ALL in self.quantities
+
+    @property
+    def named(self) -> tuple[tuple[int, str], ...]:
+        """Place in the list and name of every quantity asked for by its name."""
+        return tuple((place, name) for place, name in enumerate(self.quantities) if name != ALL)

@@ -24,6 +24,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.dynamics.equations import Equations, approach_of, external_push, linear_rate, state_matrix
+from siggen.dynamics.matrix_exponential import matrix_exponential
 from siggen.dynamics.mesh_force import MeshLaw, row_stiffness, table_row
 from siggen.dynamics.runge_kutta import runge_kutta_step
 
@@ -102,8 +103,6 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
     Velocities are scaled by h, which brings all entries to the same size. With c = (c_0..c_3) the chain ċ_j = c_{j+1}
     makes the input Σ c_j τ^j / j!, whose response turns into that of the Legendre polynomials by their coefficients.
     """
-    from scipy.linalg import expm
-
     n = equations.mesh_vector.size
     scale = np.concatenate([np.ones(n), np.full(n, step_s)])
     augmented = np.zeros((2 * n + 4, 2 * n + 4))
@@ -111,7 +110,7 @@ def _exponentials(equations: Equations, law: MeshLaw, step_s: float) -> tuple[Fl
     augmented[n : 2 * n, 2 * n] = step_s**2 * equations.mesh_input
     for j in range(3):
         augmented[2 * n + j, 2 * n + j + 1] = 1.0
-    exponential = expm(augmented)
+    exponential = matrix_exponential(augmented)
     transition = exponential[: 2 * n, : 2 * n] / scale[:, None] * scale[None, :]
     monomial = exponential[: 2 * n, 2 * n :] * np.array([1.0, 1.0, 2.0, 6.0]) / scale[:, None]
     weights = (2.0 * np.arange(4) + 1.0)[:, None] * SHIFTED_LEGENDRE
@@ -131,14 +130,14 @@ def _input_responses(equations: Equations, law: MeshLaw, step_s: float) -> tuple
 
     From one exponential of [[A, V, 0], [0, 0, 1], [0, 0, 0]] h: the responses to 1 and to τ.
     """
-    from scipy.linalg import expm
-
     count, n = equations.external_input.shape
     augmented = np.zeros((2 * n + 2 * count, 2 * n + 2 * count))
     augmented[: 2 * n, : 2 * n] = _scaled_matrix(equations, law, step_s)
     augmented[n : 2 * n, 2 * n : 2 * n + count] = step_s**2 * equations.external_input.T
     augmented[2 * n : 2 * n + count, 2 * n + count :] = np.eye(count)
-    exponential = expm(augmented)[: 2 * n, 2 * n :] / np.concatenate([np.ones(n), np.full(n, step_s)])[:, None]
+    exponential = (
+        matrix_exponential(augmented)[: 2 * n, 2 * n :] / np.concatenate([np.ones(n), np.full(n, step_s)])[:, None]
+    )
     constant, rising = exponential[:, :count].T, exponential[:, count:].T
     return constant - rising, rising
 
