@@ -138,7 +138,7 @@ def train_models(
         notes=tuple(notes),
         other=_judge_other(models, trained, results, other, split.healthy, seed, stage) if other else (),
         other_name=other.dataset.path.name if other else "",
-        comparisons=_comparisons(results, seed),
+        comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
         severity=_severity(results, matrix, split, seed),
     )
@@ -207,11 +207,11 @@ def _judge_other(
     return tuple(judged(name, *votes, np.empty(0), details[name], seed, healthy) for name, votes in found.items())
 
 
-def _comparisons(results: list[Judged], seed: int) -> tuple[Comparison, ...]:
+def _comparisons(results: list[Judged], healthy: str | None, seed: int) -> tuple[Comparison, ...]:
     """Compare every pair of classifiers, the later one first, with RMS alone always second."""
     order = sorted(results, key=lambda found: found.name == RMS_ALONE)
     return tuple(
-        comparison((first.name, second.name), first.predictions, second.predictions, seed)
+        comparison((first.name, second.name), first.predictions, second.predictions, seed, healthy)
         for position, second in enumerate(order)
         for first in order[:position]
     )
@@ -267,6 +267,7 @@ def training_metrics(training: Training) -> dict[str, Any]:
                 "second": pair.second,
                 "accuracy": pair.accuracy.numbers(),
                 "macro_auroc": pair.macro_auroc.numbers(),
+                "detection_auroc": pair.detection.numbers() if pair.detection else None,
             }
             for pair in training.comparisons
         ],

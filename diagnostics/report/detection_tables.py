@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from diagnostics.judgement import TITLES, Judged
+import math
+
+from diagnostics.judgement import RMS_ALONE, TITLES, Judged
 from diagnostics.report.html import Cell, paragraph, table
 from diagnostics.report.tables import interval_cell
 from diagnostics.training import Training
@@ -14,7 +16,8 @@ def detection_blocks(training: Training) -> list[str]:
     shown = tuple(found for found in training.judged if found.detection)
     if not shown:
         return blocks
-    blocks += [paragraph(detection_sentence(training)), detection_table(shown)]
+    sentences = [detection_sentence(training), *gain_sentences(training)]
+    blocks += [paragraph(" ".join(sentences)), detection_table(shown)]
     other = tuple(found for found in training.other if found.detection)
     if other:
         blocks += [paragraph(f"Damaged or not on the other set {training.other_name}:"), detection_table(other)]
@@ -52,6 +55,19 @@ def detection_sentence(training: Training) -> str:
         f"Damaged or not: AUROC of 1 − p({training.split.healthy}) on the test specimens, one alarm for all damages; "
         "0.5 is chance. Limits: 95 %, resampled specimens."
     )
+
+
+def gain_sentences(training: Training) -> list[str]:
+    """Say what the best detector gains over the level alone, paired; nothing where there is no interval."""
+    pairs = [(pair, pair.detection) for pair in training.comparisons if pair.second == RMS_ALONE and pair.detection]
+    defined = [(pair, gain) for pair, gain in pairs if math.isfinite(gain.low)]
+    if not defined:
+        return []
+    best, gain = max(defined, key=lambda entry: entry[1].value)
+    return [
+        f"Over RMS alone, {TITLES[best.first]} gains {gain.value:+.2f} ({gain.low:+.2f} to {gain.high:+.2f}, paired "
+        "over the specimens)."
+    ]
 
 
 def detection_table(found: tuple[Judged, ...]) -> str:

@@ -19,8 +19,9 @@ from diagnostics.network_training import NetworkOptions
 from diagnostics.other_set import check_other_set
 from diagnostics.prediction.model_facts import read_facts
 from diagnostics.progress import silent_stage
-from diagnostics.report.report import write_report
-from diagnostics.training import OtherSet, Training, train_models, training_metrics
+from diagnostics.report.detection_tables import detection_blocks
+from diagnostics.report.sentences import scores_sentence
+from diagnostics.training import OtherSet, Training, save_models, train_models, training_metrics
 from diagnostics.training_sets import set_table
 from diagnostics.window_index import StreamSettings, window_index
 
@@ -110,16 +111,21 @@ def test_the_loader_gives_states_and_classes(twice: Any) -> None:
     }
 
 
-def test_page_card_and_model_say_what_the_healthy_class_holds(twice: Any, tmp_path: Path) -> None:
-    write_report(twice, tmp_path, 0, network=WITHOUT)
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "Class healthy: records of healthy, healthy_again" in page
-    assert "the right one of 3 classes" in page
-    assert "always naming the most frequent one gives an accuracy of 50%" in page
-    assert "where guessing gives 50" in page
-    assert "Damaged or not" in page
-    card = (tmp_path / "models" / "model_card.md").read_text(encoding="utf-8")
+def test_page_card_and_model_say_what_the_healthy_class_holds(twice: Any, training: Training, tmp_path: Path) -> None:
+    page = " ".join([scores_sentence(training), *detection_blocks(training)])
+    for text in (
+        "Class healthy: records of healthy, healthy_again",
+        "the right one of 3 classes",
+        "always naming the most frequent one gives an accuracy of 50%",
+        "where guessing gives 50",
+        "Over RMS alone, ",
+        "Damaged or not on the other set other",
+    ):
+        assert text in page
+    save_models(training, set_table(twice, silent_stage), twice, tmp_path)
+    card = (tmp_path / "model_card.md").read_text(encoding="utf-8")
     assert "classes: healthy, slight, severe (healthy: records of healthy, healthy_again)" in card
-    assert read_facts(tmp_path / "models")[0].classes == ("healthy", "slight", "severe")
-    named = json.loads((tmp_path / "models" / "feature_names.json").read_text(encoding="utf-8"))
+    assert "accuracy of 0.50 and a balanced accuracy of 0.33" in card
+    assert read_facts(tmp_path)[0].classes == ("healthy", "slight", "severe")
+    named = json.loads((tmp_path / "feature_names.json").read_text(encoding="utf-8"))
     assert named["classes"] == ["healthy", "slight", "severe"]
