@@ -58,7 +58,7 @@ def training(twice: Any, make_dataset: Callable[..., Any]) -> Training:
     other = make_dataset(("test",) * 4, seed=9)
     states = pc.replace_substring(other.table.column("state"), "healthy", "as_delivered")
     table = other.table.set_column(other.table.schema.get_field_index("state"), "state", states)
-    other = replace(other, table=table, manifest={"identity": "2" * 64, "name": "other"})
+    other = replace(other, table=table, path=Path("other"), manifest={"identity": "2" * 64, "name": "other"})
     check_other_set(twice, other)
     second = OtherSet(other, set_table(other, silent_stage))
     return train_models(twice, set_table(twice, silent_stage), 0, network=WITHOUT, other=second)
