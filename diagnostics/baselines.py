@@ -17,6 +17,7 @@ from diagnostics.evaluation import Predictions, macro_auroc
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.seeding import Purpose, generator
 from diagnostics.splits import SpecimenSplit
+from diagnostics.state_classes import CLASS
 
 STRENGTHS = (0.003, 0.03, 0.3, 3.0)
 """Candidates for C, the inverse strength of regularisation, strongest regularisation first."""
@@ -76,8 +77,8 @@ def _predictions(pipeline: Any, matrix: FeatureMatrix, classes: tuple[str, ...])
 
 
 def state_index(matrix: FeatureMatrix, classes: tuple[str, ...]) -> np.ndarray:
-    """Return the position of every record's state in `classes`, (n,) int."""
-    return np.array([classes.index(state) for state in matrix.labels["state"].tolist()], dtype=np.int64)
+    """Return the position of every record's class in `classes`, (n,) int; healthy states are one class."""
+    return np.array([classes.index(name) for name in matrix.labels[CLASS].tolist()], dtype=np.int64)
 
 
 def logistic_pipeline(strength: float = DEFAULT_STRENGTH) -> Any:

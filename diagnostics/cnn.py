@@ -51,7 +51,10 @@ class TrainingSettings:
     augmentation : Augmentation or None
         Random paths and noise on training windows; None shows them as they are.
     device : str
-        `cpu`, or `cuda` with mixed precision.
+        `cpu` or `cuda`.
+    mixed_precision : bool or None
+        Whether convolutions of training run in bfloat16; None: wherever it is fast, so not on the CPU. Weights,
+        loss and judging stay float32.
     """
 
     most_epochs: int = 100
@@ -62,6 +65,7 @@ class TrainingSettings:
     weight_decay: float = 0.1
     augmentation: Augmentation | None = field(default_factory=Augmentation)
     device: str = "cpu"
+    mixed_precision: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +120,7 @@ class WideKernelNetwork(nn.Module):
         varying = (periods - periods.mean(dim=2, keepdim=True)).flatten(2)
         both = torch.cat([scaled, varying], dim=1)
         level = torch.sqrt((both * both).mean(dim=2, keepdim=True) + SMALLEST_VARIANCE)
-        mapped = self.body(both / level)
+        mapped = self.body(both / level).float()  # a spread near zero is lost in the eight bits of bfloat16
         mean = mapped.mean(dim=2, keepdim=True)
         spread = torch.sqrt(((mapped - mean) ** 2).mean(dim=2) + SMALLEST_VARIANCE)
         pooled = self.dropout(torch.cat([mean.squeeze(2), spread], dim=1))
@@ -154,12 +158,17 @@ def train_network(
         Called after every epoch.
     """
     chosen = settings or TrainingSettings()
-    with torch.random.fork_rng(devices=[]), _one_thread():
+    with torch.random.fork_rng(devices=_seeded_devices(chosen.device)), _one_thread():
         torch.manual_seed(seed)
         network = WideKernelNetwork(len(records.channels), len(split.classes), records.settings.samples_per_tooth)
         _normalise(network, records, np.flatnonzero(split.train))
         network.to(chosen.device)
         return _fit(network, records, target, split, seed, chosen, advance)
+
+
+def _seeded_devices(device: str) -> list[int]:
+    """Return the devices whose generators are seeded here and given back as they were, besides the CPU's."""
+    return [torch.cuda.current_device()] if torch.device(device).type == "cuda" else []
 
 
 @contextmanager
@@ -238,18 +247,18 @@ def _run_epoch(
         if batch.size < 2 and labels.size > 1:  # batch normalisation is undefined on a single window
             continue
         optimiser.zero_grad()
-        with _precision(settings.device):
+        with _precision(settings):
             logits = network(torch.from_numpy(windows[batch]).to(settings.device))
         truth = torch.from_numpy(labels[batch]).to(settings.device)
         nn.functional.cross_entropy(logits.float(), truth).backward()
         optimiser.step()
 
 
-def _precision(device: str) -> AbstractContextManager[None]:
-    """Return bfloat16 where it is fast; its range is that of float32, so that gradients need no scaling."""
-    if device == "cpu":
-        return nullcontext()
-    return torch.autocast(device, dtype=torch.bfloat16)
+def _precision(settings: TrainingSettings) -> AbstractContextManager[None]:
+    """Return bfloat16 where it is wanted; its range is that of float32, so that gradients need no scaling."""
+    kind = torch.device(settings.device).type
+    wanted = kind != "cpu" if settings.mixed_precision is None else settings.mixed_precision
+    return torch.autocast(kind, dtype=torch.bfloat16) if wanted else nullcontext()
 
 
 def _weights(network: WideKernelNetwork) -> dict[str, torch.Tensor]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.detection import damage_score
 from diagnostics.evaluation import (
     RESAMPLES,
     Interval,
@@ -26,18 +27,37 @@ SATURATED = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """First minus second: differences of accuracy and macro-AUROC on the same test specimens."""
+    """First minus second: differences of accuracy, macro-AUROC and AUROC of detection on the same test specimens."""
 
     first: str
     second: str
     accuracy: Interval
     macro_auroc: Interval
+    detection: Interval | None = None
 
 
 def comparison(
-    names: tuple[str, str], first: Predictions, second: Predictions, seed: int, resamples: int = RESAMPLES
+    names: tuple[str, str],
+    first: Predictions,
+    second: Predictions,
+    seed: int,
+    healthy: str | None = None,
+    resamples: int = RESAMPLES,
 ) -> Comparison:
     """Compare the predictions of two classifiers for the same records.
+
+    Parameters
+    ----------
+    names : (str, str)
+        Of the two classifiers.
+    first, second : Predictions
+        Of the same records in the same order.
+    seed : int
+        Seed of the resamples, the same ones for both.
+    healthy : str, optional
+        The healthy class; without it detection is not compared.
+    resamples : int
+        Number of resamples.
 
     Raises
     ------
@@ -51,7 +71,14 @@ def comparison(
     right = (first.predicted == first.truth).astype(np.float64) - (second.predicted == second.truth)
     areas = macro_auroc(first, weights) - macro_auroc(second, weights)
     accuracy = interval(weights @ right / weights.sum(axis=1), specimens)
-    return Comparison(*names, accuracy, interval(areas, specimens))
+    detected = interval(_detection_difference(first, second, healthy, weights), specimens) if healthy else None
+    return Comparison(*names, accuracy, interval(areas, specimens), detected)
+
+
+def _detection_difference(first: Predictions, second: Predictions, healthy: str, weights: np.ndarray) -> np.ndarray:
+    damaged = first.truth != first.classes.index(healthy)
+    areas = [weighted_auc(damage_score(found, healthy), damaged, weights) for found in (first, second)]
+    return np.asarray(areas[0] - areas[1])
 
 
 def state_auc(found: Predictions, healthy: int, state: int, seed: int, resamples: int = RESAMPLES) -> Interval:

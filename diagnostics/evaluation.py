@@ -61,14 +61,35 @@ class Predictions:
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Accuracy and macro-AUROC with intervals, and the confusion matrix (rows: true state, columns: predicted)."""
+    """Scores with intervals.
+
+    Attributes
+    ----------
+    classes : tuple of str
+    accuracy, macro_auroc : Interval
+    balanced_accuracy : Interval
+        Mean over the classes of the share that is named right; differs from the accuracy where classes are unequal.
+    guess : float
+        Accuracy of always naming the most frequent class.
+    confusion : (classes, classes) int
+        Rows: true class, columns: predicted.
+    specimens, records : int
+    """
 
     classes: tuple[str, ...]
     accuracy: Interval
     macro_auroc: Interval
+    balanced_accuracy: Interval
+    guess: float
     confusion: np.ndarray
     specimens: int
     records: int
+
+    @property
+    def balanced(self) -> bool:
+        """Whether all classes that occur have equally many records."""
+        counts = self.confusion.sum(axis=1)
+        return bool(np.ptp(counts[counts > 0]) == 0) if self.records else True
 
 
 def bootstrap_weights(specimen: np.ndarray, seed: int, resamples: int = RESAMPLES) -> np.ndarray:
@@ -176,6 +197,16 @@ def confusion_matrix(predictions: Predictions) -> np.ndarray:
     return counts
 
 
+def balanced_accuracy(predictions: Predictions, weights: np.ndarray) -> np.ndarray:
+    """Return the share named right, averaged over the classes that occur, for every row of weights, (b,)."""
+    right = weights * (predictions.predicted == predictions.truth)
+    mine = [predictions.truth == k for k in np.unique(predictions.truth)]
+    with np.errstate(invalid="ignore"):  # a class without weight in a resample
+        shares = np.stack([right[:, rows].sum(axis=1) / weights[:, rows].sum(axis=1) for rows in mine])
+    drawn = np.isfinite(shares)
+    return np.asarray(np.where(drawn, shares, 0.0).sum(axis=0) / drawn.sum(axis=0))
+
+
 def scores(predictions: Predictions, seed: int, resamples: int = RESAMPLES) -> Scores:
     """Judge predictions, with intervals from resampled specimens."""
     weights = bootstrap_weights(predictions.specimen, seed, resamples)
@@ -186,6 +217,8 @@ def scores(predictions: Predictions, seed: int, resamples: int = RESAMPLES) -> S
         classes=predictions.classes,
         accuracy=interval(accuracy, specimens),
         macro_auroc=interval(macro_auroc(predictions, weights), specimens),
+        balanced_accuracy=interval(balanced_accuracy(predictions, weights), specimens),
+        guess=float(np.bincount(predictions.truth).max() / predictions.truth.size),
         confusion=confusion_matrix(predictions),
         specimens=specimens,
         records=int(predictions.truth.size),

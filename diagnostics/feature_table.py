@@ -13,6 +13,7 @@ import pyarrow as pa
 
 from diagnostics.features import FeatureSettings, record_features
 from diagnostics.recording import LABEL_NAMES, Recording, recordings
+from diagnostics.state_classes import CLASS, class_names
 from siggen.errors import DatasetError, UsageError
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
@@ -31,7 +32,7 @@ class FeatureMatrix:
     names : tuple of str
         Feature names, `<definition>__<channel>`.
     labels : dict of str to (records,)
-        Label columns.
+        Label columns, and `class`: what classifiers tell apart.
     """
 
     values: np.ndarray
@@ -103,11 +104,20 @@ def feature_names(table: pa.Table) -> tuple[str, ...]:
     return tuple(name for name in table.column_names if name not in known)
 
 
-def feature_matrix(table: pa.Table) -> FeatureMatrix:
-    """Return a feature table as arrays."""
+def feature_matrix(table: pa.Table, healthy: str | None = None) -> FeatureMatrix:
+    """Return a feature table as arrays; healthy states are one class, see `diagnostics.state_classes`.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+        What `feature_table` returned.
+    healthy : str, optional
+        Name of the healthy class; default the first healthy state of the table.
+    """
     names = feature_names(table)
     columns = [table.column(name).to_numpy(zero_copy_only=False).astype(np.float64) for name in names]
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABEL_NAMES}
+    labels[CLASS] = class_names(labels, healthy)
     return FeatureMatrix(np.stack(columns, axis=1), names, labels)
 
 

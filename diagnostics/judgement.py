@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.calibration import Calibration, calibrated, calibration
+from diagnostics.detection import Detection, detection, detection_metrics
 from diagnostics.evaluation import Predictions, Scores, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
@@ -38,6 +39,8 @@ class Judged:
         Expected calibration error on test specimens, and the temperature from validation specimens.
     predictions : Predictions
         Calibrated, of the test records in their order.
+    detection : Detection or None
+        Damaged or not, by 1 - p(healthy); None where the classes have no healthy one or the test has one side only.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Judged:
     details: dict[str, Any]
     calibration: Calibration
     predictions: Predictions
+    detection: Detection | None = None
 
 
 def judged(
@@ -55,11 +59,18 @@ def judged(
     permuted_auroc: np.ndarray,
     details: dict[str, Any],
     seed: int,
+    healthy: str | None = None,
 ) -> Judged:
     """Judge the test predictions of one classifier; its temperature comes from validation specimens."""
     found = calibrated(uncalibrated, temperature)
     return Judged(
-        name, scores(found, seed), permuted_auroc, details, calibration(uncalibrated, temperature, seed), found
+        name,
+        scores(found, seed),
+        permuted_auroc,
+        details,
+        calibration(uncalibrated, temperature, seed),
+        found,
+        detection(found, healthy, seed) if healthy else None,
     )
 
 
@@ -70,8 +81,11 @@ def judged_metrics(found: Judged) -> dict[str, Any]:
         "test_specimens": found.scores.specimens,
         "test_records": found.scores.records,
         "accuracy": found.scores.accuracy.numbers(),
+        "balanced_accuracy": found.scores.balanced_accuracy.numbers(),
         "macro_auroc": found.scores.macro_auroc.numbers(),
-        "chance_accuracy": 1.0 / len(found.scores.classes),
+        "chance_accuracy": found.scores.guess,
+        "chance_balanced_accuracy": 1.0 / len(found.scores.classes),
+        "detection": detection_metrics(found.detection),
         "confusion": found.scores.confusion.tolist(),
         "permuted_macro_auroc": [float(area) for area in found.permuted_auroc],
         "temperature": found.calibration.temperature,

@@ -39,8 +39,9 @@ class WindowStream(IterableDataset[Batch]):
     """Batches of windows of one split; iterate it through a `WindowLoader`.
 
     A batch has `windows` (batch, channels, samples) float32 in the unit of the channels, `record_id`, `specimen_id`,
-    `state_id` (batch,) int64 and `damaged_area_mm2` (batch,) float64. All windows of an epoch come exactly once over
-    all ranks and workers; ranks differ by one window at most, so give every rank the same number of steps.
+    `state_id`, `class_id` (batch,) int64 (all healthy states are one class) and `damaged_area_mm2` (batch,) float64.
+    All windows of an epoch come exactly once over all ranks and workers; ranks differ by one window at most, so give
+    every rank the same number of steps.
 
     Parameters
     ----------

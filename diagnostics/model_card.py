@@ -9,6 +9,7 @@ from diagnostics.realism import meaning_of_scores
 
 if TYPE_CHECKING:
     from diagnostics.judgement import Judged
+    from diagnostics.splits import SpecimenSplit
     from diagnostics.training import Training
 
 
@@ -45,11 +46,20 @@ def _data(training: Training, dataset: Any) -> str:
     return "\n".join(
         [
             f"* identity of the set: `{dataset.manifest['identity']}`",
-            f"* states: {', '.join(training.split.classes)}",
+            f"* {class_text(training.split)}",
             f"* specimens: {count}; no specimen is in two splits",
             f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
         ]
     )
+
+
+def class_text(split: SpecimenSplit) -> str:
+    """Return the classes, and which states they hold where that is not one each."""
+    merged = {name: states for name, states in split.members.items() if len(states) > 1}
+    if not merged:
+        return f"states: {', '.join(split.classes)}"
+    held = "; ".join(f"{name}: records of {', '.join(states)}" for name, states in merged.items())
+    return f"classes: {', '.join(split.classes)} ({held})"
 
 
 def _files(training: Training) -> str:
@@ -74,17 +84,24 @@ def _files(training: Training) -> str:
 
 
 def _scores(training: Training) -> str:
-    titles = "| classifier | accuracy | macro-AUROC | macro-AUROC with permuted labels | calibration error |"
-    head = f"{titles}\n|---|---|---|---|---|"
+    titles = (
+        *("classifier", "accuracy", "balanced accuracy", "macro-AUROC", "detection AUROC"),
+        *("macro-AUROC with permuted labels", "calibration error"),
+    )
+    head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
+    first = training.judged[0].scores
     return "\n".join([head, *(_row(found) for found in training.judged)]) + (
-        "\n\nIntervals: 95 %, bootstrap over test specimens."
+        "\n\nIntervals: 95 %, bootstrap over test specimens. Always naming the most frequent class gives an accuracy "
+        f"of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}; both AUROC have 0.50 as "
+        "chance. Detection: healthy against all damaged records, by 1 - p(healthy)."
     )
 
 
 def _row(found: Judged) -> str:
     permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
-    scores = (found.scores.accuracy, found.scores.macro_auroc)
-    cells = (found.name, *map(interval_text, scores), permuted, interval_text(found.calibration.after))
+    scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
+    detected = interval_text(found.detection.every) if found.detection else "-"
+    cells = (found.name, *map(interval_text, scores), detected, permuted, interval_text(found.calibration.after))
     return f"| {' | '.join(cells)} |"
 
 

@@ -69,7 +69,11 @@ def check_device(device: str) -> None:
         import torch
 
         if not torch.cuda.is_available():
-            raise UsageError("--device cuda: PyTorch finds no CUDA device here; leave --device out to train on the CPU")
+            found = "PyTorch finds no CUDA device here" if torch.version.cuda else "this PyTorch is built without CUDA"
+            raise UsageError(
+                f"--device cuda: {found}; leave --device out to train on the CPU, or install a driver and a CUDA build "
+                "of PyTorch (pytorch.org, 'Get started')"
+            )
 
 
 def judge_networks(
@@ -119,7 +123,9 @@ def _judge(
         "device": settings.device,
         "note": trained.note,
     }
-    return replace(trained, temperature=temperature), judged(name, found, temperature, np.empty(0), details, seed)
+    return replace(trained, temperature=temperature), judged(
+        name, found, temperature, np.empty(0), details, seed, split.healthy
+    )
 
 
 def _votes(

@@ -11,6 +11,7 @@ from diagnostics.baselines import FeatureClassifier, state_index
 from diagnostics.evaluation import Predictions
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.network_training import TrainedNetworkFile
+from diagnostics.state_classes import HEALTHY, class_names
 from siggen.errors import UsageError
 
 OTHER_SPECIMENS = 1 << 40
@@ -40,7 +41,7 @@ def check_other_set(dataset: Any, other: Any) -> None:
             f"{dataset.fs_hz:g}`."
         )
     known, found = (_states(each) for each in (dataset, other))
-    if not found <= known:
+    if not found <= known:  # any healthy state belongs to the healthy class, whatever its name
         raise UsageError(
             f"--test {other.path}: has the states {', '.join(sorted(found - known))}, which training does not know; "
             f"allowed are {', '.join(sorted(known))}. Name its states like those, or train on a set that has them."
@@ -48,7 +49,10 @@ def check_other_set(dataset: Any, other: Any) -> None:
 
 
 def _states(dataset: Any) -> set[str]:
-    return set(dataset.labels(columns=["state"]).column("state").to_pylist())
+    """Return the states of a set, all healthy ones under one name."""
+    table = dataset.labels(columns=["state", "state_id", "fault"])
+    labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}
+    return set(class_names(labels, HEALTHY).tolist())
 
 
 def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> Predictions:

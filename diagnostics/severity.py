@@ -15,6 +15,7 @@ from diagnostics.evaluation import RESAMPLES, Interval, Predictions, bootstrap_w
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.separability import weighted_spearman
 from diagnostics.splits import SpecimenSplit
+from diagnostics.state_classes import CLASS
 
 STRENGTHS = (1.0, 10.0, 100.0, 1000.0)
 """Candidates for the weight of the penalty, weakest first."""
@@ -61,9 +62,9 @@ def expected_area(found: Predictions, area_by_state: np.ndarray) -> np.ndarray:
 
 
 def mean_areas(matrix: FeatureMatrix, split: SpecimenSplit) -> np.ndarray:
-    """Return the mean damaged area of the training records of every state [mm^2], (states,)."""
-    area, state = matrix.labels["damaged_area_mm2"][split.train], matrix.labels["state"][split.train]
-    return np.array([area[state == name].mean() if (state == name).any() else 0.0 for name in split.classes])
+    """Return the mean damaged area of the training records of every class [mm^2], (classes,)."""
+    area, own = matrix.labels["damaged_area_mm2"][split.train], matrix.labels[CLASS][split.train]
+    return np.array([area[own == name].mean() if (own == name).any() else 0.0 for name in split.classes])
 
 
 def area_scores(

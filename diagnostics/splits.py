@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from diagnostics.state_classes import CLASS, class_members, class_names, healthy_states
 from siggen.errors import DatasetError
 
 TRAIN, VALIDATION, TEST = "train", "validation", "test"
@@ -14,12 +15,26 @@ FEWEST_SPECIMENS = 2
 
 @dataclass(frozen=True, slots=True)
 class SpecimenSplit:
-    """Record masks (n,) bool of the three splits, and the states in the order of the configuration."""
+    """Record masks of the three splits, and what is told apart.
+
+    Attributes
+    ----------
+    train, validation, test : (n,) bool
+        Whose records are whose.
+    classes : tuple of str
+        States in the order of the configuration, all healthy ones as one class under the name of the first.
+    healthy : str or None
+        Name of that class; None where no state is healthy throughout.
+    members : dict of str to tuple of str
+        States of every class.
+    """
 
     train: np.ndarray
     validation: np.ndarray
     test: np.ndarray
     classes: tuple[str, ...]
+    healthy: str | None = None
+    members: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def check_specimens(specimen: np.ndarray, split: np.ndarray) -> None:
@@ -48,7 +63,7 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
     Parameters
     ----------
     labels : dict of str to (n,)
-        Columns `specimen_id`, `split`, `state`, `state_id`.
+        Columns `specimen_id`, `split`, `state`, `state_id`, `fault`.
 
     Raises
     ------
@@ -65,21 +80,24 @@ def specimen_split(labels: dict[str, np.ndarray]) -> SpecimenSplit:
                 f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
                 "specimen each. Generate more specimens (`--set specimens=N`, new folder) or change `splits`."
             )
-    order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
-    classes = tuple(sorted(order, key=lambda state: order[state]))
-    _check_states(labels, masks[TRAIN])
-    return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], classes)
+    own = class_names(labels)
+    members = class_members({**labels, CLASS: own})
+    _check_classes(labels, own, masks[TRAIN])
+    healthy = next(iter(healthy_states(labels)), None)
+    return SpecimenSplit(masks[TRAIN], masks[VALIDATION], masks[TEST], tuple(members), healthy, members)
 
 
-def _check_states(labels: dict[str, np.ndarray], train: np.ndarray) -> None:
-    """Check that training has two states, and of each more than one specimen."""
+def _check_classes(labels: dict[str, np.ndarray], own: np.ndarray, train: np.ndarray) -> None:
+    """Check that training has two classes, and of each more than one specimen."""
     specimens = {
-        state: int(np.unique(labels["specimen_id"][train & (labels["state"] == state)]).size)
-        for state in dict.fromkeys(labels["state"][train].tolist())
+        name: int(np.unique(labels["specimen_id"][train & (own == name)]).size)
+        for name in dict.fromkeys(own[train].tolist())
     }
     if len(specimens) < 2:
+        states = sorted(set(labels["state"][train].tolist()))
+        found = f"the single state {states}" if len(states) == 1 else f"healthy states only ({', '.join(states)})"
         raise DatasetError(
-            f"training has the single state {sorted(specimens)}; a classifier needs at least two states. Add damaged "
+            f"training has {found}; a classifier needs at least two states that differ by damage. Add damaged "
             "and healthy states under `states` in the configuration, and generate the set into a new folder."
         )
     if single := [state for state, count in specimens.items() if count < FEWEST_SPECIMENS]:

@@ -50,7 +50,7 @@ def run_studies(
     second = None
     if other is not None:
         with stage("windows of the other set", int(other.labels(columns=["record_id"]).num_rows)) as advance:
-            second = window_matrix(other, advance)
+            second = window_matrix(other, advance, split.healthy)
     with stage("splits", rows_of_study(second is not None)) as advance:
         splits = split_study(windows, split.classes, seed, second, advance)
     with stage("learning curve", len(curve_sizes(matrix, split))) as advance:

@@ -136,9 +136,9 @@ def train_models(
         split=split,
         specimens=specimens,
         notes=tuple(notes),
-        other=_judge_other(models, trained, results, other, seed, stage) if other else (),
+        other=_judge_other(models, trained, results, other, split.healthy, seed, stage) if other else (),
         other_name=other.dataset.path.name if other else "",
-        comparisons=_comparisons(results, seed),
+        comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
         severity=_severity(results, matrix, split, seed),
     )
@@ -181,7 +181,7 @@ def _judge(
     found = classifier_predictions(model, matrix.rows(split.test))
     details = {"features": len(model.features), "strength": model.strength, "note": model.note}
     permuted = control if name == INDICATORS else np.empty(0)
-    return judged(name, found, model.temperature, permuted, details, seed)
+    return judged(name, found, model.temperature, permuted, details, seed, split.healthy)
 
 
 def _judge_other(
@@ -189,11 +189,12 @@ def _judge_other(
     network: TrainedNetworkFile | None,
     results: list[Judged],
     other: OtherSet,
+    healthy: str | None,
     seed: int,
     stage: Stage,
 ) -> tuple[Judged, ...]:
     """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
-    matrix = feature_matrix(other.table)
+    matrix = feature_matrix(other.table, healthy)
     found: dict[str, tuple[Predictions, float]] = {
         name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
     }
@@ -203,31 +204,31 @@ def _judge_other(
             advance()
         found[NETWORK] = (votes, network.trained.temperature)
     details = {result.name: result.details for result in results}
-    return tuple(judged(name, *votes, np.empty(0), details[name], seed) for name, votes in found.items())
+    return tuple(judged(name, *votes, np.empty(0), details[name], seed, healthy) for name, votes in found.items())
 
 
-def _comparisons(results: list[Judged], seed: int) -> tuple[Comparison, ...]:
+def _comparisons(results: list[Judged], healthy: str | None, seed: int) -> tuple[Comparison, ...]:
     """Compare every pair of classifiers, the later one first, with RMS alone always second."""
     order = sorted(results, key=lambda found: found.name == RMS_ALONE)
     return tuple(
-        comparison((first.name, second.name), first.predictions, second.predictions, seed)
+        comparison((first.name, second.name), first.predictions, second.predictions, seed, healthy)
         for position, second in enumerate(order)
         for first in order[:position]
     )
 
 
 def largest_state(matrix: FeatureMatrix, split: SpecimenSplit) -> str | None:
-    """Return the state with the largest mean damaged area of training records; None where there is no damage."""
+    """Return the class with the largest mean damaged area of training records; None where there is no damage."""
     areas = mean_areas(matrix, split)
     return split.classes[int(np.argmax(areas))] if areas.max() > 0 else None
 
 
 def _rms_severe(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Interval | None:
     severe = largest_state(matrix, split)
-    if severe is None or "healthy" not in split.classes:
+    if severe is None or split.healthy is None:
         return None
     found = next(result.predictions for result in results if result.name == RMS_ALONE)
-    return state_auc(found, split.classes.index("healthy"), split.classes.index(severe), seed)
+    return state_auc(found, split.classes.index(split.healthy), split.classes.index(severe), seed)
 
 
 def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[AreaScores, ...]:
@@ -253,7 +254,8 @@ def set_identity(dataset: Any) -> str:
 def training_metrics(training: Training) -> dict[str, Any]:
     """Return what `metrics.json` says about the classifiers."""
     return {
-        "states": list(training.split.classes),
+        "states": [state for states in training.split.members.values() for state in states],
+        "classes": {name: list(states) for name, states in training.split.members.items()},
         "specimens": training.specimens,
         "notes": list(training.notes),
         "classifiers": {found.name: judged_metrics(found) for found in training.judged},
@@ -265,6 +267,7 @@ def training_metrics(training: Training) -> dict[str, Any]:
                 "second": pair.second,
                 "accuracy": pair.accuracy.numbers(),
                 "macro_auroc": pair.macro_auroc.numbers(),
+                "detection_auroc": pair.detection.numbers() if pair.detection else None,
             }
             for pair in training.comparisons
         ],

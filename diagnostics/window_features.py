@@ -11,6 +11,7 @@ import numpy as np
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.features import FeatureSettings, record_features
 from diagnostics.recording import LABEL_NAMES, Recording, recordings
+from diagnostics.state_classes import CLASS, class_names
 from siggen.errors import DatasetError
 
 REVOLUTIONS = 8
@@ -18,8 +19,10 @@ MOST_WINDOWS = 3
 """Windows of a record: enough to leak, few enough to be quick."""
 
 
-def window_matrix(dataset: Any, advance: Callable[[], None] | None = None) -> FeatureMatrix:
+def window_matrix(dataset: Any, advance: Callable[[], None] | None = None, healthy: str | None = None) -> FeatureMatrix:
     """Return the indicators of windows that follow each other without overlap, with the labels of their records.
+
+    `healthy` names the healthy class where it is not the first healthy state of the set.
 
     Raises
     ------
@@ -43,7 +46,8 @@ def window_matrix(dataset: Any, advance: Callable[[], None] | None = None) -> Fe
         )
     names = tuple(rows[0])
     values = np.array([[row[name] for name in names] for row in rows])
-    return FeatureMatrix(values, names, {name: np.array([label[name] for label in labels]) for name in LABEL_NAMES})
+    columns = {name: np.array([label[name] for label in labels]) for name in LABEL_NAMES}
+    return FeatureMatrix(values, names, {**columns, CLASS: class_names(columns, healthy)})
 
 
 def windows_of(record: Recording) -> Iterator[Recording]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.state_classes import class_ids
 from siggen.errors import DatasetError, UsageError
 
 FEWEST_REVOLUTIONS = 8
@@ -67,7 +68,7 @@ class WindowIndex:
     lengths : tuple of (rows,) int
         Samples of the decoded records of every row group.
     labels : dict of str to (records,)
-        `record_id`, `specimen_id`, `state_id`, `damaged_area_mm2`.
+        `record_id`, `specimen_id`, `state_id`, `class_id`, `damaged_area_mm2`.
     """
 
     group: np.ndarray
@@ -99,8 +100,7 @@ def window_index(dataset: Any, split: str, settings: StreamSettings) -> WindowIn
     DatasetError
         If no record of the split holds a whole window.
     """
-    table = dataset.labels(split, list(LABELS))
-    labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABELS}
+    labels = {**_columns(dataset, split, LABELS), "class_id": _class_id(dataset, split)}
     pulses = [list(_pulses(dataset, group)) for group in dataset.row_groups(split)]
     samples = _window_samples(pulses, settings, dataset.fs_hz)
     recorded = round(dataset.duration_s * dataset.fs_hz)
@@ -120,6 +120,18 @@ def window_index(dataset: Any, split: str, settings: StreamSettings) -> WindowIn
         )
     found = np.array(rows, dtype=np.int64).T
     return WindowIndex(found[0], found[1], found[2], found[3], samples, tuple(lengths), labels)
+
+
+def _columns(dataset: Any, split: str | None, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    table = dataset.labels(split, list(names))
+    return {name: np.asarray(table.column(name).to_pylist()) for name in names}
+
+
+def _class_id(dataset: Any, split: str) -> np.ndarray:
+    """Return the class of every record of the split, (records,) int64: its state's, all healthy ones being one."""
+    ids = class_ids(_columns(dataset, None, ("state", "state_id", "fault")))
+    states = dataset.labels(split, ["state"]).column("state").to_pylist()
+    return np.array([ids[state] for state in states], dtype=np.int64)
 
 
 def _pulses(dataset: Any, group: Any) -> Iterator[np.ndarray]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from diagnostics.prediction.log_features import healthy_referenced, log_values
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.splits import SpecimenSplit
+from diagnostics.state_classes import CLASS
 
 if TYPE_CHECKING:
     from diagnostics.training import Training
@@ -104,9 +105,9 @@ def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
 
 def _referenced(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[ReferencedVariant | None, str]:
     differences, kept = healthy_referenced(matrix)
-    part = SpecimenSplit(split.train[kept], split.validation[kept], split.test[kept], split.classes)
-    states = np.unique(differences.labels["state"][part.train])
-    if states.size < 2 or not part.test.any():
+    part = replace(split, train=split.train[kept], validation=split.validation[kept], test=split.test[kept])
+    found = np.unique(differences.labels[CLASS][part.train])
+    if found.size < 2 or not part.test.any():
         return None, (
             "no healthy-referenced variant: it needs healthy records of every specimen at two operating points or in "
             "two repeats"

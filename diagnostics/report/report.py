@@ -18,6 +18,7 @@ from diagnostics.network_training import NetworkOptions
 from diagnostics.progress import Stage, silent_stage
 from diagnostics.report import html, tables
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
+from diagnostics.report.detection_tables import detection_blocks
 from diagnostics.report.drawing import Drawing, draw
 from diagnostics.report.sentences import area_sentence, summary
 from diagnostics.report.style import png_bytes, styled
@@ -230,7 +231,7 @@ def _write_page(
 def _section_tables(section: str, training: Training | None, found: list[Separability]) -> list[str]:
     if section == "scores":
         return (
-            [tables.score_table(training), *score_blocks(training)]
+            [tables.score_table(training), *detection_blocks(training), *score_blocks(training)]
             if training
             else [html.paragraph("No classifier was trained, see the notes.")]
         )

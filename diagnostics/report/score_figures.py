@@ -21,7 +21,7 @@ ACCURACY_COLOUR, AREA_COLOUR, CHANCE_COLOUR = "#1f6f8b", "#b01e3c", "#8a97a3"
 def score_figure(training: Training) -> Figure:
     """Return accuracy and macro-AUROC of every classifier with intervals; dashed lines are chance."""
     figure, axes = new_figure(1, 2, height_in=0.95 + 0.5 * len(training.judged), sharey=True)
-    chance = 1.0 / len(training.split.classes)
+    chance = training.judged[0].scores.guess
     panels = (("Accuracy [-]", ACCURACY_COLOUR, chance), ("Macro-AUROC [-]", AREA_COLOUR, 0.5))
     for axis, (title, colour, level) in zip(axes[0], panels, strict=True):
         axis.axvline(level, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0)

@@ -57,9 +57,13 @@ def scores_sentence(training: Training) -> str:
     ]
     return (
         f"On {first.records} records of {first.specimens} test specimens the right one of "
-        f"{len(first.classes)} states was "
-        f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(1.0 / len(first.classes))}."
+        f"{len(first.classes)} {_told_apart(training)} was "
+        f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(first.guess)}."
     )
+
+
+def _told_apart(training: Training) -> str:
+    return "states" if all(len(states) == 1 for states in training.split.members.values()) else "classes"
 
 
 def comparison_sentence(training: Training) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +84,52 @@ def test_same_seed_same_network_and_files_keep_it(
     for count in (1, 6):  # any batch size; float32 in another order of summation
         found = session.run(None, {"windows": windows[:count].numpy()})[0]
         np.testing.assert_allclose(found, expected[:count], atol=1e-4)
+
+
+def test_mixed_precision_learns_and_leaves_float32_weights_that_are_judged_in_float32(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    import torch
+
+    from diagnostics import cnn
+    from diagnostics.cnn_files import describe_network, load_network, save_network
+
+    kinds: dict[bool, set[torch.dtype]] = {True: set(), False: set()}
+
+    class Watched(cnn.WideKernelNetwork):
+        def forward(self, windows: torch.Tensor) -> torch.Tensor:
+            logits = super().forward(windows)
+            kinds[self.training].add(logits.dtype)
+            return logits
+
+    monkeypatch.setattr(cnn, "WideKernelNetwork", Watched)
+    few = cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144, mixed_precision=True)
+    trained = cnn.train_network(records, target, split, 7, few)
+    # the same code that runs on a CUDA device: the last layer answers in bfloat16 while training, never while judging
+    assert kinds == {True: {torch.bfloat16}, False: {torch.float32}}
+    assert min(trained.validation_loss) < np.log(3) - 0.05  # below that of guessing three states, which it begins with
+    assert min(trained.validation_loss) < trained.validation_loss[0]
+    for name, value in trained.network.state_dict().items():
+        assert value.device.type == "cpu", name
+        assert value.dtype in (torch.float32, torch.int64), name  # counts of batches are integers
+        assert torch.isfinite(value).all(), name
+    facts = describe_network(trained, records.channels, records.settings, "identity")
+    save_network(trained.network, facts, tmp_path / "cnn.safetensors")
+    network, _ = load_network(tmp_path / "cnn.safetensors")
+    windows = torch.from_numpy(record_windows(records, 0))
+    assert torch.equal(network(windows), trained.network(windows))
+
+
+def test_the_cpu_trains_in_float32_unless_told_otherwise(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit
+) -> None:
+    from diagnostics.cnn import TrainingSettings, train_network
+
+    short = TrainingSettings(most_epochs=1, windows_per_epoch=64)
+    plain, stated = (
+        train_network(records, target, split, 7, replace(short, mixed_precision=chosen)) for chosen in (None, False)
+    )
+    assert plain.validation_loss == stated.validation_loss
 
 
 def test_a_foreign_file_is_not_read(tmp_path: Path) -> None:

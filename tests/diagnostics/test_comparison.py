@@ -45,3 +45,31 @@ def test_the_auc_of_one_state_ignores_the_others() -> None:
     probability = np.array([[0.6, 0.3, 0.1], [0.1, 0.8, 0.1], [0.3, 0.3, 0.4], [0.2, 0.1, 0.7]])
     found = Predictions(("healthy", "slight", "severe"), np.array([0, 1, 2, 2]), probability, np.arange(4))
     assert state_auc(found, 0, 2, seed=0).value == 1.0
+
+
+def test_pairs_are_drawn_by_specimen_so_that_copied_records_narrow_nothing() -> None:
+    worse, better = predictions(40, np.arange(40) < 20), predictions(40, np.arange(40) < 12)
+    copies = [
+        Predictions(CLASSES, np.tile(p.truth, 5), np.tile(p.probability, (5, 1)), np.tile(p.specimen, 5))
+        for p in (better, worse)
+    ]
+    once = comparison(("better", "worse"), better, worse, seed=0, healthy="healthy")
+    five = comparison(("better", "worse"), *copies, seed=0, healthy="healthy")
+    for name in ("accuracy", "macro_auroc", "detection"):
+        first, second = getattr(once, name), getattr(five, name)
+        assert (first.value, first.low, first.high) == pytest.approx((second.value, second.low, second.high)), name
+        assert first.low > 0.0
+
+
+def test_detection_is_compared_by_the_probability_of_healthy_alone() -> None:
+    from sklearn.metrics import roc_auc_score
+
+    rng = np.random.default_rng(2)
+    truth, specimen = rng.integers(0, 3, 60), np.repeat(np.arange(20), 3)
+    first, second = (
+        Predictions(("healthy", "a", "b"), truth, rng.dirichlet(np.ones(3), 60), specimen) for _ in range(2)
+    )
+    areas = [roc_auc_score(truth > 0, 1.0 - found.probability[:, 0]) for found in (first, second)]
+    found = comparison(("x", "y"), first, second, seed=0, healthy="healthy").detection
+    assert found is not None
+    assert found.value == pytest.approx(areas[0] - areas[1])

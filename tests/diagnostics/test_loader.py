@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -107,6 +108,25 @@ def test_a_resumed_epoch_gives_the_same_remainder(dataset: Any, workers: int, ta
     resumed.load_state_dict(interrupted.state_dict())
     assert first + contents(resumed) == expected
     assert contents(resumed) == contents(whole)  # and the epoch after it
+
+
+@pytest.mark.parametrize(("workers", "pieces"), [(0, (0, 5)), (2, (3, 1)), (2, (27, 0))])
+def test_an_epoch_that_is_interrupted_twice_loses_and_repeats_nothing(
+    dataset: Any, workers: int, pieces: tuple[int, int]
+) -> None:
+    whole = loader(dataset, workers)
+    assert len(whole) == 27  # so that one case stops behind the last batch, before the epoch is over
+    expected, following = contents(whole), contents(whole)
+    found, state = [], whole.state_dict() | {"epoch": 0}
+    for taken in pieces:
+        part = loader(dataset, workers)
+        part.load_state_dict(json.loads(json.dumps(state)))
+        found += contents(itertools.islice(part, taken)) if taken else []
+        state = part.state_dict()
+    last = loader(dataset, workers)
+    last.load_state_dict(state)
+    assert found + contents(last) == expected
+    assert contents(last) == following
 
 
 def test_a_position_of_another_loader_is_refused(dataset: Any) -> None:

@@ -31,6 +31,7 @@ def fingerprints(specimens: int = 30) -> FeatureMatrix:
         "specimen_id": specimen,
         "record_id": np.repeat(np.arange(2 * specimens), 3),
         "state": state,
+        "class": state,
         "speed_hz": rng.uniform(20.0, 35.0, size=2 * specimens).repeat(3),
     }
     return FeatureMatrix(values, names, labels)

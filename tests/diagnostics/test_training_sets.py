@@ -101,11 +101,15 @@ def test_another_set_is_judged_by_the_classifiers_of_the_first(
     assert errors["ridge regression on indicators"] < errors["median of training"]
 
 
-def test_unknown_and_absent_devices_are_refused() -> None:
+@pytest.mark.parametrize(("built_for", "found"), [("12.6", "finds no CUDA device"), (None, "built without CUDA")])
+def test_unknown_and_absent_devices_are_refused(
+    built_for: str | None, found: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import torch
 
     with pytest.raises(UsageError, match="received 'tpu'; allowed are cpu, cuda"):
         check_device("tpu")
-    if not torch.cuda.is_available():
-        with pytest.raises(UsageError, match="finds no CUDA device"):
-            check_device("cuda")
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    monkeypatch.setattr(torch.version, "cuda", built_for)
+    with pytest.raises(UsageError, match=rf"--device cuda: .*{found}.*; leave --device out to train on the CPU"):
+        check_device("cuda")

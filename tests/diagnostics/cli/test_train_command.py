@@ -83,8 +83,9 @@ def silent_channel(dataset: Any) -> Any:
         (lambda found: found, ("--channel", "top"), ("received top", "bearing_vertical, bearing_horizontal")),
         (lambda found: found, ("--test", "slower"), ("6400 Hz", "fs_hz: 12800")),
         (lambda found: found, ("--device", "tpu"), ("received 'tpu'", "cpu, cuda")),
+        (lambda found: found, ("--device", "cuda"), ("--device cuda: ", "leave --device out to train on the CPU")),
     ],
-    ids=["healthy", "one specimen", "silent", "channel", "rate", "device"],
+    ids=["healthy", "one specimen", "silent", "channel", "rate", "device", "absent"],
 )
 def test_unusable_input_ends_with_2_and_a_way_out(
     sets: dict[str, Any],
@@ -96,6 +97,7 @@ def test_unusable_input_ends_with_2_and_a_way_out(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     network = () if "--device" in options else ("--no-cnn",)
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
     offered = {"first": change(sets["first"]), "slower": replace(sets["second"], fs_hz=6400.0)}
     assert run(monkeypatch, offered, "first", "--out", str(tmp_path / "out"), *network, *options) == 2
     error = capsys.readouterr().err

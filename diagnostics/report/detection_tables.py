@@ -1,0 +1,85 @@
+"""Damaged or not: the table that is asked for first, with what the classes are and what guessing gives."""
+
+from __future__ import annotations
+
+import math
+
+from diagnostics.judgement import RMS_ALONE, TITLES, Judged
+from diagnostics.report.html import Cell, paragraph, table
+from diagnostics.report.tables import interval_cell
+from diagnostics.training import Training
+
+
+def detection_blocks(training: Training) -> list[str]:
+    """Return the tables of detection, on the test specimens and on another set, with what they mean."""
+    blocks = [paragraph(text) for text in (*class_sentences(training), *balance_sentences(training))]
+    shown = tuple(found for found in training.judged if found.detection)
+    if not shown:
+        return blocks
+    sentences = [detection_sentence(training), *gain_sentences(training)]
+    blocks += [paragraph(" ".join(sentences)), detection_table(shown)]
+    other = tuple(found for found in training.other if found.detection)
+    if other:
+        blocks += [paragraph(f"Damaged or not on the other set {training.other_name}:"), detection_table(other)]
+    return blocks
+
+
+def class_sentences(training: Training) -> list[str]:
+    """Say which states are one class; nothing where every state is a class of its own."""
+    merged = {name: states for name, states in training.split.members.items() if len(states) > 1}
+    return [
+        f"Class {name}: records of {', '.join(states)}. No damage tells them apart, so no classifier is asked to."
+        for name, states in merged.items()
+    ]
+
+
+def balance_sentences(training: Training) -> list[str]:
+    """Give balanced accuracies where classes are unequal; nothing where they are equal."""
+    first = training.judged[0].scores
+    if first.balanced:
+        return []
+    parts = [
+        f"{TITLES[found.name]} {found.scores.balanced_accuracy.value:.0%} ({found.scores.balanced_accuracy.low:.0%} to "
+        f"{found.scores.balanced_accuracy.high:.0%})"
+        for found in training.judged
+    ]
+    return [
+        f"Classes are unequal: always naming the most frequent one gives an accuracy of {first.guess:.0%}. Averaged "
+        f"over the classes, the right one is named by {', '.join(parts)}; guessing gives {1 / len(first.classes):.0%}."
+    ]
+
+
+def detection_sentence(training: Training) -> str:
+    """Say how the table is to be read."""
+    return (
+        f"Damaged or not: AUROC of 1 − p({training.split.healthy}) on the test specimens, one alarm for all damages; "
+        "0.5 is chance. Limits: 95 %, resampled specimens."
+    )
+
+
+def gain_sentences(training: Training) -> list[str]:
+    """Say what the best detector gains over the level alone, paired; nothing where there is no interval."""
+    pairs = [(pair, pair.detection) for pair in training.comparisons if pair.second == RMS_ALONE and pair.detection]
+    defined = [(pair, gain) for pair, gain in pairs if math.isfinite(gain.low)]
+    if not defined:
+        return []
+    best, gain = max(defined, key=lambda entry: entry[1].value)
+    return [
+        f"Over RMS alone, {TITLES[best.first]} gains {gain.value:+.2f} ({gain.low:+.2f} to {gain.high:+.2f}, paired "
+        "over the specimens)."
+    ]
+
+
+def detection_table(found: tuple[Judged, ...]) -> str:
+    """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
+    states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            interval_cell(judged.detection.every),
+            *(interval_cell(judged.detection.by_class[state]) for state in states),
+        ]
+        for judged in found
+        if judged.detection
+    ]
+    return table(["Damaged or not", "all damages", *states], rows, sortable=True)
