@@ -56,9 +56,7 @@ def draw(
         _draw_scores(drawing, training)
     if studies:
         figure = score_figures.learning_curve_figure(studies.curve)
-        caption = (
-            "Macro-AUROC on the test specimens over the number of training specimens: mean and range of the draws."
-        )
+        caption = "Macro-AUROC on the test specimens over the number of training specimens: mean, range of draws."
         drawing.studies["learning_curve"] = (figure, caption)
     shown = distinct_features(found, INDICATORS_SHOWN)
     if shown:
@@ -85,7 +83,7 @@ def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> 
         f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
     )
     figure = vibration_figures.waveform_figure(examples, colours)
-    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}.")
+    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}; dotted: one pinion revolution.")
     spectra = [example.spectrum for example in examples.examples if example.spectrum]
     if not spectra:
         drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")

@@ -12,8 +12,11 @@ from html import escape
 from diagnostics.report.sort_script import SORT_SCRIPT
 from diagnostics.report.style_sheet import style_sheet
 
-PRINTED_ROWS = 40
+PRINTED_ROWS = 20
 """Rows of a tall table that are printed; more would be pages of numbers that nobody reads on paper."""
+
+SHORT_ROWS = 12
+"""Up to so many rows a table stays on one sheet."""
 
 WIDE = 9
 """Columns beyond which paper needs small print."""
@@ -117,8 +120,9 @@ def table(
         Whether heads sort, whether more than a screen of rows scrolls (and is cut on paper), whether cells wrap.
     """
     long = tall and len(rows) > PRINTED_ROWS and not text
+    short = len(rows) <= SHORT_ROWS
     flags = {"sortable": sortable, "text": text, "wide": len(head) > WIDE and not text}
-    box = " ".join(["scroll", *(["tall"] if tall else ["short"]), *(["cut"] if long else [])])
+    box = " ".join(["scroll", *(["tall"] if tall else []), *(["cut"] if long else []), *(["short"] if short else [])])
     titles = "".join(f'<th scope="col">{inline(title)}</th>' for title in head)
     body = "".join(f"<tr>{''.join(_cell(cell, place) for place, cell in enumerate(row))}</tr>" for row in rows)
     return (

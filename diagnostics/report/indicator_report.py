@@ -26,6 +26,7 @@ from diagnostics.report.provenance import provenance
 from diagnostics.report.report import clipping_notes, states
 from diagnostics.report.style import png_bytes, styled
 from diagnostics.report.tables import set_table
+from diagnostics.report.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -170,8 +171,8 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
             indicator_figures.detection_figure(
                 matrix, evaluated.records, evaluated.shown, evaluated.settings.false_alarms
             ),
-            f"Share of alarms over the damaged area at {evaluated.settings.false_alarms:.0%} false alarms (dashed), "
-            "other specimens, with 95 % limits; dotted: a50 and a90.",
+            f"Share of alarms over the damaged area at {percent(evaluated.settings.false_alarms)} false alarms "
+            "(dashed), other specimens, with 95 % limits; dotted: a50 and a90.",
         ),
         "noise": (
             indicator_figures.noise_figure(evaluated.noise, names),
@@ -271,7 +272,7 @@ def _size_text(evaluated: Evaluated) -> str:
     )
     return (
         f"a50 and a90: size at which half and 90 % of the damaged records give an alarm, at "
-        f"{evaluated.settings.false_alarms:.0%} false alarms among healthy ones. ≤: found already at the smallest "
+        f"{percent(evaluated.settings.false_alarms)} false alarms among healthy ones. ≤: found already at the smallest "
         f"damage of the set. {same} Monotonicity: mean sign of the steps up the ladder. An indicator need not be "
         "monotone: pitting over many teeth lowers FM4 again."
     )

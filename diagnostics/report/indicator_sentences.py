@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from diagnostics.assessment.indicator_result import IndicatorResult
 from diagnostics.assessment.multiple_tests import smallest_paired_p
-from diagnostics.report.indicator_tables import size_limits
+from diagnostics.report.indicator_tables import size_text
 from diagnostics.report.wording import counted, limits, percent
 
 SIGNIFICANT = 0.05
@@ -114,5 +114,5 @@ def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
     at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
     return [
         f"The smallest damaged area that is found with 90\N{NO-BREAK SPACE}% probability is {at_most}"
-        f"{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_limits(size)}), by {best.column}."
+        f"{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}), by {best.column}."
     ]

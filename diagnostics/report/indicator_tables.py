@@ -63,7 +63,8 @@ def best_html(best: Mapping[str, tuple[float, str]]) -> str:
     """Return the best single indicator of every state."""
     rows = [[Cell(state), Cell(f"{value:.2f}", value=value), Cell(column)] for state, (value, column) in best.items()]
     caption = "Best single indicator by state, between other specimens; the best of many is optimistic."
-    return table(["State", "AUC [-]", "Indicator and channel"], rows, caption=caption, sortable=True) if rows else ""
+    head = ["State", "AUC [-]", "Indicator and channel"]
+    return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
 
 
 def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:

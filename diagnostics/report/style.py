@@ -84,5 +84,5 @@ def png_bytes(figure: Figure) -> bytes:
 def state_ticks(axis: Axes, names: Sequence[str], **text: Any) -> None:
     """Name the places 0, 1, ... along the bottom; many or long names stand slanted."""
     slanted = len(names) > 5 or sum(map(len, names)) > 40
-    turned = {"rotation": 50, "rotation_mode": "anchor"} if slanted else {}
+    turned: dict[str, Any] = {"rotation": 50, "rotation_mode": "anchor"} if slanted else {}
     axis.set_xticks(range(len(names)), names, ha="right" if slanted else "center", **turned, **text)

@@ -29,33 +29,35 @@ th,td{padding:.35rem .6rem;text-align:right;vertical-align:top;white-space:nowra
 tbody th{font-weight:inherit}
 th:first-child{text-align:left;white-space:normal;min-width:11rem;overflow-wrap:anywhere;position:sticky;left:0;
 background:#fff;border-right:1px solid var(--line)}
-thead th{position:sticky;top:0;background:var(--band);vertical-align:bottom;white-space:normal;z-index:1}
+thead th{position:sticky;top:0;background:var(--band);vertical-align:bottom;white-space:normal;
+min-width:4.5rem;z-index:1}
 thead th:first-child{background:var(--band);z-index:2}
 tbody tr:last-child>*{border-bottom:0}
 td small,th small{display:block;color:var(--soft)}
 thead button{all:unset;cursor:pointer;display:inline-block}
-thead button::after{content:" \\2195";color:#7d8994}
-th[aria-sort=ascending] button::after{content:" \\2191";color:var(--accent)}
-th[aria-sort=descending] button::after{content:" \\2193";color:var(--accent)}
+thead button::after{content:"\\00a0\\2195";color:#7d8994}
+th[aria-sort=ascending] button::after{content:"\\00a0\\2191";color:var(--accent)}
+th[aria-sort=descending] button::after{content:"\\00a0\\2193";color:var(--accent)}
 table.text th,table.text td{text-align:left;white-space:normal;min-width:7rem}
 .printed{display:none}
 code{overflow-wrap:anywhere;font-size:.88em}
 @media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
-th,td{padding:.3rem .4rem}th:first-child{min-width:7.5rem;max-width:9.5rem}}
+th,td{padding:.3rem .4rem}th:first-child{min-width:8.5rem;max-width:10rem}}
 """
 
 PRINT_STYLE = """
 @page{margin:14mm 12mm}
-@media print{body{font-size:10pt}main{max-width:none;padding:0}p,li{max-width:none}h2{margin-top:1.4rem}
+@media print{html{font-size:10pt}body{font-size:1rem;line-height:1.4}
+main{max-width:none;padding:0}p,li{max-width:none}h2{margin-top:1.4rem}
 .scroll{overflow:visible;border:0}.tall{max-height:none}
-table{border-collapse:collapse;font-size:.78rem}table.wide{font-size:.6rem}
+table{border-collapse:collapse;font-size:.85rem}table.wide{font-size:.64rem}
 th:first-child,thead th,thead th:first-child{position:static;background:none;border-right:0}
-thead th{border-bottom:1.5pt solid var(--ink)}th:first-child{min-width:0}
+thead th{border-bottom:1.5pt solid var(--ink);min-width:0}tbody th:first-child{min-width:11em}
 table.text th,table.text td{min-width:0}
-th,td{padding:.15rem .3rem}table.wide th,table.wide td{padding:.12rem .18rem}
-thead{display:table-header-group}thead button::after{content:""!important}
+th,td{padding:.15rem .3rem}table.wide th,table.wide td{padding:.12rem .18rem}table.wide small{white-space:normal}
+thead{display:table-header-group}thead button{display:contents}thead button::after{content:""!important}
 tr,figure,.note,.short{break-inside:avoid}
-h1,h2,h3,.caption{break-after:avoid}p{orphans:3;widows:3}
+h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orphans:3;widows:3}
 .cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block}
 .figures{grid-template-columns:1fr 1fr;gap:.8rem}figure{padding:.3rem}
 .first,.note{background:none}}

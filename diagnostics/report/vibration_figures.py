@@ -34,7 +34,7 @@ def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
         for pulse in range(REVOLUTIONS_SHOWN + 1):
             axis.axvline(1e3 * pulse / examples.speed_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
-    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms] (dotted: one pinion revolution)")
+    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
     figure.supylabel("Acceleration [m/s²]", fontsize=10)
     return figure
 

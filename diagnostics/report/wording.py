@@ -10,7 +10,8 @@ from diagnostics.evaluation import Interval
 
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural unless there is one."""
-    return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else f'{noun}s'}"
+    ending = "es" if noun.endswith("x") else "s"
+    return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else noun + ending}"
 
 
 def joined(parts: Sequence[str]) -> str:
