@@ -21,6 +21,7 @@ from diagnostics.channel_indicators import IndicatorSettings, channel_indicators
 from diagnostics.chosen_states import chosen_states
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.indicators.own_indicator import Gears, OwnIndicator, registered
+from diagnostics.needed_duration import duration_advice
 from diagnostics.record_problems import RecordProblem, problem_list, record_problems
 from diagnostics.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.shaft_signals import record_shafts
@@ -131,6 +132,7 @@ def indicator_table(
             raise DatasetError(
                 f"{dataset.path}: {len(problems)} problems among the first {len(found)} records\n"
                 f"{problem_list(problems)}\n"
+                f"{duration_advice(dataset, chosen.frame_samples)}"
                 "Mend them, or give --leave-out to do without these records and channels."
             )
     if not found:
@@ -243,7 +245,8 @@ def _table(dataset: Any, found: list[RecordIndicators], settings: IndicatorSetti
     if not columns:
         raise DatasetError(
             f"{dataset.path}: not one of {len(found)} records can be used\n"
-            f"{problem_list([problem for result in found for problem in result.problems])}"
+            f"{problem_list([problem for result in found for problem in result.problems])}\n"
+            f"{duration_advice(dataset, settings.frame_samples)}Without usable records there is nothing to rank."
         )
     stacked = np.stack(list(values.values()), axis=1)
     stacked[~np.isfinite(stacked)] = np.nan

@@ -9,7 +9,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from diagnostics.audit import figures, page
+from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, Realism, realism
 from diagnostics.audit.finding import Finding
@@ -41,6 +44,10 @@ class Audit:
         What could not be judged and why.
     seconds_per_record : float
         For measuring; small where the cache was read.
+    records, specimens, channels : int
+        How many were judged on.
+    seed : int
+        Of permutations, folds and bootstrap.
     """
 
     findings: tuple[Finding, ...]
@@ -49,6 +56,10 @@ class Audit:
     detections: dict[str, list[Detection]]
     notes: tuple[str, ...]
     seconds_per_record: float
+    records: int
+    specimens: int
+    channels: int
+    seed: int
 
 
 def audit_set(
@@ -88,13 +99,18 @@ def audit_set(
     with stage("detectability", 1):
         found = _detections(measured, seed, paired)
     compared = realism(measured, speed) if with_realism else None
+    specimens = int(np.unique(measured.labels["specimen_id"]).size)
     return Audit(
         findings=tuple(findings),
-        verdict=verdict(findings),
+        verdict=verdict(findings, specimens),
         realism=compared,
         detections=found,
         notes=tuple(_notes(measured, found, with_realism)),
         seconds_per_record=seconds,
+        records=int(measured.checksums.shape[0]),
+        specimens=specimens,
+        channels=len(measured.channels),
+        seed=seed,
     )
 
 
@@ -149,7 +165,12 @@ def audit_numbers(audit: Audit, dataset: Any) -> dict[str, Any]:
     return {
         "set": dataset.path.name,
         "identity": dataset.manifest["identity"],
+        "records": audit.records,
+        "specimens": audit.specimens,
+        "channels": audit.channels,
+        "seed": audit.seed,
         "verdict": audit.verdict,
+        "summary": audit_summary(audit),
         "findings": [asdict(finding) for finding in audit.findings],
         "realism": _realism_numbers(audit.realism) if audit.realism else None,
         "detectability": {

@@ -13,7 +13,7 @@ from diagnostics.report.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOU
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLUMNS = 3
+COLUMNS = 2
 BINS = 40
 MARKERS = "osD^v"
 RANGE_COLOUR = "#cfe8d5"
@@ -22,7 +22,7 @@ RANGE_COLOUR = "#cfe8d5"
 def realism_figure(found: Realism) -> Figure:
     """Return one histogram per quantity over its range (green)."""
     rows = -(-len(found.shares) // COLUMNS)
-    figure, axes = new_figure(rows, COLUMNS, height_in=1.45 * rows)
+    figure, axes = new_figure(rows, COLUMNS, height_in=1.3 * rows)
     for axis, share in zip(axes.ravel(), found.shares, strict=False):
         _draw_quantity(axis, share)
     for axis in axes.ravel()[len(found.shares) :]:
@@ -44,9 +44,9 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
     axis.hist(np.clip(values, low, high), bins=np.linspace(low, high, BINS), color=HEALTHY_COLOUR)
     axis.set_xlim(low - margin, high + margin)
     axis.set_yticks([])
-    axis.tick_params(labelsize=7)
+    axis.tick_params(labelsize=8)
     colour = PINION_COLOUR if share.inside < 0.5 else "black"
-    axis.set_title(f"{share.quantity.title}\n{share.inside:.0%} inside", fontsize=7, color=colour)
+    axis.set_title(f"{share.quantity.title}\n{share.inside:.0%} inside", fontsize=8, color=colour)
 
 
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
@@ -75,6 +75,6 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     axis.set_ylim(0.3, 1.02)
     axis.set_xlim(0.0, 1.05 * axis.get_xlim()[1])
     axis.set_xlabel("Length of the damage along the profile [mm]")
-    axis.set_ylabel("AUC against healthy")
+    axis.set_ylabel("AUC against healthy [-]")
     figure.legend(fontsize=8, loc="outside upper center")
     return figure

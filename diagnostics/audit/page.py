@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.report import html
 from diagnostics.report.html import Cell
+from diagnostics.report.provenance import provenance
 from diagnostics.report.tables import interval_cell
+from diagnostics.report.wording import counted, percent
 
 if TYPE_CHECKING:
     from diagnostics.audit.audit_report import Audit
@@ -20,57 +23,67 @@ HOW = (
     "state is at 0.5 nothing can be found on a gearbox that was not seen before."
 )
 
+SIZE_TITLES = {
+    "damaged_area_mm2": "Damaged area [mm²]",
+    "damaged_area_share": "Share of the flank [-]",
+    "damage_profile_length_mm": "Length along the profile [mm]",
+}
+RANGE_CAPTION = "Quantities of the healthy records and the ranges that measured healthy gearboxes show."
+REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
+SIZE_CAPTION = (
+    "AUC against healthy over the length of the damage along the profile, 95 % limits; dashed: chance, dotted: 0.75 "
+    "and 0.85."
+)
+
 
 def audit_page(audit: Audit, dataset: Any, drawn: dict[str, bytes]) -> str:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
-    parts = [html.heading(title, 1), html.paragraph(audit.verdict, "first"), html.heading("Traps")]
+    parts = [html.heading(title, 1), *html.summary(audit_summary(audit)), html.heading("Traps")]
     parts.append(_findings_table(audit) if audit.findings else html.paragraph("No trap was found."))
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
     parts.append(html.heading("Detectability"))
     parts += [html.paragraph(HOW), *(_detection_table(name, found) for name, found in audit.detections.items())]
     if "detectability" in drawn:
-        parts.append(html.figure_grid([html.figure_block(drawn["detectability"], "AUC over the size of the damage.")]))
-    cost = f"{audit.seconds_per_record:.3f} s per record for measuring; identity {dataset.manifest['identity']}."
-    parts += [html.heading("Notes"), *(html.paragraph(note, "note") for note in (*audit.notes, cost))]
+        parts.append(html.figure_grid([html.figure_block(drawn["detectability"], SIZE_CAPTION)]))
+    parts += [html.heading("Notes"), *html.notes((*audit.notes, provenance(dataset, audit.seed)))]
     return html.page(title, parts)
 
 
 def _findings_table(audit: Audit) -> str:
     rows = [[Cell(f.trap), Cell(f.measured), Cell(f.bound), Cell(f.mend)] for f in audit.findings]
-    # these cells are sentences: they have to wrap, unlike numbers
-    return '<style>.wrap td{white-space:normal;text-align:left}</style><div class="wrap">' + (
-        html.table(["Trap", "Measured", "Bound", "How to mend it"], rows) + "</div>"
-    )
+    caption = "Traps, what was measured, and how to mend the configuration."
+    return html.table(["Trap", "Measured", "Bound", "How to mend it"], rows, caption=caption, text=True)
 
 
 def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
     text = (
-        f"{found.channel_records} healthy channel-records; on average {found.mean_inside:.0%} lie inside the range of "
-        f"a quantity, {found.all_inside:.0%} inside all of them. A share says how the distribution lies, not that it "
-        "is the right one, and a line counts even where it is noise (see the traps): the ranges pool few machines."
+        f"{percent(found.all_inside)} of {counted(found.channel_records, 'healthy channel-record')} lie inside the "
+        "ranges of all quantities. A share says how the distribution lies, not that it is the right one, and a line "
+        "counts even where it is noise (see the traps): the ranges pool few machines."
     )
     rows = [
         [
             Cell(share.quantity.title),
             Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
             *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
-            Cell(f"{share.inside:.0%}", value=share.inside),
-            Cell(f"{share.undefined:.0%}", value=share.undefined),
+            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
+            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
         ]
         for share in found.shares
     ]
-    head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside", "Undefined"]
+    head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside [%]", "Undefined [%]"]
+    spread_head = ["Quantity", "Median [dB]", "Range [dB]"]
     spread = [
         [Cell(s.name), Cell(f"{s.spread_db:.1f}"), Cell(f"{s.wanted_db[0]:g} … {s.wanted_db[1]:g}")]
         for s in found.spreads
     ]
     return [
         html.paragraph(text),
-        html.table(head, rows, sortable=True),
-        *([html.table(["Spread between sensors of a gearbox [dB]", "Median", "Range"], spread)] if spread else []),
-        html.figure_grid([html.figure_block(drawn["realism"], "Healthy channel-records against the range (green).")]),
+        html.table(head, rows, caption=RANGE_CAPTION, sortable=True),
+        *([html.table(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
+        html.figure_grid([html.figure_block(drawn["realism"], REALISM_CAPTION)]),
     ]
 
 
@@ -84,15 +97,19 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
         ]
         for entry in entries
     ]
+    title = name[0].upper() + name[1:]
+    if not any(math.isfinite(entry.auc.value) for entry in entries):
+        return html.heading(title, 3) + html.paragraph("No state could be judged, for the reason in the notes.")
+    caption = f"AUC against healthy on unseen gearboxes by {name}; 95 % limits from resampled gearboxes."
     reached = [
         f"{fault}: AUC {target:g} {_reached(length)}"
         for target in TARGETS
         for fault, length in length_at(entries, target).items()
     ]
     return (
-        html.heading(name[0].upper() + name[1:], 3)
-        + html.table(["State", *(size.replace("_", " ") for size in sizes), "AUC against healthy"], rows)
-        + html.paragraph("Interpolated profile length: " + "; ".join(reached) + ".")
+        html.heading(title, 3)
+        + html.table(["State", *(SIZE_TITLES[size] for size in sizes), "AUC [-]"], rows, caption=caption, sortable=True)
+        + html.paragraph("Interpolated length along the profile: " + "; ".join(reached) + ".")
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from diagnostics.audit.damage_phase import damage_phase
+from diagnostics.audit.detectability import FEWEST_SPECIMENS
 from diagnostics.audit.error_draws import error_draws
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.healthy_sidebands import healthy_sidebands
@@ -14,6 +15,7 @@ from diagnostics.audit.shared_specimens import shared_specimens
 from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.solver_settings import solver_settings
 from diagnostics.audit.state_ties import state_ties
+from diagnostics.report.wording import counted
 
 TRIVIAL = ("healthy_without_sidebands", "slight_separable_by", "state_tied_to", "constant_damage_phase")
 
@@ -32,8 +34,13 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
     ]
 
 
-def verdict(findings: Sequence[Finding]) -> str:
-    """Return what the findings mean for scores on the set."""
+def verdict(findings: Sequence[Finding], specimens: int) -> str:
+    """Return what the findings mean for scores on a set of so many specimens."""
+    if not findings and specimens < FEWEST_SPECIMENS:
+        return (
+            f"No trap was found, but among {counted(specimens, 'gearbox')} few can be: scores on this set say nothing "
+            "about other gearboxes."
+        )
     if not findings:
         return (
             "No trap was found: scores on unseen specimens of this set measure the damage, as far as the audit can see."
@@ -44,4 +51,5 @@ def verdict(findings: Sequence[Finding]) -> str:
             f"The set is trivially separable ({', '.join(trivial)}): a detection score on it says nothing about real "
             "gearboxes."
         )
-    return f"{len(findings)} traps were found: scores on this set are not what they seem to be."
+    found = "A trap was" if len(findings) == 1 else f"{len(findings)} traps were"
+    return f"{found} found: scores on this set are not what they seem to be."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib.metadata import version
 
@@ -15,8 +16,11 @@ from diagnostics.cli.report import report
 from diagnostics.cli.train import train
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenError
 
+PROGRAM = "siggen-diagnostics"
+TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
+
 app = typer.Typer(
-    name="siggen-diagnostics",
+    name=PROGRAM,
     help="Take indicators, train classifiers and write reports for vibration sets that siggen wrote.",
     epilog="Example: siggen-diagnostics report data/quickstart",
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -34,7 +38,7 @@ app.command()(predict)
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"siggen-diagnostics {version('siggen')}")
+        typer.echo(f"{PROGRAM} {version('siggen')}")
         raise typer.Exit(EXIT_OK)
 
 
@@ -48,15 +52,21 @@ def _options(
 
 
 def main() -> None:
-    """Run the command; errors meant for the user become one message and an exit code (0, 1, 2, 4 or 130)."""
+    """Run the command line; known errors become a message and their exit code (0, 1, 2, 4 or 130), no traceback."""
     try:
         app()
     except SiggenError as error:
-        sys.stderr.write(f"error: {error}\n")
+        typer.echo(f"{PROGRAM}: {error}", err=True)
         sys.exit(error.exit_code)
+    except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
+        sys.stdout = None
     except KeyboardInterrupt:
-        sys.stderr.write("interrupted\n")
+        typer.echo(f"{PROGRAM}: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)
     except Exception as error:
-        sys.stderr.write(f"unexpected error: {type(error).__name__}: {error}\n")
+        if os.environ.get(TRACEBACK_VARIABLE):
+            raise
+        kind = type(error).__name__
+        again = f"run again with {TRACEBACK_VARIABLE}=1 for details"
+        typer.echo(f"{PROGRAM}: unexpected {kind}: {error}; {again}", err=True)
         sys.exit(EXIT_UNEXPECTED)

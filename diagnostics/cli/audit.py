@@ -42,8 +42,10 @@ def audit(
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
     from diagnostics.audit.audit_report import audit_set, write_audit
+    from diagnostics.audit.audit_sentences import basis_sentence
     from diagnostics.audit.card_section import card_section
     from diagnostics.cli.progress import terminal_stage
+    from diagnostics.report.wording import counted
     from siggen.dataset.reading import open as open_set
     from siggen.errors import VerificationError
 
@@ -59,6 +61,7 @@ def audit(
         stage=terminal_stage,
     )
     typer.echo(found.verdict)
+    typer.echo(basis_sentence(found))
     for finding in found.findings:
         typer.echo(f"- {finding.line()}")
     for note in found.notes:
@@ -69,4 +72,4 @@ def audit(
 
         siggen.write_card_section(directory, card_section(found))
     if strict and found.findings:
-        raise VerificationError(f"{directory}: {len(found.findings)} traps were found (--strict)")
+        raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")

@@ -59,10 +59,16 @@ def _page(found: Prediction, indicators: dict[str, float | None], blocks: list[s
     parts = [
         html.heading(f"{name}: {found.state}", 1),
         html.paragraph(MEANING, "first"),
-        html.table(("", ""), rows, text=True),
+        html.table(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
         html.heading("Sidebands"),
         html.figure_grid(blocks),
-        html.heading("Indicators (median over pieces)"),
-        html.table(("indicator", "value"), values, sortable=True, tall=True),
+        html.heading("Indicators"),
+        html.table(
+            ("Indicator and channel", "Median"),
+            values,
+            caption="Median of each indicator over the pieces of the recording; levels in m/s², ratios without unit.",
+            sortable=True,
+            tall=True,
+        ),
     ]
     return html.page(f"Prediction for {name}", parts)

@@ -9,8 +9,10 @@ from diagnostics.feature_table import FeatureMatrix
 from diagnostics.judgement import TITLES
 from diagnostics.report import score_figures, stiffness_figures, vibration_figures
 from diagnostics.report.examples import HEALTHY, example_set, strongest_harmonic
+from diagnostics.report.provenance import without_path
 from diagnostics.report.style import state_colours
 from diagnostics.separability import Separability
+from diagnostics.studies import Studies
 from diagnostics.training import Training
 
 if TYPE_CHECKING:
@@ -28,11 +30,12 @@ class Drawing:
     damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     indicators: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    studies: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def figures(self) -> dict[str, tuple[Figure, str]]:
         """Return all figures by file name."""
-        return {**self.vibration, **self.damage, **self.scores, **self.indicators}
+        return {**self.vibration, **self.damage, **self.scores, **self.indicators, **self.studies}
 
 
 def draw(
@@ -41,6 +44,7 @@ def draw(
     classes: tuple[str, ...],
     training: Training | None,
     found: list[Separability],
+    studies: Studies | None = None,
 ) -> Drawing:
     """Draw everything the report shows."""
     healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
@@ -50,6 +54,10 @@ def draw(
     _draw_damage(drawing, dataset, matrix, classes, colours)
     if training:
         _draw_scores(drawing, training)
+    if studies:
+        figure = score_figures.learning_curve_figure(studies.curve)
+        caption = "Macro-AUROC on the test specimens over the number of training specimens: mean, range of draws."
+        drawing.studies["learning_curve"] = (figure, caption)
     shown = distinct_features(found, INDICATORS_SHOWN)
     if shown:
         figure = score_figures.indicator_figure(matrix, shown, classes, colours)
@@ -75,7 +83,7 @@ def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> 
         f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
     )
     figure = vibration_figures.waveform_figure(examples, colours)
-    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}.")
+    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}; dotted: one pinion revolution.")
     spectra = [example.spectrum for example in examples.examples if example.spectrum]
     if not spectra:
         drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
@@ -102,7 +110,7 @@ def _draw_damage(
         curves = siggen.mesh_stiffness_curves(dataset.path / "config.yaml")
         figure = stiffness_figures.stiffness_figure(curves, colours)
     except Exception as error:
-        drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {error}")
+        drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")
         return
     drawing.damage["stiffness"] = (figure, "Mesh stiffness of specimen 0 in every state while the damaged teeth mesh.")
 

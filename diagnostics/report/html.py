@@ -4,58 +4,25 @@ from __future__ import annotations
 
 import base64
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-STYLE = """
-:root{color-scheme:light;--ink:#1c2733;--soft:#5b6b7b;--line:#dde3e8;--band:#f5f7f9;--accent:#1f6f8b}
-*{box-sizing:border-box}
-body{margin:0;font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;color:var(--ink);background:#fff}
-main{max-width:1120px;margin:0 auto;padding:1.2rem 1rem 4rem}
-h1{font-size:1.55rem;line-height:1.25;margin:.4rem 0 1rem}
-h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid var(--line)}
-p,li{max-width:46rem;overflow-wrap:anywhere}
-.first{font-size:1.06rem;padding:.8rem 1rem;background:#fff7e6;border-left:4px solid #e3a21a;
-border-radius:0 6px 6px 0;max-width:none}
-.note{padding:.6rem 1rem;background:var(--band);border-left:4px solid var(--soft);
-border-radius:0 6px 6px 0;max-width:none}
-.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:1.2rem;align-items:start;margin-top:1.2rem}
-figure{margin:0;border:1px solid var(--line);border-radius:8px;padding:.6rem;background:#fff}
-figure img{display:block;width:100%;height:auto}
-figcaption{font-size:.9rem;color:var(--soft);margin-top:.4rem}
-.scroll{overflow-x:auto;border:1px solid var(--line);border-radius:8px}
-.tall{max-height:34rem;overflow-y:auto}
-table{border-collapse:collapse;font-size:.9rem;width:100%;font-variant-numeric:tabular-nums}
-th,td{padding:.35rem .6rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--line)}
-th:first-child,td:first-child{text-align:left;white-space:normal;min-width:15rem}
-thead th{position:sticky;top:0;background:var(--band)}
-table.sortable thead th{cursor:pointer;user-select:none}
-table.sortable thead th::after{content:" \\2195";color:#a9b4be}
-thead th[aria-sort=ascending]::after{content:" \\2191"!important;color:var(--accent)!important}
-thead th[aria-sort=descending]::after{content:" \\2193"!important;color:var(--accent)!important}
-table.text th,table.text td{text-align:left;white-space:normal;vertical-align:top;min-width:7rem}
-small{color:var(--soft)}
-code{overflow-wrap:anywhere;font-size:.88em}
-@media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
-th,td{padding:.3rem .4rem}th:first-child,td:first-child{min-width:8.5rem}}
-@media print{main{max-width:none;padding:0}.scroll{overflow:visible}.tall{max-height:none}
-thead th{position:static}thead th::after{content:""!important}figure,tr{break-inside:avoid}
-h2{break-after:avoid}table{font-size:.75rem}th,td{white-space:normal;padding:.2rem .3rem}}
-"""
+from diagnostics.report.sort_script import SORT_SCRIPT
+from diagnostics.report.style_sheet import style_sheet
 
-SCRIPT = """
-document.querySelectorAll("table.sortable th").forEach(function(head){head.addEventListener("click",function(){
-var table=head.closest("table"),body=table.tBodies[0],column=head.cellIndex;
-var down=head.getAttribute("aria-sort")!=="descending";
-table.querySelectorAll("th").forEach(function(other){other.removeAttribute("aria-sort")});
-head.setAttribute("aria-sort",down?"descending":"ascending");
-var key=function(row){var cell=row.cells[column],value=cell.dataset.value;
-return value===undefined?cell.textContent:value===""?null:+value};
-Array.from(body.rows).sort(function(a,b){var x=key(a),y=key(b);if(x===null)return 1;if(y===null)return -1;
-var order=typeof x==="number"?x-y:x.localeCompare(y);return down?-order:order})
-.forEach(function(row){body.appendChild(row)})})});
-"""
+PRINTED_ROWS = 20
+"""Rows of a tall table that are printed; more would be pages of numbers that nobody reads on paper."""
+
+SHORT_ROWS = 12
+"""Up to so many rows a table stays on one sheet."""
+
+WIDE = 9
+"""Columns beyond which paper needs small print."""
+
+PLAIN_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
+NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,62 +35,127 @@ class Cell:
 
 
 def page(title: str, parts: Sequence[str]) -> str:
-    """Return the whole page."""
+    """Return the whole page, its figures and tables numbered."""
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{STYLE}</style></head>\n<body><main>\n"
-        + "\n".join(parts)
-        + f"\n</main><script>{SCRIPT}</script></body></html>\n"
+        f"<title>{escape(title)}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
+        + numbered("\n".join(parts))
+        + f"\n</main><script>{SORT_SCRIPT}</script></body></html>\n"
     )
+
+
+def numbered(body: str) -> str:
+    """Return the body with a number before every caption, so that text elsewhere can cite figures and tables."""
+    for word, opening in NUMBERED:
+        first, *rest = body.split(opening)
+        body = first + "".join(f"{opening}<b>{word} {number}.</b> {part}" for number, part in enumerate(rest, start=1))
+    return body
 
 
 def heading(text: str, level: int = 2) -> str:
     """Return a heading."""
-    return f"<h{level}>{escape(text)}</h{level}>"
+    return f"<h{level}>{inline(text)}</h{level}>"
 
 
 def paragraph(text: str, style: str = "") -> str:
     """Return a paragraph, of a class of its own if one is named."""
-    return f'<p class="{style}">{escape(text)}</p>' if style else f"<p>{escape(text)}</p>"
+    return f'<p class="{style}">{inline(text)}</p>' if style else f"<p>{inline(text)}</p>"
+
+
+def summary(sentences: Sequence[str]) -> list[str]:
+    """Return the sentences of a summary, the first of them, which says what all others mean, set off."""
+    first, *others = sentences
+    return [paragraph(first, "first"), *(paragraph(sentence) for sentence in others)]
+
+
+def notes(texts: Sequence[str]) -> list[str]:
+    """Return notes as paragraphs, each a sentence whatever part of the program wrote it."""
+    return [
+        paragraph(f"{text[:1].upper()}{text[1:]}{'' if text.endswith(('.', '?')) else '.'}", "note") for text in texts
+    ]
+
+
+def inline(text: str) -> str:
+    """Return text for the page: `code` between backticks, long names broken between their parts."""
+    found = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+    return re.sub(r"(?<=\w)_(?=\w)", "_<wbr>", found)
 
 
 def figure_block(png: bytes, caption: str) -> str:
-    """Return a figure with its caption, the picture inside the page."""
+    """Return a figure with its caption, the picture inside the page and its size known before it is drawn."""
     source = base64.b64encode(png).decode("ascii")
+    width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))  # of the header of a PNG
     return (
-        f'<figure><img alt="{escape(caption, quote=True)}" src="data:image/png;base64,{source}">'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
+        f'<figure><img alt="{escape(caption, quote=True)}" width="{width}" height="{height}" '
+        f'src="data:image/png;base64,{source}"><figcaption>{inline(caption)}</figcaption></figure>'
     )
 
 
 def figure_grid(blocks: Sequence[str]) -> str:
-    """Return figures side by side where there is room."""
-    return f'<div class="figures">{"".join(blocks)}</div>'
+    """Return figures side by side where there is room; nothing for none."""
+    return f'<div class="figures">{"".join(blocks)}</div>' if blocks else ""
 
 
 def table(
     head: Sequence[str],
     rows: Sequence[Sequence[Cell]],
     *,
+    caption: str = "",
     sortable: bool = False,
     tall: bool = False,
     text: bool = False,
 ) -> str:
-    """Return a table that scrolls inside itself, sorted by a click on a head if asked for; text wraps in its cells."""
-    style = " ".join(name for name, wanted in (("sortable", sortable), ("text", text)) if wanted)
-    titles = "".join(f"<th>{escape(title)}</th>" for title in head)
-    body = "".join(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>" for row in rows)
+    """Return a table that scrolls inside itself, sorted by a click on a head if asked for; text wraps in its cells.
+
+    Parameters
+    ----------
+    head : sequence of str
+        Titles of the columns; all empty for a table without a head.
+    rows : sequence of sequence of Cell
+        The first cell names its row.
+    caption : str
+        Above the table, numbered by the page.
+    sortable, tall, text : bool
+        Whether heads sort, whether more than a screen of rows scrolls (and is cut on paper), whether cells wrap.
+    """
+    long = tall and len(rows) > PRINTED_ROWS and not text
+    short = len(rows) <= SHORT_ROWS
+    flags = {"sortable": sortable, "text": text, "wide": len(head) > WIDE and not text}
+    box = " ".join(["scroll", *(["tall"] if tall else []), *(["cut"] if long else []), *(["short"] if short else [])])
+    titles = "".join(f'<th scope="col">{inline(title)}</th>' for title in head)
+    body = "".join(f"<tr>{''.join(_cell(cell, place) for place, cell in enumerate(row))}</tr>" for row in rows)
     return (
-        f'<div class="scroll{" tall" if tall else ""}"><table class="{style}">'
-        f"<thead><tr>{titles}</tr></thead><tbody>{body}</tbody></table></div>"
+        (f'<p class="caption">{inline(caption)}</p>' if caption else "")
+        + f'<div class="{box}" tabindex="0" role="region" aria-label="{escape(caption or "table", quote=True)}">'
+        + f'<table class="{" ".join(name for name, wanted in flags.items() if wanted)}">'
+        + (f"<thead><tr>{titles}</tr></thead>" if any(head) else "")
+        + f"<tbody>{body}</tbody></table></div>"
+        + (_printed_note(len(rows)) if long else "")
     )
 
 
-def _cell(cell: Cell) -> str:
-    small = f" <small>{escape(cell.small)}</small>" if cell.small else ""
-    text = escape(cell.text).replace("_", "_<wbr>")  # long names break between their parts
-    if cell.value is None:
-        return f"<td>{text}{small}</td>"
-    value = f"{cell.value:.6g}" if math.isfinite(cell.value) else ""
-    return f'<td data-value="{value}">{text}{small}</td>'
+def _printed_note(rows: int) -> str:
+    return (
+        f'<p class="printed">On paper: the first {PRINTED_ROWS} of {rows} rows in the order that was chosen; all are '
+        "on the screen and in the files beside this page.</p>"
+    )
+
+
+def _cell(cell: Cell, place: int) -> str:
+    tag, scope = ("td", "") if place else ("th", ' scope="row"')
+    small = f" <small>{inline(minus(cell.small))}</small>" if cell.small else ""
+    return f"<{tag}{scope}{_sorted_by(cell)}>{inline(minus(cell.text))}{small}</{tag}>"
+
+
+def _sorted_by(cell: Cell) -> str:
+    """Return the attribute that a table is sorted by, where what is shown is no number itself."""
+    if cell.value is None or (math.isfinite(cell.value) and PLAIN_NUMBER.fullmatch(cell.text)):
+        return ""
+    return f' data-value="{cell.value:.6g}"' if math.isfinite(cell.value) else ' data-value=""'
+
+
+def minus(text: str) -> str:
+    """Return text with a true minus sign before numbers, and none before a zero."""
+    plain = re.sub(r"(?<![\w.])[-+](0(?:\.0+)?)(?![\d.])", r"\1", text)
+    return re.sub(r"(?<![\w.,)])-(?=\d)", "\N{MINUS SIGN}", plain)

@@ -14,7 +14,7 @@ from diagnostics.assessment.indicator_result import IndicatorResult
 from diagnostics.assessment.noise_curve import NoiseCurve
 from diagnostics.assessment.paired_differences import HEALTHY
 from diagnostics.feature_table import FeatureMatrix
-from diagnostics.report.style import FAULT_COLOURS, new_figure
+from diagnostics.report.style import fault_colours, new_figure, state_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +24,7 @@ CROWDED = 8
 ROWS_SHOWN = 36
 CAUSES = ("speed", "load", "sensor", "noise", "specimen")
 CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
+MARKERS = "osD^vP"
 
 
 def separation_figure(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> Figure:
@@ -69,16 +70,17 @@ def sensitivity_figure(found: Sequence[IndicatorResult]) -> Figure:
 def _heat_map(
     values: np.ndarray, rows: list[str], columns: list[str], limits: tuple[float, float], colours: str, title: str
 ) -> Figure:
-    figure, axes = new_figure(height_in=1.2 + 0.215 * len(rows))
+    figure, axes = new_figure(height_in=1.2 + 0.2 * len(rows))
     axis, crowded = axes[0, 0], len(columns) > CROWDED
     picture = axis.imshow(values, cmap=colours, vmin=limits[0], vmax=limits[1], aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if math.isfinite(value):
             dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
-            size, colour = 5.5 if crowded else 7, "white" if dark else "#1c2733"
-            axis.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=size, color=colour)
+            size, colour = 6.5 if crowded else 7.5, "white" if dark else "#1c2733"
+            text = f"{value:.2f}".removeprefix("0") if crowded else f"{value:.2f}"
+            axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour)
     if crowded:
-        axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7, rotation=90)
+        axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7.5, rotation=90)
     else:
         axis.set_xticks(range(len(columns)), columns, fontsize=8)
     axis.xaxis.tick_top()
@@ -94,7 +96,7 @@ def severity_figure(
 ) -> Figure:
     """Return each indicator over the states: median and 5 to 95 % of the records, and every specimen as a thin line."""
     rows = (len(shown) + 1) // 2
-    figure, axes = new_figure(rows, 2, height_in=0.5 + 1.75 * rows, sharex=True)
+    figure, axes = new_figure(rows, 2, height_in=0.8 + 1.6 * rows, sharex=True)
     ladder = (*healthy, *states)
     for axis, result in zip(axes.ravel(), shown, strict=False):
         values = matrix.values[:, matrix.names.index(result.column)]
@@ -107,7 +109,7 @@ def severity_figure(
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
         axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=8)
-        axis.set_xticks(range(len(ladder)), ladder, fontsize=8, rotation=20 if len(ladder) <= CROWDED else 60)
+        state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
     return figure
@@ -129,10 +131,12 @@ def detection_figure(
     matrix: FeatureMatrix, records: Records, shown: Sequence[IndicatorResult], false_alarms: float
 ) -> Figure | None:
     """Return the share of alarms over the damaged area, between other specimens, with intervals; None without data."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     figure, axes = new_figure(height_in=3.4)
     axis, drawn = axes[0, 0], 0
     healthy = matrix.labels["fault"] == HEALTHY
-    for colour, result in zip(CURVE_COLOURS, shown, strict=False):
+    for colour, marker, result in zip(CURVE_COLOURS, MARKERS, shown, strict=False):
         values = result.direction * matrix.values[:, matrix.names.index(result.column)]
         kept = np.isfinite(values)
         area = matrix.labels[SIZES["area_mm2"]]
@@ -142,13 +146,16 @@ def detection_figure(
         drawn += 1
         low, high = np.quantile(curve.share[1:], [0.025, 0.975], axis=0)
         axis.fill_between(curve.size, low, high, color=colour, alpha=0.12, linewidth=0)
-        axis.plot(curve.size, curve.share[0], color=colour, marker="o", markersize=3, label=result.column)
+        axis.plot(curve.size, curve.share[0], color=colour, marker=marker, markersize=4, label=result.column)
     if not drawn:
         return None
     for level in (0.5, 0.9):
         axis.axhline(level, color="#8a97a3", linestyle=":", linewidth=0.9)
     axis.axhline(false_alarms, color="#8a97a3", linestyle="--", linewidth=0.9)
     axis.set_xscale("log")
+    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
     axis.set_ylim(0.0, 1.03)
     axis.set_xlabel("Damaged area [mm²]")
     axis.set_ylabel("Share of alarms [-]")
@@ -164,8 +171,8 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
     rows = (len(usable) + 1) // 2
     figure, axes = new_figure(rows, 2, height_in=0.8 + 1.75 * rows, sharex=True, sharey=True)
     for axis, (name, found) in zip(axes.ravel(), usable.items(), strict=False):
-        for position, state in enumerate(states):
-            curve, colour = found[state], FAULT_COLOURS[min(position, len(FAULT_COLOURS) - 1)]
+        for colour, state in zip(fault_colours(len(states)), states, strict=True):
+            curve = found[state]
             low, high = [a.low for a in curve.auc], [a.high for a in curve.auc]
             axis.fill_between(curve.snr_db, low, high, color=colour, alpha=0.12, linewidth=0)
             label = state if axis is axes[0, 0] else None
@@ -177,5 +184,5 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
     axes[0, 0].set_ylim(-0.03, 1.03)
     figure.supxlabel("Signal-to-noise ratio of the records [dB]", fontsize=10)
     figure.supylabel("AUC, healthy against state [-]", fontsize=10)
-    figure.legend(loc="outside upper center", ncols=len(states), fontsize=9)
+    figure.legend(loc="outside upper center", ncols=min(len(states), 3), fontsize=8.5)
     return figure

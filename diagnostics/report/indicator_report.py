@@ -21,10 +21,12 @@ from diagnostics.indicators.definition import base_name
 from diagnostics.progress import Stage, silent_stage
 from diagnostics.realism import meaning_of_scores
 from diagnostics.report import html, indicator_figures, indicator_tables
-from diagnostics.report.indicator_sentences import indicator_findings
+from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
+from diagnostics.report.provenance import provenance
 from diagnostics.report.report import clipping_notes, states
 from diagnostics.report.style import png_bytes, styled
 from diagnostics.report.tables import set_table
+from diagnostics.report.wording import percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +39,9 @@ HOW_TO_READ = (
     "repeat; the share of pairs in which the indicator is higher after. Scores are means over the states, turned by "
     "the direction with damage, which the same-specimen design tells. Limits: 95 %, resampled specimens. p-values: "
     "specimen means, Mann-Whitney (other specimens, conservative, since healthy and damaged gearboxes are the same) "
-    "and Wilcoxon (same specimen), adjusted by Holm over all indicators, channels and states. A click on a head sorts."
+    "and Wilcoxon (same specimen), adjusted by Holm over all indicators, channels and states. NA4, NA4* and NB4 "
+    "compare each record with the healthy and milder ones of its own specimen, in the true order of severity: among "
+    "other specimens they know more than the indicators of single records, and the summary leaves them out."
 )
 
 
@@ -99,7 +103,11 @@ def write_indicator_report(
     results = result_table(found)
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
-    sentences = indicator_findings(found, evaluated.records.states, _specimens(table))
+    states_found = evaluated.records.states
+    sentences = [
+        meaning_of_scores(dataset.config, scored=bool(states_found)),
+        *indicator_findings(found, states_found, _specimens(table)),
+    ]
     numbers = report_numbers(dataset, evaluated, sentences)
     (folder / NUMBERS).write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     with stage("figures", 1) as advance, styled():
@@ -163,8 +171,8 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
             indicator_figures.detection_figure(
                 matrix, evaluated.records, evaluated.shown, evaluated.settings.false_alarms
             ),
-            f"Share of alarms over the damaged area at {evaluated.settings.false_alarms:.0%} false alarms (dashed), "
-            "other specimens, with 95 % limits; dotted: a50 and a90.",
+            f"Share of alarms over the damaged area at {percent(evaluated.settings.false_alarms)} false alarms "
+            "(dashed), other specimens, with 95 % limits; dotted: a50 and a90.",
         ),
         "noise": (
             indicator_figures.noise_figure(evaluated.noise, names),
@@ -214,16 +222,17 @@ def _write_page(
         return html.figure_grid([html.figure_block(*pictures[name]) for name in wanted if name in pictures])
 
     title = f"Indicators of {dataset.path.name}"
-    undefined = indicator_tables.undefined_html(found)
+    undefined = indicator_tables.undefined_html(found, _left_out(table))
     parts = [
         html.heading(title, 1),
-        html.paragraph(meaning_of_scores(dataset.config), "first"),
-        *(html.paragraph(sentence) for sentence in sentences),
+        *html.summary(sentences),
         set_table(table.matrix.labels, states(table.matrix)),
         html.heading("Ranking"),
         html.paragraph(HOW_TO_READ),
+        indicator_tables.best_html(best_by_state(found, names)),
         indicator_tables.ranking_html(found, names),
         grid("separation", "sensitivity"),
+        *(indicator_tables.same_specimen_html(found, names), indicator_tables.p_value_html(found, names)),
         html.heading("Trend with severity, and the smallest damage found"),
         html.paragraph(_size_text(evaluated)),
         indicator_tables.trend_html(found, names),
@@ -238,11 +247,20 @@ def _write_page(
         html.heading("Definitions"),
         indicator_tables.definition_html(),
         html.heading("Notes"),
-        *(html.paragraph(note, "note") for note in _notes(dataset, evaluated)),
+        *html.notes(_notes(dataset, evaluated)),
     ]
     path = folder / PAGE
     path.write_text(html.page(title, parts), encoding="utf-8")
     return path
+
+
+def _left_out(table: IndicatorTable) -> dict[str, float]:
+    """Return by channel the share of records that could not be used there."""
+    rows = len(table.notes)
+    lost = {
+        (p.record_id, channel) for p in table.problems for channel in ([p.channel] if p.channel else table.channels)
+    }
+    return {channel: sum(name == channel for _, name in lost) / rows for channel in table.channels}
 
 
 def _size_text(evaluated: Evaluated) -> str:
@@ -254,7 +272,7 @@ def _size_text(evaluated: Evaluated) -> str:
     )
     return (
         f"a50 and a90: size at which half and 90 % of the damaged records give an alarm, at "
-        f"{evaluated.settings.false_alarms:.0%} false alarms among healthy ones. ≤: found already at the smallest "
+        f"{percent(evaluated.settings.false_alarms)} false alarms among healthy ones. ≤: found already at the smallest "
         f"damage of the set. {same} Monotonicity: mean sign of the steps up the ladder. An indicator need not be "
         "monotone: pitting over many teeth lowers FM4 again."
     )
@@ -273,9 +291,8 @@ def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
         f"Settings: {settings}; {table.settings.modulation_harmonics} harmonics demodulated, spectral kurtosis over "
         f"{table.settings.frame_samples} samples; bootstrap seed {evaluated.settings.seed}, "
         f"{evaluated.records.weights.shape[0] - 1} resamples.",
-        f"Angles from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}. Set "
-        f"{dataset.path.name}, identity {dataset.manifest['identity']}, {dataset.fs_hz:g} Hz, "
-        f"{dataset.duration_s:g} s.",
+        f"Shaft angles come from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}.",
+        provenance(dataset, evaluated.settings.seed),
     ]
 
 

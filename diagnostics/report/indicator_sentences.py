@@ -7,62 +7,73 @@ from collections.abc import Sequence
 
 from diagnostics.assessment.indicator_result import IndicatorResult
 from diagnostics.assessment.multiple_tests import smallest_paired_p
-from diagnostics.report.indicator_tables import size_limits
+from diagnostics.report.indicator_tables import size_text
+from diagnostics.report.wording import counted, limits, percent
 
 SIGNIFICANT = 0.05
 WITH_HISTORY = ("na4_", "nb4_")
 
 
 def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
-    """Return the findings: best in each design, how many survive the correction, smallest size, what limits it all."""
+    """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
     if not states:
         return ["The set has no damaged state: indicators stand in the tables, and nothing can be told apart."]
     if specimens < 2:
         return ["With a single specimen the numbers below describe that specimen; they say nothing about others."]
-    sentences = [*_best(found), *_per_state(found, states), *_survivors(found, states, specimens), *_smallest(found)]
-    if any(result.indicator.startswith(WITH_HISTORY) for result in found):
-        sentences.append(
-            "NA4, NA4* and NB4 compare each record with the healthy and milder ones of its own specimen, in the true "
-            "order of severity; among other specimens they therefore know more than the indicators of single records."
-        )
-    return sentences
+    return [*_best(found, states), *_by_state(found, states), *_survivors(found, states, specimens), *_smallest(found)]
 
 
-def _best(found: Sequence[IndicatorResult]) -> list[str]:
-    single = [r for r in found if math.isfinite(r.score_others.value) and not r.indicator.startswith(WITH_HISTORY)]
+def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
+    """Return the indicators that know nothing but their own record."""
+    return [result for result in found if not result.indicator.startswith(WITH_HISTORY)]
+
+
+def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
+    single = [r for r in single_records(found) if math.isfinite(r.score_others.value)]
     if not single:
-        return []
+        return ["No indicator can be judged between specimens: its values or the healthy records are missing."]
     other = max(single, key=lambda r: r.score_others.value)
-    same = max(single, key=lambda r: r.score_same.value if math.isfinite(r.score_same.value) else -1.0)
+    what = "AUC" if len(states) == 1 else "mean AUC over the states"
     text = (
-        f"Between other specimens {other.column} separates best among the indicators of single records: mean AUC over "
-        f"the states {_limits(other)}."
+        f"Between other specimens {other.column} separates best among the indicators of single records, with "
+        f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)})"
     )
-    if math.isfinite(same.score_same.value):
-        text += (
-            f" On the same specimen before and after it is {same.column}, which moves its way in "
-            f"{same.score_same.value:.0%} of the pairs."
-        )
-    return [text]
+    paired = [r for r in single if math.isfinite(r.score_same.value)]
+    if not paired:
+        return [f"{text}."]
+    same = max(paired, key=lambda r: r.score_same.value)
+    return [
+        f"{text}; on the same specimen before and after it is {'also ' if same is other else ''}{same.column}, which "
+        f"moves its way in {percent(same.score_same.value)} of the pairs."
+    ]
 
 
-def _limits(result: IndicatorResult) -> str:
-    score = result.score_others
-    return f"{score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
-
-
-def _per_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
-    parts = []
+def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, tuple[float, str]]:
+    """Return by state the best AUC between other specimens, turned by direction, and whose it is."""
+    best = {}
     for state in states:
         turned = [
             (0.5 + r.direction * (r.others[state].separation.value - 0.5), r.column)
-            for r in found
-            if math.isfinite(r.others[state].separation.value) and not r.indicator.startswith(WITH_HISTORY)
+            for r in single_records(found)
+            if math.isfinite(r.others[state].separation.value)
         ]
         if turned:
-            value, column = max(turned)
-            parts.append(f"{state} {value:.2f} ({column})")
-    return [f"Best AUC of a single record's indicator by state: {'; '.join(parts)}. The best of many is optimistic."]
+            best[state] = max(turned)
+    return best
+
+
+def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
+    best = best_by_state(found, states)
+    if not best:
+        return []
+    if len(best) == 1:
+        return []  # the sentence before has said it
+    hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
+    return [
+        f"By state the best single indicator reaches an AUC from {best[hardest][0]:.2f} for {hardest} "
+        f"({best[hardest][1]}) to {best[easiest][0]:.2f} for {easiest} ({best[easiest][1]}); the best of many is "
+        "optimistic."
+    ]
 
 
 def _survivors(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
@@ -73,30 +84,35 @@ def _survivors(found: Sequence[IndicatorResult], states: tuple[str, ...], specim
     )
     mild = sum(r.false_discovery < SIGNIFICANT for entry in found for r in entry.same.values())
     text = (
-        f"Of {count} comparisons (indicator, channel, state), {others} between other specimens and {same} on the same "
-        f"specimen survive Holm's correction at {SIGNIFICANT:g}; {mild} on the same specimen stay below a false "
-        "discovery rate of 5 %."
+        f"Of {counted(count, 'comparison')} (indicator, channel, state), {others} between other specimens and {same} "
+        f"on the same specimen survive Holm's correction at {SIGNIFICANT:g}; {mild} on the same specimen "
+        f"{'stays' if mild == 1 else 'stay'} below a false discovery rate of 5\N{NO-BREAK SPACE}%"
     )
-    if smallest_paired_p(specimens) * count > SIGNIFICANT:
-        needed = math.ceil(1.0 + math.log2(count / SIGNIFICANT))
-        least = f"{smallest_paired_p(specimens):.2g}"
-        text += (
-            f" With {specimens} specimens the paired test cannot give less than p = {least}, so Holm's correction of "
-            f"{count} comparisons needs at least {needed} specimens to let any pass."
-        )
-    return [text]
+    if smallest_paired_p(specimens) * count <= SIGNIFICANT:
+        return [f"{text}."]
+    needed = math.ceil(1.0 + math.log2(count / SIGNIFICANT))
+    least = f"{smallest_paired_p(specimens):.2g}"
+    return [
+        f"{text}; with {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}, so that "
+        f"Holm's correction needs at least {needed} specimens to let any of {counted(count, 'comparison')} pass."
+    ]
 
 
 def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
     name = "others_area_mm2_a90"
-    reached = [r for r in found if name in r.detectable and math.isfinite(r.detectable[name].value)]
-    reached = [r for r in reached if not r.indicator.startswith(WITH_HISTORY)]
+    judged = [r for r in single_records(found) if name in r.detectable and not math.isnan(r.detectable[name].value)]
+    reached = [r for r in judged if math.isfinite(r.detectable[name].value)]
+    if not judged:
+        return ["From which size on damage is found cannot be said: there are too few records, healthy or damaged."]
     if not reached:
-        return ["No single indicator finds 90 % of any size of damage at this rate of false alarms."]
+        return [
+            "No single indicator finds 90\N{NO-BREAK SPACE}% of any size of damage at this rate of false alarms "
+            "between other specimens."
+        ]
     best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value))
     size = best.detectable[name]
     at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
     return [
-        f"The smallest damaged area that is found with 90 % probability is {at_most}{size.value:.3g} mm² "
-        f"({size_limits(size)}), by {best.column}."
+        f"The smallest damaged area that is found with 90\N{NO-BREAK SPACE}% probability is {at_most}"
+        f"{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}), by {best.column}."
     ]

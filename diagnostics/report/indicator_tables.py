@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from diagnostics.assessment.indicator_result import IndicatorResult
 from diagnostics.evaluation import Interval
@@ -17,44 +17,85 @@ ARROWS = {1: "rises", -1: "falls"}
 
 
 def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    """Return all indicators, best between other specimens first, with the separation of every state in both designs."""
-    head = [
-        "Indicator, channel", "Rank", "Score, other specimens", *(f"AUC {state}" for state in states),
-        "Score, same specimen", *(f"Share of pairs above, {state}" for state in states), "With damage",
-        *(f"Holm p {state}" for state in states), *(f"Holm p, paired {state}" for state in states),
-    ]  # fmt: skip
+    """Return all indicators, best between other specimens first, with the AUC of every state."""
+    head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
         [
-            Cell(r.indicator, r.channel), Cell(str(rank), value=rank),
-            interval_cell(r.score_others), *(interval_cell(r.others[state].separation) for state in states),
-            interval_cell(r.score_same), *(interval_cell(r.same[state].separation) for state in states),
-            Cell(ARROWS[r.direction]), *(p_cell(r.others[state].holm) for state in states),
-            *(p_cell(r.same[state].holm) for state in states),
+            Cell(r.indicator, r.channel), Cell(str(rank), value=rank), interval_cell(r.score_others),
+            *(interval_cell(r.others[state].separation) for state in states), Cell(ARROWS[r.direction]),
         ]
         for rank, r in enumerate(found, start=1)
     ]  # fmt: skip
-    return table(head, rows, sortable=True, tall=True)
+    caption = "Ranking between other specimens: AUC of each state against healthy, their mean as score; 95 % limits."
+    return table(head, rows, caption=caption, sortable=True, tall=True)
+
+
+def same_specimen_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    """Return the shares of pairs of one specimen that rise, by state."""
+    head = ["Indicator, channel", "Score", *(f"Pairs that rise, {state}" for state in states)]
+    rows = [
+        [
+            Cell(r.indicator, r.channel),
+            interval_cell(r.score_same),
+            *(interval_cell(r.same[state].separation) for state in states),
+        ]
+        for r in found
+    ]
+    caption = "On the same specimen before and after: share of pairs in which the indicator rises; 95 % limits."
+    return table(head, rows, caption=caption, sortable=True, tall=True)
+
+
+def p_value_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    """Return the adjusted p-values of both designs."""
+    head = ["Indicator, channel", *(f"Others, {state}" for state in states), *(f"Same, {state}" for state in states)]
+    rows = [
+        [
+            Cell(r.indicator, r.channel), *(p_cell(r.others[state].holm) for state in states),
+            *(p_cell(r.same[state].holm) for state in states),
+        ]
+        for r in found
+    ]  # fmt: skip
+    caption = "p-values between other specimens and on the same specimen, adjusted by Holm."
+    return table(head, rows, caption=caption, sortable=True, tall=True)
+
+
+def best_html(best: Mapping[str, tuple[float, str]]) -> str:
+    """Return the best single indicator of every state."""
+    rows = [[Cell(state), Cell(f"{value:.2f}", value=value), Cell(column)] for state, (value, column) in best.items()]
+    caption = "Best single indicator by state, between other specimens; the best of many is optimistic."
+    head = ["State", "AUC [-]", "Indicator and channel"]
+    return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
 
 
 def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    """Return trend with severity, effect sizes and the smallest sizes found."""
+    """Return trend with severity and the smallest sizes found, then effect sizes."""
     sizes = {name: None for r in found for name in r.detectable}
-    head = [
-        "Indicator, channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity",
-        *(size_title(name) for name in sizes),
-        *(f"Cohen's d {state}" for state in states), *(f"paired d {state}" for state in states),
-    ]  # fmt: skip
+    head = ["Indicator, channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity", *map(size_title, sizes)]
     rows = [
         [
             Cell(r.indicator, r.channel), interval_cell(r.spearman_area, sign=True),
             interval_cell(r.spearman_stiffness, sign=True), interval_cell(r.monotonicity, sign=True),
             *(size_cell(r, name) for name in sizes),
+        ]
+        for r in found
+    ]  # fmt: skip
+    caption = "Trend with severity, and the smallest damage found; 95 % limits."
+    effects = [f"Cohen's d, {state}" for state in states] + [f"Paired d, {state}" for state in states]
+    effect_rows = [
+        [
+            Cell(r.indicator, r.channel),
             *(interval_cell(r.others[state].effect, sign=True) for state in states),
             *(interval_cell(r.same[state].effect, sign=True) for state in states),
         ]
         for r in found
-    ]  # fmt: skip
-    return table(head, rows, sortable=True, tall=True)
+    ]
+    return table(head, rows, caption=caption, sortable=True, tall=True) + table(
+        ["Indicator, channel", *effects],
+        effect_rows,
+        caption="Effect sizes between other specimens and on the same specimen; 95 % limits.",
+        sortable=True,
+        tall=True,
+    )
 
 
 def size_title(name: str) -> str:
@@ -98,24 +139,35 @@ def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
     rows = [
         [Cell(r.indicator, r.channel), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)] for r in found
     ]
-    return table(["Indicator, channel", *(cause.capitalize() for cause in CAUSES)], rows, sortable=True, tall=True)
+    head = ["Indicator, channel", *(cause.capitalize() for cause in CAUSES)]
+    caption = "Share of the rank variance of healthy records that each cause explains alone [-]."
+    return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
 def _share(value: float) -> Cell:
     return Cell(f"{value:.2f}" if math.isfinite(value) else "–", value=value)
 
 
-def undefined_html(found: Sequence[IndicatorResult]) -> str:
-    """Return which indicators have no value in some records, how often, and when that is so."""
+def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> str:
+    """Return which indicators have no value in some records, how often, and when that is so.
+
+    Parameters
+    ----------
+    found : sequence of IndicatorResult
+        All results.
+    left_out : mapping of str to float
+        By channel, the share of records that were left out: there every indicator is undefined, for another reason.
+    """
     rows = []
     for result in sorted(found, key=lambda r: (r.defined_share, r.column)):
-        if result.defined_share < 1.0:
+        missing = 1.0 - result.defined_share - left_out.get(result.channel, 0.0)
+        if missing > 1e-9:
             known = BY_NAME.get(base_name(result.indicator))
             reason = known.undefined if known else "its function returned nan"
-            missing = 1.0 - result.defined_share
-            rows.append([Cell(result.column), Cell(f"{missing:.1%}", value=missing), Cell(reason)])
-    head = ["Indicator and channel", "Undefined", "When"]
-    return table(head, rows, sortable=True, tall=True, text=True) if rows else ""
+            rows.append([Cell(result.column), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)])
+    head = ["Indicator and channel", "Undefined [%]", "When"]
+    caption = "Indicators that are undefined in some of the records."
+    return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""
 
 
 def definition_html() -> str:
@@ -134,4 +186,4 @@ def definition_html() -> str:
         [Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)]
         for d in DEFINITIONS
     ]
-    return table(head, rows, tall=True, text=True)
+    return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)

@@ -20,8 +20,10 @@ from diagnostics.report import html, tables
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.detection_tables import detection_blocks
 from diagnostics.report.drawing import Drawing, draw
+from diagnostics.report.provenance import provenance, without_path
 from diagnostics.report.sentences import area_sentence, summary
 from diagnostics.report.style import png_bytes, styled
+from diagnostics.report.wording import counted
 from diagnostics.separability import Separability, separability, separability_table
 from diagnostics.studies import Studies, run_studies, studies_metrics
 from diagnostics.training import OtherSet, Training, save_models, train_models, training_metrics
@@ -81,7 +83,7 @@ def write_report(
     training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
     studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, states(matrix), training, found)
+        drawing = draw(dataset, matrix, states(matrix), training, found, studies)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
     _write_tables(table, found, folder)
@@ -89,7 +91,7 @@ def write_report(
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
     metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return _write_page(dataset, folder, matrix, training, studies, found, drawing, sentences)
+    return _write_page(dataset, folder, seed, matrix, training, studies, found, drawing, sentences)
 
 
 def states(matrix: FeatureMatrix) -> tuple[str, ...]:
@@ -117,7 +119,7 @@ def _trained(
             chosen = replace(options, cnn=with_network)
             training = train_models(dataset, table, seed, network=chosen, other=other, stage=stage)
         except DatasetError as error:
-            notes.append(f"{'No network' if with_network else 'No classifier'}: {error}")
+            notes.append(f"{'No network' if with_network else 'No classifier'}: {without_path(error, dataset)}")
             continue
         return training, [*dict.fromkeys(notes), *training.notes, *save_models(training, table, dataset, folder)]
     return None, notes[-1:]
@@ -132,13 +134,14 @@ def _studied(
     try:
         return run_studies(dataset, matrix, training.split, seed, other, stage), []
     except DatasetError as error:
-        return None, [f"No studies: {error}"]
+        return None, [f"No studies: {without_path(error, dataset)}"]
 
 
 def undefined_notes(table: pa.Table) -> list[str]:
     """Return how often each reason for undefined indicators occurs."""
     reasons, counts = np.unique([note for note in table.column("notes").to_pylist() if note], return_counts=True)
-    return [f"{count} of {table.num_rows} records: {reason}." for reason, count in zip(reasons, counts, strict=True)]
+    records = counted(table.num_rows, "record")
+    return [f"{count} of {records}: {reason}." for reason, count in zip(reasons, counts, strict=True)]
 
 
 def clipping_notes(dataset: Any) -> list[str]:
@@ -149,7 +152,7 @@ def clipping_notes(dataset: Any) -> list[str]:
         share = np.array(dataset.labels(columns=[name]).column(name).to_pylist(), dtype=np.float64)
         if (share > 0).any():
             notes.append(
-                f"Channel {channel.name} clips in {int((share > 0).sum())} of {share.size} records, up to "
+                f"Channel {channel.name} clips in {int((share > 0).sum())} of {counted(share.size, 'record')}, up to "
                 f"{share.max():.1%} of the samples: clipping adds lines to the spectra that no gear made."
             )
     return notes
@@ -198,6 +201,7 @@ def _entry(entry: Separability) -> dict[str, Any]:
 def _write_page(
     dataset: Any,
     folder: Path,
+    seed: int,
     matrix: FeatureMatrix,
     training: Training | None,
     studies: Studies | None,
@@ -213,8 +217,7 @@ def _write_page(
         (folder / "figures" / f"{name}.png").write_bytes(png)
     parts = [
         html.heading(f"Diagnostics of {dataset.path.name}", 1),
-        html.paragraph(sentences[0], "first"),
-        *(html.paragraph(sentence) for sentence in sentences[1:]),
+        *html.summary(sentences),
         tables.set_table(matrix.labels, states(matrix)),
     ]
     for section, title in SECTIONS:
@@ -222,7 +225,9 @@ def _write_page(
         parts += [html.heading(title), *_section_tables(section, training, found), html.figure_grid(blocks)]
         if section == "scores" and training:
             parts += [html.heading("Splits and training specimens"), *study_blocks(studies)]
-    parts += [html.heading("Notes"), *(html.paragraph(note, "note") for note in (*drawing.notes, _provenance(dataset)))]
+            parts.append(html.figure_grid([html.figure_block(*pictures[name]) for name in drawing.studies]))
+    notes = [*drawing.notes, "Shaft angles come from the once-per-revolution pulses.", provenance(dataset, seed)]
+    parts += [html.heading("Notes"), *html.notes(notes)]
     path = folder / "report.html"
     path.write_text(html.page(f"Diagnostics of {dataset.path.name}", parts), encoding="utf-8")
     return path
@@ -237,18 +242,9 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
         )
     if section == "indicators":
         text = (
-            f"All {len(found)} features on all specimens: nothing is trained here, so none has to be held "
-            "back. AUC 0.5 means "
-            "no separation, 0 and 1 a perfect one. Limits: 95 %, resampled specimens. A click on a column's head sorts."
+            f"{counted(len(found), 'feature')} on all specimens: nothing is trained here, so none has to be held "
+            "back. AUC 0.5 means no separation, 0 and 1 a perfect one."
         )
         followed = area_sentence(found)
         return [html.paragraph(" ".join([*followed, text])), tables.separability_html(found)]
     return []
-
-
-def _provenance(dataset: Any) -> str:
-    return (
-        f"Set {dataset.path.name}, identity {dataset.manifest['identity']}, {len(dataset.channels)} channels at "
-        f"{dataset.fs_hz:g} Hz, records of {dataset.duration_s:g} s. Shaft angles come from the "
-        "once-per-revolution pulses."
-    )

@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.judgement import TITLES, Judged
+from diagnostics.learning_curve import CurvePoint
 from diagnostics.report.style import new_figure, state_ticks
 from diagnostics.separability import Separability
 from diagnostics.training import Training
@@ -75,6 +76,28 @@ def permutation_figure(training: Training) -> Figure:
     axis.set_yticks(range(len(shown)), [judged.name for judged in shown])
     axis.set_xlabel("Macro-AUROC on test specimens [-]")
     figure.legend(loc="outside upper center", ncols=3, fontsize=9)
+    return figure
+
+
+def learning_curve_figure(points: tuple[CurvePoint, ...]) -> Figure:
+    """Return macro-AUROC over the number of training specimens: mean of the draws, and their range."""
+    figure, axes = new_figure(height_in=2.8)
+    axis = axes[0, 0]
+    places = [point.specimens for point in points]
+    lines = {"indicators": (AREA_COLOUR, "o", "-"), "rms": (ACCURACY_COLOUR, "s", "--")}
+    for name, (colour, marker, dashes) in lines.items():
+        draws = [getattr(point, name)[np.isfinite(getattr(point, name))] for point in points]
+        low, mean, high = np.array([(d.min(), d.mean(), d.max()) if d.size else (np.nan,) * 3 for d in draws]).T
+        axis.fill_between(places, low, high, color=colour, alpha=0.15, linewidth=0)
+        axis.plot(places, mean, color=colour, marker=marker, markersize=4, linestyle=dashes, label=TITLES[name])
+    axis.axhline(0.5, color=CHANCE_COLOUR, linestyle=":", linewidth=1.0)
+    axis.set_xscale("log")
+    axis.set_xticks(places, [str(place) for place in places])
+    axis.minorticks_off()
+    axis.set_ylim(0.4, 1.02)
+    axis.set_xlabel("Training specimens [-]")
+    axis.set_ylabel("Macro-AUROC [-]")
+    figure.legend(loc="outside upper center", ncols=2, fontsize=8)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""The summary of a report, written from its numbers."""
+"""The summary of a report in five sentences, written from its numbers."""
 
 from __future__ import annotations
 
@@ -7,15 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.comparison import SATURATED
+from diagnostics.comparison import SATURATED, Comparison
 from diagnostics.evaluation import Interval, error_share_limit
-from diagnostics.judgement import NETWORK, RMS_ALONE, TITLES, Judged
+from diagnostics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, Judged
 from diagnostics.realism import meaning_of_scores
+from diagnostics.report.wording import counted, decimal, joined, limits, percent, signed, signed_limits
 from diagnostics.separability import Separability
 from diagnostics.training import Training
 
 CHANCE_MARGIN = 0.1
 """A mean macro-AUROC under permuted labels that is farther from 0.5 than this is called suspicious."""
+
+WEAK = 0.75
+"""An AUC of the level below this is called weak."""
+
+MANY_SPECIMENS = 20
 
 
 def summary(config: dict[str, Any], training: Training | None, found: list[Separability]) -> list[str]:
@@ -36,49 +42,43 @@ def summary(config: dict[str, Any], training: Training | None, found: list[Separ
     return [*sentences, *indicator_sentences(found)]
 
 
-def percent(value: float) -> str:
-    """Return a share as whole percent."""
-    return f"{100.0 * value:.0f}\u00a0%"
-
-
-def _range(found: Interval) -> str:
-    return (
-        "no interval from one specimen" if math.isnan(found.low) else f"{percent(found.low)} to {percent(found.high)}"
-    )
-
-
 def scores_sentence(training: Training) -> str:
-    """Say how often each classifier named the right state."""
+    """Say how often each classifier named the right state; the network without augmentation is for the tables."""
     first = training.judged[0].scores
     parts = [
         f"{TITLES[judged.name]} {percent(judged.scores.accuracy.value)} ({_range(judged.scores.accuracy)}, "
-        f"macro-AUROC {judged.scores.macro_auroc.value:.2f})"
+        f"macro-AUROC {decimal(judged.scores.macro_auroc.value)})"
         for judged in training.judged
+        if judged.name != PLAIN_NETWORK
     ]
     return (
-        f"On {first.records} records of {first.specimens} test specimens the right one of "
-        f"{len(first.classes)} {_told_apart(training)} was "
-        f"named by {', '.join(parts[:-1])} and {parts[-1]}, where guessing gives {percent(first.guess)}."
+        f"On {counted(first.records, 'record')} of {counted(first.specimens, 'test specimen')} the right one of "
+        f"{counted(len(first.classes), _told_apart(training))} was named by {joined(parts)}, where guessing gives "
+        f"{percent(first.guess)}."
     )
 
 
 def _told_apart(training: Training) -> str:
-    return "states" if all(len(states) == 1 for states in training.split.members.values()) else "classes"
+    return "state" if all(len(states) == 1 for states in training.split.members.values()) else "class"
+
+
+def _range(found: Interval) -> str:
+    if math.isnan(found.low):
+        return "no interval from one specimen"
+    return f"{percent(found.low)} to {percent(found.high)}"
 
 
 def comparison_sentence(training: Training) -> str:
     """Say which classifier is ahead of RMS alone and by how much, and whether the level alone already finds damage."""
-    pairs = [pair for pair in training.comparisons if pair.second == RMS_ALONE]
-    best = max(pairs, key=lambda pair: pair.macro_auroc.value)
-    limits = (
-        "no interval from one specimen"
-        if math.isnan(best.macro_auroc.low)
-        else f"{best.macro_auroc.low:+.2f} to {best.macro_auroc.high:+.2f}, paired"
-    )
-    text = (
-        f"Over RMS alone, {TITLES[best.first]} gains {best.macro_auroc.value:+.2f} of macro-AUROC ({limits})"
-        f"{_between(training, best.first)}"
-    )
+    gains = {
+        pair.first: pair.macro_auroc
+        for pair in training.comparisons
+        if pair.second == RMS_ALONE and pair.first != PLAIN_NETWORK and math.isfinite(pair.macro_auroc.value)
+    }
+    if not gains:
+        return "Whether anything beats RMS alone is not known, since macro-AUROC is undefined on these test specimens."
+    best = max(gains, key=lambda name: gains[name].value)
+    text = f"{_gain(TITLES[best], gains[best])}{_between(training, best, gains)}"
     severe = training.rms_severe
     if severe is None or math.isnan(severe.value):
         return f"{text}."
@@ -87,87 +87,113 @@ def comparison_sentence(training: Training) -> str:
             f"{text}; yet RMS alone already tells the most severe state from healthy with an AUC of "
             f"{severe.value:.2f}, so its scores say little about finer methods."
         )
-    return f"{text}; RMS alone tells the most severe state from healthy with an AUC of {severe.value:.2f} only."
+    only = " only" if severe.value < WEAK else ""
+    return f"{text}; RMS alone tells the most severe state from healthy with an AUC of {severe.value:.2f}{only}."
 
 
-def _between(training: Training, best: str) -> str:
-    """Say whether the network is behind or ahead of the best other one, where there is one."""
-    pair = next(
-        (p for p in training.comparisons if NETWORK in (p.first, p.second) and best in (p.first, p.second)), None
-    )
+def _gain(title: str, gain: Interval) -> str:
+    spread = signed_limits(gain) if math.isnan(gain.low) else f"{signed_limits(gain)}, paired"
+    if gain.value <= 0.0:
+        return f"Nothing beats RMS alone: the best of the others, {title}, is at {signed(gain.value)} ({spread})"
+    doubt = ", not told apart from none" if gain.low <= 0.0 else ""
+    return f"Over RMS alone, {title} gains {signed(gain.value)} of macro-AUROC ({spread}{doubt})"
+
+
+def _between(training: Training, best: str, gains: dict[str, Interval]) -> str:
+    """Say whether the network and the best classifier on indicators differ, where there are both."""
+    if NETWORK not in gains or len(gains) == 1:
+        return ""
+    others = {name: gain for name, gain in gains.items() if name != NETWORK}
+    rival = max(others, key=lambda name: others[name].value) if best == NETWORK else NETWORK
+    pair = next((p for p in training.comparisons if {p.first, p.second} == {best, rival}), None)
     if pair is None or math.isnan(pair.macro_auroc.low):
         return ""
-    sign = 1.0 if pair.first == NETWORK else -1.0
-    low, high = sorted((sign * pair.macro_auroc.low, sign * pair.macro_auroc.high))
-    if low <= 0.0 <= high:
-        return ", from which the 1-D network cannot be told apart"
-    return f", the 1-D network being {sign * pair.macro_auroc.value:+.2f} from it ({low:+.2f} to {high:+.2f})"
+    found = _turned(pair, rival)
+    if found.low <= 0.0 <= found.high:
+        return f", from which the {_short(rival)} cannot be told apart"
+    return f", the {_short(rival)} being {signed(found.value)} from it ({signed_limits(found)})"
+
+
+def _turned(pair: Comparison, first: str) -> Interval:
+    """Return the difference of macro-AUROC of `first` and the other one of the pair."""
+    area = pair.macro_auroc
+    return area if pair.first == first else Interval(-area.value, -area.high, -area.low)
+
+
+def _short(name: str) -> str:
+    return TITLES[name] if name == NETWORK else f"best of the others, {TITLES[name]},"
 
 
 def trust_sentence(training: Training) -> str:
     """Say how certain the scores are and what permuted labels give, in one sentence."""
     certainty, control = certainty_sentence(training), control_sentence(training)
-    return f"{certainty[:-1]}; {control[0].lower()}{control[1:]}"
+    return f"{certainty[:-1]}; {control[0].lower()}{control[1:]}" if control else certainty
 
 
 def certainty_sentence(training: Training) -> str:
     """Say how far few specimens limit what the scores can tell."""
     specimens = training.judged[0].scores.specimens
-    perfect = [judged for judged in training.judged if judged.scores.accuracy.value == 1.0]
+    perfect = [TITLES[judged.name] for judged in training.judged if judged.scores.accuracy.value == 1.0]
+    if specimens == 1:
+        return "From a single test specimen there are no intervals, and nothing is known about other gearboxes."
     if perfect:
         return (
-            f"Without a single error on {specimens} specimens the interval has no width, yet up to "
-            f"{percent(error_share_limit(specimens))} of specimens with errors remain compatible with that "
-            "(95\u00a0%, binomial)."
+            f"Without a single error on {specimens} specimens the interval of {joined(perfect)} has no width, yet up "
+            f"to {percent(error_share_limit(specimens))} of specimens with errors remain compatible with that "
+            "(95\N{NO-BREAK SPACE}%, binomial)."
         )
-    return f"Intervals are 95 % and come from resampling the {specimens} test specimens; with so many they are " + (
-        "rough." if specimens < 20 else "meaningful."
+    verdict = "rough" if specimens < MANY_SPECIMENS else "meaningful"
+    return (
+        f"Intervals are 95\N{NO-BREAK SPACE}% and come from resampling the {specimens} test specimens; with so "
+        f"{'few' if specimens < MANY_SPECIMENS else 'many'} they are {verdict}."
     )
 
 
 def control_sentence(training: Training) -> str:
-    """Say what training on permuted labels gave, and whether that is chance."""
-    shown = [judged for judged in training.judged if judged.permuted_auroc.size]
-    parts = [_control(judged) for judged in shown]
+    """Say what training on permuted labels gave, and whether that is chance; nothing where it was not run."""
+    shown = [judged for judged in training.judged if np.isfinite(judged.permuted_auroc).any()]
+    if not shown:
+        return ""
     suspicious = [
-        judged
+        TITLES[judged.name]
         for judged in shown
-        if judged.permuted_auroc.size > 1 and abs(judged.permuted_auroc.mean() - 0.5) > CHANCE_MARGIN
+        if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
-        f"{' and '.join(judged.name for judged in suspicious)} stay off chance, so the scores above are not "
-        "to be trusted"
+        f"that is off chance (0.5) for {joined(suspicious)}, so the scores above are not to be trusted"
         if suspicious
-        else "chance is 0.5, so nothing but the labels carries the scores"
+        else "chance is 0.5, so the evaluation itself adds nothing to the scores"
     )
-    return f"Trained on permuted labels the macro-AUROC is {' and '.join(parts)}; {verdict}."
+    return f"Trained on permuted labels the macro-AUROC is {joined([_control(judged) for judged in shown])}; {verdict}."
 
 
 def _control(judged: Judged) -> str:
-    areas = judged.permuted_auroc
+    areas = judged.permuted_auroc[np.isfinite(judged.permuted_auroc)]
     if areas.size == 1:
         return f"{areas[0]:.2f} in a single short run for {TITLES[judged.name]}"
     low, high = np.quantile(areas, [0.05, 0.95])
-    spread = f"{areas.size} runs, 90\u00a0% within {low:.2f} to {high:.2f}"
+    spread = f"{areas.size} runs, 90\N{NO-BREAK SPACE}% within {low:.2f} to {high:.2f}"
     return f"{areas.mean():.2f} on average for {TITLES[judged.name]} ({spread})"
 
 
 def indicator_sentences(found: list[Separability]) -> list[str]:
     """Say which state is hardest, and which single indicator does best there."""
-    sentences = []
     hardest = hardest_state(found)
-    if hardest and math.isnan(hardest[1].auc[hardest[0]].low):
+    if hardest is None:
+        return ["No single indicator can be judged, since the set lacks healthy or damaged records."]
+    state, entry = hardest
+    area = entry.auc[state]
+    if math.isnan(area.low):
         return ["With a single specimen the indicators below describe that specimen; they say nothing about others."]
-    if hardest:
-        state, entry = hardest
-        area = entry.auc[state]
-        sentences.append(
-            f"The state hardest to tell from healthy is {state}: the best of {len(found)} single indicators, "
-            f"{entry.feature}, reaches an AUC of {area.value:.2f} ({area.low:.2f} to {area.high:.2f}; chosen "
-            "on the same "
-            "specimens, therefore optimistic)."
-        )
-    return sentences
+    falls = area.value < 0.5
+    turned = Interval(1.0 - area.value, 1.0 - area.high, 1.0 - area.low) if falls else area
+    states = {name for other in found for name in other.auc}
+    which = f"The state hardest to tell from healthy is {state}" if len(states) > 1 else f"The damaged state is {state}"
+    return [
+        f"{which}: the best of {counted(len(found), 'single indicator')}, {entry.feature}, which "
+        f"{'falls' if falls else 'rises'} with damage, reaches an AUC of {turned.value:.2f} ({limits(turned)}; chosen "
+        "on the same specimens, therefore optimistic)."
+    ]
 
 
 def area_sentence(found: list[Separability]) -> list[str]:
@@ -177,8 +203,8 @@ def area_sentence(found: list[Separability]) -> list[str]:
         return []
     best = max(followed, key=lambda entry: abs(entry.spearman.value))
     return [
-        f"The damaged area is followed best by {best.feature} (rank correlation {best.spearman.value:+.2f}, "
-        f"{best.spearman.low:+.2f} to {best.spearman.high:+.2f})."
+        f"The damaged area is followed best by {best.feature} (rank correlation {signed(best.spearman.value)}, "
+        f"{signed_limits(best.spearman)})."
     ]
 
 

@@ -12,6 +12,9 @@ from diagnostics.report.style import new_figure, state_ticks
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+DASHES = ("-", "--", "-.", ":")
+"""Lines that lie on each other or are printed without colour are told apart by their dashes."""
+
 
 def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colours: dict[str, str]) -> Figure:
     """Return mesh stiffness over the pinion's angle, all states in one frame.
@@ -25,12 +28,13 @@ def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colour
     """
     figure, axes = new_figure(height_in=3.4)
     axis = axes[0, 0]
-    for state, (angle_deg, stiffness_n_per_m) in curves.items():
-        axis.plot(angle_deg, 1e-6 * np.asarray(stiffness_n_per_m), color=colours.get(state), label=state, linewidth=1.2)
+    for place, (state, (angle_deg, stiffness_n_per_m)) in enumerate(curves.items()):
+        style = {"color": colours.get(state), "linestyle": DASHES[place % len(DASHES)], "linewidth": 1.2}
+        axis.plot(angle_deg, 1e-6 * np.asarray(stiffness_n_per_m), label=state, **style)
     axis.set_xlabel("Pinion angle [°]")
     axis.set_ylabel("Mesh stiffness [N/µm]")
     axis.margins(x=0.01)
-    figure.legend(loc="outside upper center", ncols=min(len(curves), 4), fontsize=9)
+    figure.legend(loc="outside upper center", ncols=min(len(curves), 3), fontsize=9)
     return figure
 
 

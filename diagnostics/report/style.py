@@ -7,14 +7,19 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH_IN = 5.6
-"""At this width a phone shows 10-point text at a readable size."""
+WIDTH_IN = 4.8
+"""At this width a phone shows 10-point text at the size of the captions, and half a printed page at 7 points."""
 
-DOTS_PER_INCH = 170
+DOTS_PER_INCH = 200
+PALETTE = 96
+"""Colours of a picture: figures hold a dozen and their edges; a palette takes a quarter of the bytes."""
+
 HEALTHY_COLOUR = "#5b6b7b"
 FAULT_COLOURS = ("#e3a21a", "#d9622b", "#b01e3c", "#6a1b6e", "#2c1e55")
 PINION_COLOUR, GEAR_COLOUR = "#b01e3c", "#1f6f8b"
@@ -36,10 +41,17 @@ SETTINGS = {
 def state_colours(states: tuple[str, ...], healthy: set[str]) -> dict[str, str]:
     """Return a colour per state: grey for healthy ones, warmer and darker with the order of the others."""
     faulty = [state for state in states if state not in healthy]
-    last = len(FAULT_COLOURS) - 1
-    return dict.fromkeys(healthy, HEALTHY_COLOUR) | {
-        state: FAULT_COLOURS[min(position, last)] for position, state in enumerate(faulty)
-    }
+    return dict.fromkeys(healthy, HEALTHY_COLOUR) | dict(zip(faulty, fault_colours(len(faulty)), strict=True))
+
+
+def fault_colours(count: int) -> tuple[str, ...]:
+    """Return colours from light to dark, an order that is seen without colour too; blends where many."""
+    if count <= len(FAULT_COLOURS):
+        return FAULT_COLOURS[:count]
+    known = np.array([[int(colour[start : start + 2], 16) for start in (1, 3, 5)] for colour in FAULT_COLOURS])
+    places = np.linspace(0.0, len(FAULT_COLOURS) - 1.0, count)
+    blends = np.stack([np.interp(places, np.arange(len(FAULT_COLOURS)), channel) for channel in known.T], axis=1)
+    return tuple("#" + "".join(f"{round(value):02x}" for value in blend) for blend in blends)
 
 
 def new_figure(rows: int = 1, columns: int = 1, height_in: float = 3.2, **shared: Any) -> tuple[Figure, Any]:
@@ -58,14 +70,19 @@ def styled() -> AbstractContextManager[None]:
 
 
 def png_bytes(figure: Figure) -> bytes:
-    """Return the figure as PNG."""
-    stream = io.BytesIO()
+    """Return the figure as PNG with a palette of its own colours."""
+    from PIL import Image
+
+    drawn, stream = io.BytesIO(), io.BytesIO()
     with styled():
-        figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)
+        figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)
+    picture = Image.open(drawn).convert("RGB")
+    picture.quantize(PALETTE, dither=Image.Dither.NONE).save(stream, format="png", optimize=True)
     return stream.getvalue()
 
 
-def state_ticks(axis: Axes, names: Sequence[str]) -> None:
-    """Name the places 0, 1, ... along the bottom; many names stand slanted."""
-    many = len(names) > 5
-    axis.set_xticks(range(len(names)), names, rotation=50 if many else 0, ha="right" if many else "center")
+def state_ticks(axis: Axes, names: Sequence[str], **text: Any) -> None:
+    """Name the places 0, 1, ... along the bottom; many or long names stand slanted."""
+    slanted = len(names) > 5 or sum(map(len, names)) > 40
+    turned: dict[str, Any] = {"rotation": 50, "rotation_mode": "anchor"} if slanted else {}
+    axis.set_xticks(range(len(names)), names, ha="right" if slanted else "center", **turned, **text)

@@ -10,6 +10,7 @@ import numpy as np
 from diagnostics.evaluation import Interval
 from diagnostics.judgement import BOOSTING, TITLES
 from diagnostics.report.html import Cell, table
+from diagnostics.report.wording import counted
 from diagnostics.separability import Separability
 from diagnostics.training import Training
 
@@ -25,29 +26,36 @@ def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
         for state in classes
     ]
     count = [np.unique(labels["specimen_id"][labels["split"] == name]).size for name in splits]
-    return table(["Records of state", *splits], [*rows, [Cell("specimens"), *(Cell(str(number)) for number in count)]])
+    rows.append([Cell("specimens (gearboxes)"), *(Cell(str(number)) for number in count)])
+    return table(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
 
 
 def score_table(training: Training) -> str:
     """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
     rows = []
     for judged in training.judged:
-        permuted = f"{judged.permuted_auroc.mean():.2f}" if judged.permuted_auroc.size else "–"
+        permuted = float(judged.permuted_auroc.mean()) if judged.permuted_auroc.size else math.nan
         rows.append(
             [
                 Cell(TITLES[judged.name], _details(judged.name, judged.details)),
                 interval_cell(judged.scores.accuracy),
                 interval_cell(judged.scores.macro_auroc),
-                Cell(permuted),
+                Cell(f"{permuted:.2f}" if math.isfinite(permuted) else "–", value=permuted),
                 interval_cell(judged.calibration.after),
             ]
         )
-    return table(["Classifier", "Accuracy", "Macro-AUROC", "Permuted labels", "Calibration error"], rows, sortable=True)
+    specimens = counted(training.judged[0].scores.specimens, "test specimen")
+    caption = (
+        f"Scores on {specimens} with 95 % limits from resampled specimens; macro-AUROC after training on permuted "
+        "labels (mean); expected calibration error [-]."
+    )
+    head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]", "Calibration error [-]"]
+    return table(head, rows, caption=caption, sortable=True)
 
 
 def _details(name: str, details: dict[str, Any]) -> str:
     if "strength" in details:
-        return f"{details['features']} features, {strength_text(name, details['strength'])}"
+        return f"{counted(details['features'], 'feature')}, {strength_text(name, details['strength'])}"
     return (
         f"windows of {details['revolutions_per_window']} pinion revolutions × "
         f"{details['samples_per_revolution']} samples, "
@@ -61,19 +69,23 @@ def strength_text(name: str, strength: float) -> str:
 
 
 def separability_html(found: list[Separability]) -> str:
-    """Return all features, strongest first; a click on a head sorts by another column."""
+    """Return all features, strongest first."""
     states = list(dict.fromkeys(state for entry in found for state in entry.auc))
     rows = [
         [
             Cell(entry.feature),
             *(interval_cell(entry.auc[state]) for state in states),
             interval_cell(entry.spearman, sign=True),
-            Cell(f"{entry.defined_share:.0%}", value=entry.defined_share),
+            Cell(f"{100.0 * entry.defined_share:.0f}", value=entry.defined_share),
         ]
         for entry in found
     ]
-    head = ["Feature", *(f"AUC healthy / {state}" for state in states), "Spearman, damaged area", "Defined"]
-    return table(head, rows, sortable=True, tall=True)
+    head = ["Feature", *(f"AUC, {state}" for state in states), "Spearman, damaged area", "Defined [%]"]
+    caption = (
+        "Every feature by itself, strongest first: AUC of each state against healthy, rank correlation with the "
+        "damaged area, share of records in which it is defined; 95 % limits from resampled specimens."
+    )
+    return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
 def interval_cell(found: Interval, *, sign: bool = False) -> Cell:

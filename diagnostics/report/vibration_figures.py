@@ -16,13 +16,16 @@ REVOLUTIONS_SHOWN = 2
 ORDERS_SHOWN = 7.0
 SIDEBANDS = 6
 DECADES_SHOWN = 5.0
+TALLEST_IN = 9.5
+"""A figure of half a page's width that is taller does not fit a sheet."""
+
 BEHIND_COLOUR = "#b9c4cd"
 
 
 def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
     """Return acceleration over two pinion revolutions, one row per state, all on one scale."""
     rows = len(examples.examples)
-    figure, axes = new_figure(rows, 1, height_in=0.7 + 1.15 * rows, sharex=True, sharey=True)
+    figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
     for axis, example in zip(axes[:, 0], examples.examples, strict=True):
         start_s = example.tacho_s[0] if len(example.tacho_s) else 0.0
         first = round(start_s * examples.fs_hz)
@@ -31,15 +34,19 @@ def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
         for pulse in range(REVOLUTIONS_SHOWN + 1):
             axis.axvline(1e3 * pulse / examples.speed_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
-    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms] (dotted: one pinion revolution)")
+    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
     figure.supylabel("Acceleration [m/s²]", fontsize=10)
     return figure
+
+
+def _height_in(frame: float, row: float, rows: int) -> float:
+    return min(frame + row * rows, max(TALLEST_IN, frame + 0.62 * rows))
 
 
 def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int) -> Figure:
     """Return the order spectrum around one mesh harmonic, one row per state, the healthy state in grey behind."""
     rows = len(examples.examples)
-    figure, axes = new_figure(rows, 1, height_in=1.0 + 1.3 * rows, sharex=True, sharey=True)
+    figure, axes = new_figure(rows, 1, height_in=_height_in(1.0, 1.25, rows), sharex=True, sharey=True)
     top = max(
         _around(example.spectrum, examples, harmonic)[1].max() for example in examples.examples if example.spectrum
     )
@@ -90,4 +97,12 @@ def _add_legend(axis: Any) -> None:
         Line2D([], [], linestyle="none", marker="|", markersize=6, color=GEAR_COLOUR, label="gear sidebands"),
         Line2D([], [], color=BEHIND_COLOUR, linewidth=1.5, label="healthy"),
     ]
-    axis.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, fontsize=8, borderpad=0.0)
+    axis.legend(
+        handles=handles,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=3,
+        fontsize=8,
+        borderpad=0.0,
+        columnspacing=1.0,
+    )

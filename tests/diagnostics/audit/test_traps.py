@@ -29,7 +29,7 @@ def relabelled(found: MeasuredSet, **columns: object) -> MeasuredSet:
 
 def test_a_set_without_traps_gives_no_finding(clean: MeasuredSet) -> None:
     assert traps(clean) == []
-    assert "No trap" in verdict([])
+    assert "No trap" in verdict([], 12)
 
 
 def test_labels_of_the_damage_itself_are_no_tie(clean: MeasuredSet) -> None:

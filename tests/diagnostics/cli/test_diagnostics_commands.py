@@ -51,7 +51,7 @@ def test_a_folder_without_a_set_is_a_usage_error(
     out = {"features": ["--out", "x.csv"], "indicators": [], "train": ["--out", "y"], "report": []}[command]
     assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
     error = capsys.readouterr().err
-    assert error.startswith("error: ")
+    assert error.startswith("siggen-diagnostics: ")
     assert "nothing" in error
     assert "Traceback" not in error
 

@@ -101,6 +101,6 @@ def test_unusable_input_ends_with_2_and_a_way_out(
     offered = {"first": change(sets["first"]), "slower": replace(sets["second"], fs_hz=6400.0)}
     assert run(monkeypatch, offered, "first", "--out", str(tmp_path / "out"), *network, *options) == 2
     error = capsys.readouterr().err
-    for part in ("error: ", *parts):
+    for part in ("siggen-diagnostics: ", *parts):
         assert part in error
     assert not (tmp_path / "out").exists()
