@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from diagnostics.recordings.measured_recording import RecordingFacts
+
+ROWS = re.compile(r"\d+(,\d+)*")
 
 
 def predict(
@@ -30,10 +37,18 @@ def predict(
     tacho: Annotated[str | None, typer.Option(metavar="COLUMN", help="Tacho's waveform, or `tacho_s`.")] = None,
     tacho_pulses: Annotated[int, typer.Option(min=1, help="Pulses per pinion revolution.")] = 1,
     reference: Annotated[
-        list[Path] | None,
-        typer.Option(metavar="FILE", help="Recording of the same machine in healthy state; repeat."),
+        list[str] | None,
+        typer.Option(
+            metavar="FILE[:ROW,ROW]",
+            help="Recording of the same machine in healthy state, with the same columns and unit; repeat.",
+        ),
     ] = None,
-    row: Annotated[int | None, typer.Option(help="Row of a Parquet file with one record per row.")] = None,
+    reference_fs: Annotated[
+        float | None, typer.Option(help="Sampling rate [Hz] of the references, where it is another one.")
+    ] = None,
+    row: Annotated[
+        int | None, typer.Option(help="Row of FILE, from 0, where it is Parquet with one record per row.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
     ] = None,
@@ -56,7 +71,11 @@ def predict(
     facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses, row)
     names = loaded.facts.channels
     recording = read_recording(file, names, facts)
-    references = tuple(read_recording(path, names, facts) for path in reference or ())
+    references = tuple(
+        read_recording(path, names, _reference_facts(facts, path, number, reference_fs))
+        for said in reference or ()
+        for path, number in _reference_rows(said)
+    )
     low_high = _pair(speed_range, "--speed-range", "20,50") if speed_range else None
     found = predict_recording(loaded, recording, pair, low_high, references)
     for label, text in prediction_rows(found):
@@ -79,6 +98,20 @@ def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> 
     if min(first, second) < 3 or first % 1 or second % 1:
         raise UsageError(f"{file}: --teeth: received {said}; allowed are two whole numbers from 3 on")
     return int(first), int(second)
+
+
+def _reference_rows(said: str) -> list[tuple[Path, int | None]]:
+    """Return file and row of every reference that one --reference names; a file of that very name goes first."""
+    file, colon, rows = said.rpartition(":")
+    if not colon or Path(said).exists() or not ROWS.fullmatch(rows):
+        return [(Path(said), None)]
+    return [(Path(file), int(row)) for row in rows.split(",")]
+
+
+def _reference_facts(facts: RecordingFacts, path: Path, row: int | None, fs_hz: float | None) -> RecordingFacts:
+    """Return what is said about a reference: as about the recording, but for its own row and rate."""
+    states_rate = path.suffix.lower() == ".wav"
+    return replace(facts, row=row, fs_hz=fs_hz or (None if states_rate else facts.fs_hz))
 
 
 def _pair(said: str, option: str, example: str) -> tuple[float, float]:

@@ -7,12 +7,15 @@ difference to the same machine's healthy state removes as far as speed and load 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 
 import numpy as np
 
 from diagnostics.feature_table import FeatureMatrix
 
 HEALTHY = "healthy"
+PLACE = ("specimen_id", "operating_point_id", "repeat")
+"""Where a damaged record has its healthy twin."""
 
 
 def log_values(values: np.ndarray) -> np.ndarray:
@@ -28,12 +31,36 @@ def log_mean(values: np.ndarray) -> np.ndarray:
         return np.asarray(np.nanmean(log_values(values), axis=0))
 
 
-def healthy_referenced(matrix: FeatureMatrix) -> tuple[FeatureMatrix, np.ndarray]:
-    """Return log features minus the mean of the specimen's healthy records, for the records that have such.
+def healthy_references(labels: Mapping[str, np.ndarray]) -> list[np.ndarray]:
+    """Return the rows that every record refers to: its specimen's healthy records but one; empty where there is none.
 
-    A healthy record must not be its own reference, and a damaged one must not have a closer reference than its healthy
-    twin, or the difference itself would tell the states apart. So the healthy record at the same operating point and
-    repeat is left out of the mean for every state.
+    A healthy record leaves itself out. A damaged one leaves out the first healthy record at its operating point and
+    repeat, its twin, so that neither number nor nearness of the references tells the states apart. A damaged record
+    without a twin has no reference: its references would stand farther away than those of any healthy record.
+
+    Parameters
+    ----------
+    labels : mapping of str to (records,)
+        Columns `specimen_id`, `fault`, `operating_point_id`, `repeat`, `state_id`, `record_id`.
+    """
+    healthy = labels["fault"] == HEALTHY
+    order = np.lexsort((labels["record_id"], labels["state_id"]))
+    own: dict[int, list[int]] = {}
+    twin: dict[tuple[int, ...], int] = {}
+    places = list(zip(*(labels[name].tolist() for name in PLACE), strict=True))
+    for row in order[healthy[order]].tolist():
+        own.setdefault(places[row][0], []).append(row)
+        twin.setdefault(places[row], row)
+    found = []
+    for row, place in enumerate(places):
+        left_out = row if healthy[row] else twin.get(place)
+        rows = [] if left_out is None else [other for other in own[place[0]] if other != left_out]
+        found.append(np.array(rows, dtype=np.int64))
+    return found
+
+
+def healthy_referenced(matrix: FeatureMatrix) -> tuple[FeatureMatrix, np.ndarray]:
+    """Return log features minus the mean of the references, for the records that have such, and which those are.
 
     Parameters
     ----------
@@ -47,14 +74,22 @@ def healthy_referenced(matrix: FeatureMatrix) -> tuple[FeatureMatrix, np.ndarray
     (records,) bool
         Which those are.
     """
-    labels, logs = matrix.labels, log_values(matrix.values)
-    healthy = labels["fault"] == HEALTHY
-    found, kept = np.full_like(logs, np.nan), np.zeros(len(logs), dtype=bool)
-    for row in range(len(logs)):
-        same = (labels["operating_point_id"] == labels["operating_point_id"][row]) & (
-            labels["repeat"] == labels["repeat"][row]
-        )
-        chosen = healthy & (labels["specimen_id"] == labels["specimen_id"][row]) & ~same
-        if chosen.any():
-            found[row], kept[row] = logs[row] - log_mean(matrix.values[chosen]), True
-    return FeatureMatrix(found, matrix.names, labels).rows(kept), kept
+    logs = log_values(matrix.values)
+    references = healthy_references(matrix.labels)
+    found, kept = np.full_like(logs, np.nan), np.array([rows.size > 0 for rows in references], dtype=bool)
+    for row in np.flatnonzero(kept):
+        found[row] = logs[row] - log_mean(matrix.values[references[row]])
+    return FeatureMatrix(found, matrix.names, matrix.labels).rows(kept), kept
+
+
+def reference_speed_ratio(labels: Mapping[str, np.ndarray]) -> float:
+    """Return the largest ratio, 1 or more, of the speeds of a record and of one it refers to; NaN without references.
+
+    Parameters
+    ----------
+    labels : mapping of str to (records,)
+        As of `healthy_references`, and `speed_hz`.
+    """
+    speed = np.log(labels["speed_hz"].astype(np.float64))
+    ratios = [np.abs(speed[rows] - speed[k]).max() for k, rows in enumerate(healthy_references(labels)) if rows.size]
+    return float(np.exp(max(ratios))) if ratios else np.nan

@@ -15,7 +15,7 @@ from diagnostics.prediction.training_distance import TrainingDistance, distance_
 from siggen.errors import UsageError
 
 FACTS_FILE = "model.json"
-FORMAT = "siggen-diagnostics model 1"
+FORMAT = "siggen-diagnostics model 2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,9 @@ class ModelFacts:
         Operating points of the set.
     fewest_revolutions : int
         Pinion revolutions of the shortest training average.
+    reference_speed_ratio : float or None
+        Largest ratio, 1 or more, of the speeds of a training record and of one it refers to; None without the
+        healthy-referenced variant.
     """
 
     set_name: str
@@ -53,6 +56,7 @@ class ModelFacts:
     speed_range_hz: tuple[float, float]
     torque_range_nm: tuple[float, float]
     fewest_revolutions: int
+    reference_speed_ratio: float | None = None
 
 
 def manifest_digest(manifest: dict[str, Any]) -> str:

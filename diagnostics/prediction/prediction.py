@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from diagnostics.calibration import tempered
+from diagnostics.prediction.known_reasons import known_reasons, reference_reasons
 from diagnostics.prediction.log_features import log_mean, log_values
-from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.prediction.training_distance import TrainingDistance
@@ -22,6 +22,9 @@ from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from siggen.errors import UsageError
 
 INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"
+
+Reference = tuple[MeasuredRecording, ShaftPulses, RecordPieces]
+"""A recording in healthy state as it came, its pulses, and its pieces at the rate of the model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,19 +120,15 @@ def predict_recording(
     UsageError
         If pulses cannot be found, or references were given to a model without the variant.
     """
-    if references and model.referenced_classifier is None:
-        raise UsageError(
-            f"{model.folder}: was trained without the healthy-referenced variant, since its set had no second healthy "
-            "record per gearbox; leave --reference out, or train on a set with two operating points"
-        )
-    facts = model.facts
-    source = recording
+    if references:
+        _check_variant(model)
+    facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
     pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings)
     plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)), pulses.speed_hz)
-    if references:
-        healthy = [_reference_pieces(model, reference, teeth, speed_range_hz) for reference in references]
+    healthy = tuple(_reference(model, reference, teeth, speed_range_hz) for reference in references)
+    if healthy:
         answer, nearness = _referenced_vote(model, pieces, healthy, pulses.speed_hz)
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
@@ -145,7 +144,8 @@ def predict_recording(
         plain_nearness=plain,
         reasons=(
             *_distance_reasons(plain, nearness),
-            *_known_reasons(model.facts, source, pulses, teeth, pieces),
+            *known_reasons(facts, source, pulses, teeth, pieces),
+            *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
         notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
         pieces=pieces,
@@ -156,15 +156,24 @@ def _undefined_note(count: int) -> str:
     return f"{count} indicators are undefined here; the classifier takes their training medians" if count else ""
 
 
-def _reference_pieces(
+def _check_variant(model: ReleasedModel) -> None:
+    if model.referenced_classifier is None:
+        raise UsageError(
+            f"{model.folder}: was trained without the healthy-referenced variant, since its set had no second healthy "
+            "record per gearbox; leave --reference out, or train on a set with a second healthy state (as "
+            "configs/bench.yaml), repeat or operating point"
+        )
+
+
+def _reference(
     model: ReleasedModel,
     reference: MeasuredRecording,
     teeth: tuple[int, int],
     speed_range_hz: tuple[float, float] | None,
-) -> RecordPieces:
+) -> Reference:
     slow = at_rate(reference, model.facts.fs_hz)
     pulses = shaft_pulses(slow, teeth, speed_range_hz)
-    return record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings)
+    return reference, pulses, record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings)
 
 
 def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
@@ -183,13 +192,13 @@ def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:
 
 
 def _referenced_vote(
-    model: ReleasedModel, pieces: RecordPieces, healthy: list[RecordPieces], speed_hz: float
+    model: ReleasedModel, pieces: RecordPieces, healthy: tuple[Reference, ...], speed_hz: float
 ) -> tuple[Vote, Nearness]:
     assert model.referenced_classifier is not None
     assert model.referenced_distance is not None
 
     def minus_reference(names: tuple[str, ...]) -> np.ndarray:
-        reference = log_mean(np.concatenate([found.columns(names) for found in healthy]))
+        reference = log_mean(np.concatenate([found.columns(names) for _, _, found in healthy]))
         return log_values(pieces.columns(names)) - reference
 
     vote = _pipeline_vote(
@@ -238,31 +247,4 @@ def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:
                 f"unlike the {what}: distance {near.distance:.2f}, up to {near.threshold:.2f} was seen on held-out "
                 f"gearboxes; farthest off: {strangest}"
             )
-    return found
-
-
-def _known_reasons(
-    facts: ModelFacts,
-    recording: MeasuredRecording,
-    pulses: ShaftPulses,
-    teeth: tuple[int, int],
-    pieces: RecordPieces,
-) -> list[str]:
-    """Return what is known of the recording and was never trained."""
-    found = []
-    if teeth not in facts.teeth:
-        known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
-        found.append(f"{teeth[0]}/{teeth[1]} teeth; the training set knows {known} only")
-    if recording.fs_hz < facts.fs_hz * (1.0 - 1e-3):
-        found.append(
-            f"sampled at {recording.fs_hz:g} Hz, training at {facts.fs_hz:g} Hz: the band above "
-            f"{0.5 * recording.fs_hz:g} Hz is missing"
-        )
-    low, high = facts.speed_range_hz
-    if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
-        found.append(f"pinion speed of {pulses.speed_hz:.4g} Hz; the training set covers {low:.4g} to {high:.4g} Hz")
-    if pieces.revolutions < facts.fewest_revolutions - 1:  # one may be lost to where the piece begins
-        found.append(
-            f"averages over {pieces.revolutions} pinion revolutions; training has {facts.fewest_revolutions} or more"
-        )
     return found

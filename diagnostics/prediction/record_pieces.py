@@ -12,6 +12,7 @@ from fractions import Fraction
 import numpy as np
 
 from diagnostics.features import FeatureSettings, record_features
+from diagnostics.prediction.noise_floor import noise_floor
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 
@@ -70,7 +71,7 @@ def record_pieces(
     duration_s: float,
     settings: FeatureSettings,
 ) -> RecordPieces:
-    """Return the features of consecutive pieces; a rest shorter than a piece is left out, unless it is all there is.
+    """Return features and noise floors of consecutive pieces; a rest shorter than a piece counts if there is no more.
 
     Parameters
     ----------
@@ -87,13 +88,14 @@ def record_pieces(
     """
     samples = next(iter(recording.channels.values())).size
     length = min(round(duration_s * recording.fs_hz), samples)
-    found = []
+    found, values = [], []
     for start in range(0, samples - length + 1, length):
         begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
         times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
         piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
         found.append(record_features(piece, times_s, recording.fs_hz, teeth, settings))
-    names = tuple(found[0].values)
-    values = np.array([[piece.values[name] for name in names] for piece in found])
+        values.append(found[-1].values | noise_floor(piece, recording.fs_hz))
+    names = tuple(values[0])
+    table = np.array([[piece[name] for name in names] for piece in values])
     notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))
-    return RecordPieces(values, names, min(piece.revolutions_pinion for piece in found), notes)
+    return RecordPieces(table, names, min(piece.revolutions_pinion for piece in found), notes)

@@ -12,9 +12,11 @@ import pyarrow as pa
 from diagnostics.baselines import FeatureClassifier, train_classifier
 from diagnostics.evaluation import Scores, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
-from diagnostics.prediction.log_features import healthy_referenced, log_values
+from diagnostics.prediction.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
+from diagnostics.prediction.noise_floor import noise_floor
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
+from diagnostics.recording import recordings
 from diagnostics.splits import SpecimenSplit
 from diagnostics.state_classes import CLASS
 
@@ -77,10 +79,12 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
         Seeds the bootstrap of the variant's scores.
     """
     matrix, split = feature_matrix(table), training.split
-    distance, distances = _distance(log_values(matrix.values), matrix, split)
-    referenced, note = _referenced(matrix, split, seed)
+    whole = with_noise_floor(matrix, dataset)
+    distance, distances = _distance(log_values(whole.values), whole, split)
+    referenced, note = _referenced(matrix, whole, split, seed)
+    ratio = reference_speed_ratio(matrix.labels) if referenced else None
     return Release(
-        facts=model_facts(dataset, table, split.classes),
+        facts=replace(model_facts(dataset, table, split.classes), reference_speed_ratio=ratio),
         distance=distance,
         test_outside=_share_outside(distances[split.test], distance),
         referenced=referenced,
@@ -91,11 +95,29 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
     )
 
 
+def with_noise_floor(matrix: FeatureMatrix, dataset: Any) -> FeatureMatrix:
+    """Return the features of a set with the noise floors of its records as further columns, which only distances take.
+
+    Parameters
+    ----------
+    matrix : FeatureMatrix
+        Features of the set.
+    dataset : siggen Dataset
+        The set, with the same channels.
+    """
+    found = {
+        int(record.labels["record_id"]): noise_floor(record.channels, record.fs_hz) for record in recordings(dataset)
+    }
+    names = tuple(next(iter(found.values())))
+    floors = np.array([[found[number][name] for name in names] for number in matrix.labels["record_id"].tolist()])
+    return FeatureMatrix(np.hstack([matrix.values, floors]), (*matrix.names, *names), matrix.labels)
+
+
 def _distance(logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit) -> tuple[TrainingDistance, np.ndarray]:
-    names = distance_features(matrix.names)
-    chosen = logs[:, [matrix.names.index(name) for name in names]]
+    parts = distance_features(matrix.names)
+    chosen = logs[:, [matrix.names.index(name) for part in parts for name in part]]
     speed_hz = matrix.labels["speed_hz"].astype(np.float64)
-    found = calibrated_distance(chosen, speed_hz, names, split, matrix.labels["specimen_id"])
+    found = calibrated_distance(chosen, speed_hz, parts, split, matrix.labels["specimen_id"])
     return found, found.distance(chosen, speed_hz)
 
 
@@ -103,18 +125,22 @@ def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
     return float(np.mean(distances > found.threshold))
 
 
-def _referenced(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[ReferencedVariant | None, str]:
+def _referenced(
+    matrix: FeatureMatrix, whole: FeatureMatrix, split: SpecimenSplit, seed: int
+) -> tuple[ReferencedVariant | None, str]:
+    """Return the variant on the features of `matrix` with a distance on those of `whole`, or why there is none."""
     differences, kept = healthy_referenced(matrix)
     part = replace(split, train=split.train[kept], validation=split.validation[kept], test=split.test[kept])
     found = np.unique(differences.labels[CLASS][part.train])
     if found.size < 2 or not part.test.any():
         return None, (
-            "no healthy-referenced variant: it needs healthy records of every specimen at two operating points or in "
-            "two repeats"
+            "no healthy-referenced variant: it needs a second healthy record of every specimen, in another state, "
+            "repeat or operating point"
         )
     classifier = train_classifier(differences, part)
     judged = scores(classifier.predict(differences.rows(part.test)), seed)
-    distance, distances = _distance(differences.values, differences, part)
+    apart = healthy_referenced(whole)[0]
+    distance, distances = _distance(apart.values, apart, part)
     return ReferencedVariant(classifier, distance, judged, distances, part.test), ""
 
 

@@ -1,41 +1,38 @@
-"""How far a record lies from the training records: robust Mahalanobis distance on log features, with a threshold.
+"""How far a record lies from the training records, with a threshold: the larger of the distances of lines and noise.
 
-Few features, since the distance is estimated from few gearboxes: level, shape, mesh lines (what the transfer path
-makes of them), how much is synchronous, and sidebands; not those that damage moves most (FM4 and its like), which would
-make the states clusters. Speed moves all of them and is known, so a straight line in log speed is taken off first.
-Spreads are medians, no feature counts as more than six of them (a line near a node falls without limit in logarithms),
-and the covariance is shrunk (Ledoit & Wolf 2004).
+One part takes what gears and supports decide (levels, mesh lines, first sidebands), the other the noise floor by
+octaves, which path, mounting and sensor decide. Few features each, since distances are estimated from few gearboxes,
+and not those that damage moves most (FM4 and its like), which would make the states clusters. Taken together in one
+covariance the parts would dilute each other.
 
-The threshold comes from held-out gearboxes alone: the validation specimens, and every training specimen left out of the
-fit in turn. Source: standard literature; the rule for the threshold is that of conformal prediction (Vovk 2005), with
-half of the allowed false alarms, since records of one gearbox are alike and the quantile scatters accordingly.
+The threshold comes from held-out gearboxes alone: the validation specimens, and every training specimen left out of
+the fit in turn. It is an upper prediction bound for the record of a new gearbox (see `group_bound`), so that it widens
+where gearboxes are few. Source: derived.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from diagnostics.prediction.distance_part import DistancePart, fit_part, part_facts, part_from_facts
+from diagnostics.prediction.group_bound import group_bound
+from diagnostics.prediction.noise_floor import FLOOR
 from diagnostics.splits import SpecimenSplit
 
-DEFINITIONS = (
-    *("rms", "kurtosis", "crest_factor", "average_rms_pinion", "energy_ratio_pinion"),
+LINES = (
+    *("rms", "average_rms_pinion", "energy_ratio_pinion"),
     *(f"mesh_amplitude_h{h}" for h in range(1, 6)),
-    *(f"sideband_ratio_pinion_h{h}_k3" for h in range(1, 4)),
+    "sideband_ratio_pinion_h1_k3",
 )
-SHARE_INSIDE = 0.975
-"""Share of held-out records that count as like training: half of the 5 % of false alarms that are allowed."""
+SHARE_INSIDE = 0.97
+"""Share of records of new gearboxes that counts as like training: 5 % of false alarms are allowed, of which two fifths
+are kept for what a threshold from few gearboxes misses by."""
 
-SMALLEST_SPREAD = 0.02
-"""Two per cent: differences below the tolerance of a sensor's sensitivity make no machine foreign."""
-
-SMALLEST_SPEED_RANGE = 0.05
-"""Range of log speed below which no line is fitted."""
-
-CLIPPED_AT = 6.0
+SMALLEST_DISTANCE = 1e-6
+"""Keeps the logarithm finite where records are equal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,35 +41,25 @@ class TrainingDistance:
 
     Attributes
     ----------
-    features : tuple of str
-        Columns it takes.
-    centre, slope : (k,) float64
-        Log features at a pinion speed of 1 Hz on the fitted line, and their slope over log speed.
-    spread : (k,) float64
-        Median absolute deviation from the line, times 1.4826.
-    precision : (k, k) float64
-        Inverse covariance of the standardised log features.
+    parts : tuple of DistancePart
+        Whose largest distance counts.
     threshold : float
-        Largest distance that counts as like training; NaN before it is chosen.
+        Largest distance that counts as like training.
     held_out_specimens : int
         How many gearboxes the threshold was chosen on.
     """
 
-    features: tuple[str, ...]
-    centre: np.ndarray
-    slope: np.ndarray
-    spread: np.ndarray
-    precision: np.ndarray
-    threshold: float = np.nan
-    held_out_specimens: int = 0
+    parts: tuple[DistancePart, ...]
+    threshold: float
+    held_out_specimens: int
 
-    def standardised(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
-        """Return how far log features (n, k) lie off the line at speeds (n,) [Hz], in spreads; 0 where undefined."""
-        line = self.centre + np.log(speed_hz)[:, None] * self.slope
-        return np.asarray(np.nan_to_num((logs - line) / self.spread))
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Columns it takes, part by part."""
+        return tuple(name for part in self.parts for name in part.features)
 
     def distance(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
-        """Return the distance of records, (n,), one for a typical training record; undefined features count as typical.
+        """Return the distance of records, (n,); undefined features count as typical.
 
         Parameters
         ----------
@@ -81,87 +68,79 @@ class TrainingDistance:
         speed_hz : (n,) float64
             Mean speed of the pinion.
         """
-        standard = np.clip(self.standardised(logs, speed_hz), -CLIPPED_AT, CLIPPED_AT)
-        return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", standard, self.precision, standard) / logs.shape[1]))
+        return np.asarray(np.max([part.distance(own, speed_hz) for part, own in self._columns(logs)], axis=0))
 
     def strangest(self, logs: np.ndarray, speed_hz: float, count: int = 3) -> list[tuple[str, float]]:
-        """Return the features of one record (k,) farthest off the line, in spreads."""
-        off = self.standardised(logs[None, :], np.array([speed_hz]))[0]
-        return [(self.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
+        """Return the features of one record (k,) farthest off the line, in spreads, of the part farthest off."""
+        speed = np.array([speed_hz])
+        part, own = max(self._columns(logs[None, :]), key=lambda entry: entry[0].distance(entry[1], speed)[0])
+        off = part.standardised(own, speed)[0]
+        return [(part.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
+
+    def _columns(self, logs: np.ndarray) -> list[tuple[DistancePart, np.ndarray]]:
+        ends = np.cumsum([len(part.features) for part in self.parts])
+        return list(zip(self.parts, np.split(logs, ends[:-1], axis=1), strict=True))
 
 
-def distance_features(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the columns that the distance takes, of all channels."""
-    return tuple(name for name in names if name.split("__")[0] in DEFINITIONS)
-
-
-def fit_distance(logs: np.ndarray, speed_hz: np.ndarray, features: tuple[str, ...]) -> TrainingDistance:
-    """Return the distance to records (n, k) at speeds (n,), without a threshold."""
-    from sklearn.covariance import LedoitWolf
-
-    lines = np.array([_line(np.log(speed_hz), column) for column in logs.T])
-    off = logs - lines[:, 0] - np.log(speed_hz)[:, None] * lines[:, 1]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # a feature that is undefined throughout has no median
-        spread = np.nan_to_num(1.4826 * np.nanmedian(np.abs(off), axis=0))
-    spread = np.maximum(spread, SMALLEST_SPREAD)
-    clipped = np.clip(np.nan_to_num(off / spread), -CLIPPED_AT, CLIPPED_AT)
-    covariance = LedoitWolf(assume_centered=True).fit(clipped).covariance_
-    return TrainingDistance(features, lines[:, 0], lines[:, 1], spread, np.linalg.inv(covariance))
-
-
-def _line(log_speed: np.ndarray, column: np.ndarray) -> tuple[float, float]:
-    """Return intercept and slope of the least-squares line through the defined values; level where speeds are alike."""
-    defined = np.isfinite(column)
-    if not defined.any():
-        return 0.0, 0.0
-    x, y = log_speed[defined], column[defined]
-    if np.ptp(x) < SMALLEST_SPEED_RANGE:
-        return float(np.median(y)), 0.0
-    slope = float(np.cov(x, y, bias=True)[0, 1] / np.var(x))
-    return float(y.mean() - slope * x.mean()), slope
+def distance_features(names: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """Return the columns that each part of the distance takes, of all channels."""
+    lines = tuple(name for name in names if name.split("__")[0] in LINES)
+    floor = tuple(name for name in names if name.startswith(FLOOR))
+    return tuple(part for part in (lines, floor) if part)
 
 
 def calibrated_distance(
-    logs: np.ndarray, speed_hz: np.ndarray, features: tuple[str, ...], split: SpecimenSplit, specimen: np.ndarray
+    logs: np.ndarray,
+    speed_hz: np.ndarray,
+    parts: tuple[tuple[str, ...], ...],
+    split: SpecimenSplit,
+    specimen: np.ndarray,
 ) -> TrainingDistance:
     """Return the distance to the training specimens with the threshold of the held-out ones; test is not touched.
 
     Parameters
     ----------
     logs : (records, k) float64
-        Log features of all records.
+        Log features of all records, part by part.
     speed_hz : (records,) float64
         Their mean pinion speed.
-    features : tuple of str
-        Their names.
+    parts : tuple of tuple of str
+        Names of the features of each part.
     split : SpecimenSplit
         Whose specimens are which.
     specimen : (records,) int
         Specimen of every record.
     """
-    found = fit_distance(logs[split.train], speed_hz[split.train], features)
-    held_out = found.distance(logs, speed_hz)  # of the validation specimens so far
+    used = split.train | split.validation
+    ends = np.cumsum([len(part) for part in parts])
+    fitted, farthest = [], np.zeros(len(logs))
+    for names, own in zip(parts, np.split(logs, ends[:-1], axis=1), strict=True):
+        part = fit_part(own[split.train], speed_hz[split.train], names)
+        held_out = _held_out(part, own, speed_hz, split, specimen)
+        typical = max(float(np.median(held_out[used])), SMALLEST_DISTANCE)
+        fitted.append(replace(part, typical=typical))
+        farthest = np.maximum(farthest, held_out / typical)
+    bound = group_bound(np.log(np.maximum(farthest[used], SMALLEST_DISTANCE)), specimen[used], SHARE_INSIDE)
+    return TrainingDistance(tuple(fitted), float(np.exp(bound)), int(np.unique(specimen[used]).size))
+
+
+def _held_out(
+    part: DistancePart, logs: np.ndarray, speed_hz: np.ndarray, split: SpecimenSplit, specimen: np.ndarray
+) -> np.ndarray:
+    """Return the distance of all records, of those of a training specimen from a fit without it."""
+    found = part.distance(logs, speed_hz)
     trained = np.unique(specimen[split.train])
     for number in trained if trained.size > 2 else ():
         own = split.train & (specimen == number)
         others = split.train & ~own
-        left = fit_distance(logs[others], speed_hz[others], features)
-        held_out[own] = left.distance(logs[own], speed_hz[own])
-    used = split.train | split.validation
-    ordered = np.sort(held_out[used])
-    rank = min(int(np.ceil(SHARE_INSIDE * (ordered.size + 1))), ordered.size)
-    return replace(found, threshold=float(ordered[rank - 1]), held_out_specimens=int(np.unique(specimen[used]).size))
+        found[own] = fit_part(logs[others], speed_hz[others], part.features).distance(logs[own], speed_hz[own])
+    return found
 
 
 def distance_facts(found: TrainingDistance) -> dict[str, Any]:
     """Return the distance as JSON can hold it."""
     return {
-        "features": list(found.features),
-        "centre": found.centre.tolist(),
-        "slope": found.slope.tolist(),
-        "spread": found.spread.tolist(),
-        "precision": found.precision.tolist(),
+        "parts": [part_facts(part) for part in found.parts],
         "threshold": found.threshold,
         "held_out_specimens": found.held_out_specimens,
     }
@@ -175,14 +154,5 @@ def distance_from_facts(facts: dict[str, Any]) -> TrainingDistance:
     ValueError, KeyError
         If shapes do not fit or something is missing.
     """
-    features, size = tuple(facts["features"]), len(facts["features"])
-    arrays = {name: np.asarray(facts[name], dtype=np.float64) for name in ("centre", "slope", "spread", "precision")}
-    for name, array in arrays.items():
-        if array.shape != ((size, size) if name == "precision" else (size,)):
-            raise ValueError(f"distance: {size} features, but {name} has shape {array.shape}")
-    return TrainingDistance(
-        features,
-        **arrays,
-        threshold=float(facts["threshold"]),
-        held_out_specimens=int(facts["held_out_specimens"]),
-    )
+    parts = tuple(part_from_facts(part) for part in facts["parts"])
+    return TrainingDistance(parts, float(facts["threshold"]), int(facts["held_out_specimens"]))

@@ -15,13 +15,11 @@ import pytest
 
 from diagnostics.calibration import tempered
 from diagnostics.cli.app import main
-from diagnostics.feature_table import feature_matrix, feature_table
 from diagnostics.network_training import NetworkOptions
-from diagnostics.prediction.log_features import healthy_referenced
+from diagnostics.prediction.distance_part import fit_part
 from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
-from diagnostics.prediction.training_distance import fit_distance
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.training import save_models, train_models
 from siggen.dataset.manifest import sealed
@@ -126,33 +124,17 @@ def test_the_digest_is_the_one_that_the_manifest_carries() -> None:
     assert manifest_digest(manifest) == json.loads(sealed(manifest))["digest"]
 
 
-def test_a_healthy_record_is_never_its_own_reference(dataset: Any) -> None:
-    matrix = feature_matrix(feature_table(dataset, splits=("test",)))
-    assert not healthy_referenced(matrix)[1].any()  # one operating point, one repeat: nothing to compare with
-    rows = np.arange(len(matrix.values))
-    matrix.labels["operating_point_id"] = rows % 2  # states of a specimen now stand at two operating points
-    found, kept = healthy_referenced(matrix)
-    healthy = matrix.labels["state"] == "healthy"
-    assert not kept[healthy].any()
-    other = [
-        matrix.labels["operating_point_id"][(matrix.labels["specimen_id"] == s) & healthy][0] != k % 2
-        for k, s in enumerate(matrix.labels["specimen_id"])
-    ]
-    np.testing.assert_array_equal(kept, other)
-    assert found.values.shape[0] == kept.sum()
-
-
 def test_distance_is_one_for_typical_records_whatever_the_speed_and_grows_off_them() -> None:
     rng = np.random.default_rng(4)
     speed = rng.uniform(10.0, 40.0, 2000)
     mixing = rng.standard_normal((5, 5))
     logs = rng.standard_normal((2000, 5)) @ mixing + 2.0 * np.log(speed)[:, None]
-    found = fit_distance(logs, speed, ("a", "b", "c", "d", "e"))
+    found = fit_part(logs, speed, ("a", "b", "c", "d", "e"))
     # mean square of five unit Gaussians over five is one; clipping and the MAD leave a few per cent
     assert np.mean(found.distance(logs, speed) ** 2) == pytest.approx(1.0, rel=0.1)
     shifted = logs + 3.0 * mixing[0]
     assert np.median(found.distance(shifted, speed)) > 1.5
-    level = fit_distance(np.c_[logs[:, :1], np.full(2000, np.nan)], speed, ("a", "undefined"))
+    level = fit_part(np.c_[logs[:, :1], np.full(2000, np.nan)], speed, ("a", "undefined"))
     assert np.isfinite(level.distance(np.c_[logs[:, :1], np.full(2000, np.nan)], speed)).all()
 
 

@@ -1,0 +1,184 @@
+"""Healthy references: which records of a set serve, and what `predict --reference` makes of files."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+from scipy.signal import resample_poly
+
+from diagnostics.cli.app import main
+from diagnostics.feature_table import FeatureMatrix, feature_table
+from diagnostics.network_training import NetworkOptions
+from diagnostics.prediction.log_features import healthy_referenced, healthy_references, reference_speed_ratio
+from diagnostics.training import save_models, train_models
+
+FS_HZ = 12_800
+
+
+def labels(*rows: tuple[str, int, int]) -> dict[str, np.ndarray]:
+    """Return the labels of one specimen from (state, operating point, repeat)."""
+    states, points, repeats = zip(*rows, strict=True)
+    return {
+        "record_id": np.arange(len(rows)), "specimen_id": np.zeros(len(rows), dtype=int),
+        "state": np.array(states), "state_id": np.array([("healthy", "again", "severe").index(s) for s in states]),
+        "fault": np.array(["pitting" if s == "severe" else "healthy" for s in states]),
+        "operating_point_id": np.array(points), "repeat": np.array(repeats), "speed_hz": 30.0 + np.array(points),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        (("healthy", 0, 0), ("again", 0, 0), ("severe", 0, 0)),  # another state
+        (("healthy", 0, 0), ("healthy", 0, 1), ("severe", 0, 0), ("severe", 0, 1)),  # another repeat
+        (("healthy", 0, 0), ("healthy", 1, 0), ("severe", 0, 0), ("severe", 1, 0)),  # another operating point
+        (("healthy", 0, 0), ("again", 0, 0), ("healthy", 1, 0), ("again", 1, 0), ("severe", 0, 0), ("severe", 1, 0)),
+    ],
+)
+def test_damaged_records_have_as_many_and_as_near_references_as_healthy_ones(rows: Any) -> None:
+    found = healthy_references(labels(*rows))
+    places = {"healthy": set(), "severe": set()}  # type: dict[str, set[tuple[tuple[bool, bool], ...]]]
+    for own, others in zip(rows, found, strict=True):
+        near = tuple(sorted((rows[k][1] == own[1], rows[k][2] == own[2]) for k in others))
+        places["severe" if own[0] == "severe" else "healthy"].add(near)
+        assert all(rows[k][0] != "severe" for k in others)
+        assert rows.index(own) not in others
+    assert places["severe"] == places["healthy"]
+    assert all(found[k].size for k in range(len(rows)))
+
+
+def test_a_damaged_record_without_a_healthy_twin_refers_to_nothing() -> None:
+    found = healthy_references(labels(("healthy", 0, 0), ("again", 0, 0), ("severe", 1, 0)))
+    assert [rows.tolist() for rows in found] == [[1], [0], []]
+
+
+def test_a_single_healthy_record_serves_nobody() -> None:
+    found = labels(("healthy", 0, 0), ("severe", 0, 0))
+    assert [rows.size for rows in healthy_references(found)] == [0, 0]
+    assert np.isnan(reference_speed_ratio(found))
+
+
+def test_differences_are_logarithms_minus_the_mean_over_the_references() -> None:
+    values = np.array([[2.0], [8.0], [32.0]])
+    found, kept = healthy_referenced(
+        FeatureMatrix(values, ("rms__a",), labels(("healthy", 0, 0), ("again", 0, 0), ("severe", 0, 0)))
+    )
+    assert kept.all()
+    np.testing.assert_allclose(found.values[:, 0], np.log([2 / 8, 8 / 2, 32 / 8]))
+
+
+def test_speed_ratio_is_the_largest_between_a_record_and_its_references() -> None:
+    rows = (("healthy", 0, 0), ("healthy", 3, 0), ("severe", 0, 0), ("severe", 3, 0))
+    assert reference_speed_ratio(labels(*rows)) == pytest.approx(33.0 / 30.0)
+
+
+@pytest.fixture(scope="module")
+def measured(make_dataset: Callable[..., Any]) -> Any:
+    """Return 24 specimens measured twice; the second repeat follows the first one."""
+    splits = ("train",) * 16 + ("validation",) * 4 + ("test",) * 4
+    first, second = make_dataset(splits, seed=5), make_dataset(splits, seed=6)
+    again = second.table
+    changed = {"repeat": 1, "record_id": pa.array(np.arange(72) + 72)}
+    for name, value in changed.items():
+        column = value if isinstance(value, pa.Array) else pa.array([value] * 72)
+        again = again.set_column(again.schema.get_field_index(name), name, column)
+    first.table = pa.concat_tables([first.table, again])
+    return first
+
+
+@pytest.fixture(scope="module")
+def trained(measured: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Return the folder of the models and a Parquet file with records of another seed: rows 0 to 2 are one gearbox."""
+    folder = tmp_path_factory.mktemp("referenced")
+    table = feature_table(measured)
+    save_models(train_models(measured, table, 0, network=NetworkOptions(cnn=False)), table, measured, folder)
+    return folder, folder / "other.parquet"
+
+
+@pytest.fixture(scope="module")
+def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
+    """Return two gearboxes that nobody trained on, three states each, written as one record per row."""
+    found = make_dataset(("test",) * 2, seed=11)
+    parquet.write_table(found.table, trained[1])
+    return found
+
+
+def predict(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, file: Path, out: Path, *more: str
+) -> tuple[int, dict[str, Any]]:
+    arguments = ("--fs", str(FS_HZ), "--teeth", "18,47", "--speed-range", "20,50", "--out", str(out), *more)
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), str(file), *arguments])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    page = out / "prediction.json"
+    return int(stop.value.code or 0), json.loads(page.read_text()) if page.is_file() else {}
+
+
+def channels(dataset: Any, row: int, ratio: tuple[int, int] = (1, 1)) -> dict[str, np.ndarray]:
+    names = ("bearing_vertical", "bearing_horizontal")
+    return {name: resample_poly(dataset.record(row)[f"accel_{name}_m_s2"], *ratio) for name in names}
+
+
+def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert other.table.num_rows == 6
+    folder, file = trained
+    code, found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", f"{file}:0,3")
+    assert code == 0
+    assert found["state"] == "severe"
+    assert list(found["probabilities"]) == ["healthy_referenced"]
+    assert found["distance"] != found["distance_without_reference"]
+    code, healthy = predict(monkeypatch, folder, file, tmp_path, "--row", "3", "--reference", f"{file}:0")
+    assert code == 0
+    assert healthy["state"] == "healthy"
+
+
+def test_references_at_another_rate_are_brought_to_that_of_the_model(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, file = trained
+    np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)))
+    reference = ("--reference", str(tmp_path / "fast.npz"), "--reference-fs", str(2 * FS_HZ))
+    code, found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)
+    assert code == 0
+    assert found["state"] == "severe"
+    slow_range = ("--reference", f"{file}:0")
+    same = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *slow_range)[1]
+    # the way up and down again costs what the two filters leave out near half the rate
+    near = found["probabilities"]["healthy_referenced"]["severe"]
+    assert near == pytest.approx(same["probabilities"]["healthy_referenced"]["severe"], abs=0.05)
+
+
+def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, file = trained
+    np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)))
+    reference = ("--reference", str(tmp_path / "slow.npz"), "--reference-fs", str(FS_HZ * 3 // 4))
+    found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)[1]
+    assert found["state"] == "abstains"
+    assert any(text.startswith("reference slow.npz: sampled at 9600 Hz") for text in found["reasons_to_abstain"])
+    np.savez(tmp_path / "hurried.npz", **channels(other, 0, (5, 6)))  # read at the old rate: 6/5 of the speed
+    found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(tmp_path / "hurried.npz"))[1]
+    assert found["state"] == "abstains"
+    assert any("reference hurried.npz: pinion speed of 36" in text for text in found["reasons_to_abstain"])
+
+
+def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    assert other.table.num_rows == 6
+    folder, file = trained
+    for said, message in ((file, "--reference FILE:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
+        assert predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(said))[0] == 2
+        assert message in "".join(capsys.readouterr().err.split("\n")).replace("  ", " ")
