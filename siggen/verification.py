@@ -224,8 +224,12 @@ def _internal_difference(dataset: Dataset, record_id: int, result: ChunkResult, 
     if stored is None or again is None:
         return "" if stored is again else "its internal quantities are stored but not asked for, or missing"
     for name, now in again.items():
-        largest = float(np.abs(stored[name].astype(float) - now).max())
-        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(now).max())
+        before, after = stored[name].astype(float), now.astype(float)
+        apart = np.isnan(after)  # pairs that do not touch
+        if (np.isnan(before) != apart).any():
+            return f"internal quantity {name} differs in where it is NaN"
+        largest = float(np.abs(before - after)[~apart].max(initial=0.0))
+        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(after[~apart]).max(initial=0.0))
         if largest > tolerance or (exact and stored[name].tobytes() != now.tobytes()):
             return f"internal quantity {name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
     return ""
