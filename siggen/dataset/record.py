@@ -13,7 +13,7 @@ from siggen.dataset.column import DECIBEL, HERTZ, MILLIMETRE, Column
 from siggen.dataset.instrument_columns import instrument_columns
 from siggen.dataset.manufacture_columns import manufacture_columns
 from siggen.dynamics.contact_names import is_of_contact_alone
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, counted
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -312,14 +312,14 @@ def non_finite(record: Record) -> str:
     """
     for name, signal in record.channels.items():
         if not np.isfinite(signal).all():
-            return f"channel {name} has {int((~np.isfinite(signal)).sum())} values that are not finite"
+            return f"channel {name} has {counted(int((~np.isfinite(signal)).sum()), 'value')} not finite"
     for name, label in record.labels.items():
         if isinstance(label, float) and np.isnan(label):
             return f"label {name} is NaN"
     for name, values in (record.internals or {}).items():
         bad = np.isinf(values) if is_of_contact_alone(name) else ~np.isfinite(values)
         if bad.any():
-            return f"internal quantity {name} has {int(bad.sum())} values that are not finite"
+            return f"internal quantity {name} has {counted(int(bad.sum()), 'value')} not finite"
     return "" if np.isfinite(record.tacho_s).all() else "tacho_s is not finite"
 
 

@@ -187,7 +187,7 @@ def simulate_nan(config, record_ids):
 def test_a_quantity_that_is_not_a_number_fails_its_record(tmp_path: Path) -> None:
     generation = write_fake_set(tmp_path, config(), simulation=simulate_nan)
     assert {failure.status for failure in generation.failures} == {"not_finite"}
-    assert "internal quantity mesh_force_n has 1 values" in generation.failures[0].reason
+    assert "internal quantity mesh_force_n has 1 value not finite" in generation.failures[0].reason
 
 
 def simulate_without(config, record_ids):
