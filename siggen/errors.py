@@ -13,6 +13,11 @@ EXIT_MISMATCH = 4
 EXIT_INTERRUPTED = 130
 
 
+def counted(count: int, one: str, many: str = "") -> str:
+    """Return a count with its noun for a message: "1 record", "2 records"; `many` where it is not `one` with an s."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
 class SiggenError(Exception):
     """Base of every error with a message meant for the user; `exit_code` is what a command returns."""
 
@@ -40,9 +45,9 @@ class ConfigError(SiggenError):
     def __init__(self, problems: Sequence[Problem], source: str = "configuration") -> None:
         self.problems = tuple(sorted(problems, key=lambda p: p.path))
         self.source = source
-        count = len(self.problems)
-        head = f"{source}: {count} problem{'s' if count != 1 else ''}"
-        super().__init__("\n".join([head, *(f"  {p}" for p in self.problems)]))
+        super().__init__(
+            "\n".join([f"{source}: {counted(len(self.problems), 'problem')}", *(f"  {p}" for p in self.problems)])
+        )
 
 
 class UsageError(SiggenError):

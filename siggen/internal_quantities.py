@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from siggen.config import constant
 from siggen.dataset.record import Column
 from siggen.dataset.specimen import Specimen
+from siggen.dynamics.contact_names import is_of_contact_alone
 from siggen.dynamics.response import Response
 from siggen.quantity_names import acceleration_name, bearing_force_name
 
@@ -23,9 +24,11 @@ MEANINGS = {
     "mesh_force_n": "force of all tooth pairs along the line of action, positive on the drive flank",
     "mesh_stiffness_n_per_m": "sum of the stiffnesses of the pairs in contact",
     "mesh_damping_n_s_per_m": "damping of the pairs in contact",
-    "approach_m": "approach of the flanks along the line of action",
+    "approach_m": "R_b1 theta_1 - R_b2 theta_2 and the gears' shifts along the line of action; 0 in the middle of the "
+    "backlash (mesh law linear) or where perfect drive flanks touch (pairs)",
     "approach_rate_m_s": "rate of the approach",
-    "transmission_error_m": "dynamic transmission error on the line of action, positive when the drive flanks press",
+    "transmission_error_m": "dynamic transmission error on the line of action, shifts of the gears included: "
+    "approach_m beyond the backlash it closed (mesh law linear), approach_m itself (pairs)",
     "friction_force_n": "friction of all pairs across the line of action",
     "friction_moment_pinion_nm": "moment of the friction about the pinion's axis",
     "friction_moment_gear_nm": "moment of the friction about the gear's axis",
@@ -49,13 +52,18 @@ def quantity_column(name: str) -> Column:
     import pyarrow as pa
 
     unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
-    return Column(name, pa.float32(), unit, MEANINGS.get(name) or name.replace("_", " "))
+    meaning = MEANINGS.get(name) or name.replace("_", " ")
+    if is_of_contact_alone(name):
+        meaning += "; NaN while the pair does not touch on its drive flank"
+    return Column(name, pa.float32(), unit, meaning)
 
 
 def _transmission_error(approach_m: FloatArray, specimen: Specimen) -> FloatArray:
     """Return the dynamic transmission error on the line of action: the approach beyond the backlash that it closed.
 
-    The linear mesh law counts the approach from the middle of the backlash, tooth pairs from the touching drive flank.
+    x_m = R_b1 θ_1 - R_b2 θ_2 + y_1 - y_2, with what bearings give way along the line of action (reference: standard
+    literature). The linear mesh law counts the approach from the middle of the backlash, tooth pairs from the touching
+    drive flank: there both are one quantity.
     """
     if specimen.dynamics.mesh.law == "pairs":
         return approach_m

@@ -26,6 +26,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.quantity_names import quantity_problems
 
     is_file = isinstance(source, (str, Path))
+    read_from = (str(source) if is_file else "configuration") + (" with overrides" if overrides else "")
     raw = read_yaml(source) if isinstance(source, (str, Path)) else source
     folder = Path(source).parent if isinstance(source, (str, Path)) else Path()
     filled, unread = with_measured_responses(apply_overrides(raw, overrides), folder)
@@ -34,5 +35,5 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
-        raise ConfigError(problems, str(source) if is_file else "configuration")
+        raise ConfigError(problems, read_from)
     return parsed.config

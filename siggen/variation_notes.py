@@ -50,7 +50,8 @@ def _reversals(config: Config) -> Iterator[str]:
     ):
         least = 1.0 - slow - bounds(number)[1]
         if least < 0.0:
-            yield f"{body} torque falls to {100.0 * least:.3g} % of its mean: {then}, and teeth may part or change flanks"
+            fall = f"{body} torque falls to {100.0 * least:.3g} % of its mean"
+            yield f"{fall}: {then}, and teeth may part or change flanks"
 
 
 def _forces(config: Config) -> Iterator[str]:

@@ -23,7 +23,7 @@ from siggen.dataset.storage import LocalFolder, Storage, sha256
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
 from siggen.engines.serial import SerialEngine
-from siggen.errors import ConfigError, DatasetError, VerificationError
+from siggen.errors import ConfigError, DatasetError, VerificationError, counted
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -207,7 +207,7 @@ def _difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, A
         if isinstance(before, np.ndarray):
             tolerance = steps.get(name, 0.0 if exact else PULSE_TOLERANCE_S)
             if before.shape != now.shape:
-                return f"{name} has {len(now)} values instead of {len(before)}"
+                return f"{name} has {counted(len(now), 'value')} instead of {len(before)}"
             largest = float(np.max(np.abs(before.astype(float) - now), initial=0.0))
             if largest > tolerance or (exact and before.tobytes() != now.tobytes()):
                 return f"{name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
@@ -224,8 +224,12 @@ def _internal_difference(dataset: Dataset, record_id: int, result: ChunkResult, 
     if stored is None or again is None:
         return "" if stored is again else "its internal quantities are stored but not asked for, or missing"
     for name, now in again.items():
-        largest = float(np.abs(stored[name].astype(float) - now).max())
-        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(now).max())
+        before, after = stored[name].astype(float), now.astype(float)
+        apart = np.isnan(after)  # pairs that do not touch
+        if (np.isnan(before) != apart).any():
+            return f"internal quantity {name} differs in where it is NaN"
+        largest = float(np.abs(before - after)[~apart].max(initial=0.0))
+        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(after[~apart]).max(initial=0.0))
         if largest > tolerance or (exact and stored[name].tobytes() != now.tobytes()):
             return f"internal quantity {name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
     return ""

@@ -14,7 +14,7 @@ import pytest
 
 from siggen.dataset.manifest import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX
-from siggen.errors import EXIT_INTERRUPTED, EngineError
+from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
 from siggen.generation import InterruptionError, generate
 from tests.dataset.fake_set import (
     damage_rows,
@@ -171,3 +171,19 @@ def test_the_writers_memory_does_not_grow_with_the_set(tmp_path: Path) -> None:
     # window of 8 chunks (8 to 16 MB each, twice while a pipe is read) over an interpreter with pyarrow of about 110 MB
     assert peaks[1] < 250e6
     assert peaks[1] - peaks[0] < 60e6
+
+
+def test_a_disk_that_takes_no_more_stops_with_what_to_do_and_the_rest_is_made_later(
+    tmp_path: Path, reference: dict[str, bytes]
+) -> None:
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    largest = max(len(content) for name, content in reference.items() if name.startswith("data/"))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest - 1, before[1]))
+    try:
+        with pytest.raises(DatasetError, match="File too large; finished shards stay, and the same command continues"):
+            write_fake_set(tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    write_fake_set(tmp_path)
+    assert_complete(tmp_path, reference)

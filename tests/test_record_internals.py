@@ -9,10 +9,14 @@ import pytest
 
 from siggen.config import parse, parse_yaml
 from siggen.dataset.record import Record
+from siggen.dataset.specimen import draw_specimen
+from siggen.dynamics.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
 from siggen.loading import load_config
 from siggen.record_internals import internals_table, stored_quantities
 from siggen.simulation import simulate
+from siggen.specimen_physics import gear_pair
+from siggen.specimen_structure import structure
 
 SHORT = ["duration_s=0.05", "specimens=2"]
 
@@ -75,3 +79,34 @@ def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_st
     parsed = parse(parse_yaml(Path("configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n"))
     with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_c_m'"):
         stored_quantities(parsed.config)
+
+
+def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothing() -> None:
+    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    (record,) = simulate(config, [config.records_per_specimen - 1])
+    force = record.internals["pair_0_force_n"]
+    assert 0.1 < np.mean(force == 0.0) < 0.9  # a pair is in contact for 1.6 of 2 pitches
+    for name in OF_CONTACT_ALONE:
+        np.testing.assert_array_equal(np.isnan(record.internals[f"pair_0_{name}"]), force == 0.0)
+    meanings = {column.name: column.meaning for column in stored_quantities(config)}
+    assert {name for name in meanings if "NaN" in meanings[name]} == {
+        f"pair_{pair}_{name}" for pair in (0, 1) for name in OF_CONTACT_ALONE
+    }
+
+
+def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_gears() -> None:
+    config = load_config("configs/paper_b.yaml", SHORT)
+    specimen = draw_specimen(config, 0)
+    table = internals_table(config, 0)
+    pair = gear_pair(specimen.gears)
+    assembled = structure(specimen.dynamics, pair, specimen.sensors)
+    lengths = dict(zip(assembled.coordinates, assembled.mesh_vector, strict=True))
+    assert lengths["theta_1"] == pytest.approx(pair.pinion.base_radius_m)
+    assert lengths["theta_2"] == pytest.approx(-pair.gear.base_radius_m)
+    columns = {name: next(c for c in table.column_names if c.startswith(f"{name}_")) for name in lengths}
+    moved = sum(length * table[columns[name]].to_numpy() for name, length in lengths.items())
+    # Micrometres as the difference of rotations whose rounding is that of their size.
+    np.testing.assert_allclose(table["transmission_error_m"].to_numpy(), moved, atol=1e-12)
+    np.testing.assert_array_equal(table["transmission_error_m"].to_numpy(), table["approach_m"].to_numpy())
+    turned = sum(lengths[name] * table[columns[name]].to_numpy() for name in ("theta_1", "theta_2"))
+    assert np.abs(turned - moved).max() > 1e-7  # bearings give way

@@ -86,18 +86,21 @@ def _progress() -> Iterator[Callable[[int, int], None] | None]:
 
 def _report(generation: Generation) -> None:
     """Say on stderr what was done and what failed."""
+    from siggen.errors import counted
+
     if generation.was_finished:
         typer.echo(
             f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)", err=True
         )
     else:
         rate = generation.records_made / generation.seconds
-        taken_over = f", {generation.shards_taken_over} shards were there" if generation.shards_taken_over else ""
-        made = f"{generation.records_made} records in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
-        typer.echo(f"{generation.rows} records in the set; this run: {made}", err=True)
+        taken = generation.shards_taken_over
+        taken_over = f", {counted(taken, 'shard was', 'shards were')} there" if taken else ""
+        made = f"{counted(generation.records_made, 'record')} in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
+        typer.echo(f"{counted(generation.rows, 'record')} in the set; this run: {made}", err=True)
     for failure in generation.failures[:LISTED_FAILURES]:
         typer.echo(f"record {failure.record_id} failed: {failure.status} ({failure.reason})", err=True)
     if generation.failures:
-        count = len(generation.failures)
+        failed = counted(len(generation.failures), "record")
         verdict = "the set is usable" if generation.rows else "the set has no rows"
-        typer.echo(f"{count} records could not be simulated; {verdict}, manifest.json lists them", err=True)
+        typer.echo(f"{failed} could not be simulated; {verdict}, manifest.json names what failed", err=True)

@@ -121,6 +121,8 @@ def _severity_shares(config: Config) -> dict[str, float]:
 def _overview(summary: dict[str, Any]) -> Table:
     from rich.table import Table
 
+    from siggen.errors import counted
+
     table = Table(title=f"Plan of {summary['name']}", show_header=False, title_justify="left")
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
@@ -135,7 +137,7 @@ def _overview(summary: dict[str, Any]) -> Table:
         "class balance": ", ".join(f"{name} {share:.0%}" for name, share in summary["severity_share"].items()),
         "errors of the teeth": summary["manufacture"],
         "shards": f"{sum(summary['shards_of_split'].values())}  ({_per_split(summary['shards_of_split'])}), "
-        f"{summary['specimens_per_full_shard']} gearboxes in a full one",
+        f"{counted(summary['specimens_per_full_shard'], 'gearbox', 'gearboxes')} in a full one",
         "size on disk": f"about {_megabytes(summary['estimated_bytes_on_disk'])}",
         "size of signals": _megabytes(summary["raw_bytes"]),
     }

@@ -18,11 +18,11 @@ def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config
     UsageError
         If it has no such record.
     """
-    from siggen.errors import UsageError
+    from siggen.errors import UsageError, counted
     from siggen.loading import load_config
 
     config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
     count = config.specimens * config.records_per_specimen
     if record >= count:
-        raise UsageError(f"--record {record}: {source} has {count} records, 0 to {count - 1}")
+        raise UsageError(f"--record {record}: {source} has {counted(count, 'record')}, 0 to {count - 1}")
     return config

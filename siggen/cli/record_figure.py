@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from siggen.cli.picture_file import save_figure
+from siggen.errors import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +52,9 @@ def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> 
 
 
 def _title(record: Mapping[str, Any], channel: Channel) -> str:
-    damage = f"{record['damage_count']} damages on {record['faulty_gear']}, {record['damaged_area_mm2']:.3g} mm²"
+    damage = (
+        f"{counted(record['damage_count'], 'damage')} on {record['faulty_gear']}, {record['damaged_area_mm2']:.3g} mm²"
+    )
     return (
         f"record {record['record_id']} ({record['split']}): {record['state']} "
         f"({record['fault']}, {record['severity']}; {damage})\n"

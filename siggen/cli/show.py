@@ -55,6 +55,8 @@ def _channel(dataset: Dataset, name: str | None) -> Channel:
 def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
     from rich.table import Table
 
+    from siggen.errors import counted
+
     table = Table(
         "label", "value", "unit", title=f"Record {record['record_id']} of {dataset.path}", title_justify="left"
     )
@@ -65,8 +67,8 @@ def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
     for channel in dataset.channels:
         signal = record[channel.column]
         rms, peak = float((signal.astype(float) ** 2).mean() ** 0.5), float(abs(signal).max())
-        table.add_row(channel.column, f"{len(signal)} samples, RMS {rms:.4g}, peak {peak:.4g}", channel.unit)
-    table.add_row("tacho_s", f"{len(record['tacho_s'])} pulses", "s")
+        table.add_row(channel.column, f"{counted(len(signal), 'sample')}, RMS {rms:.4g}, peak {peak:.4g}", channel.unit)
+    table.add_row("tacho_s", counted(len(record["tacho_s"]), "pulse"), "s")
     return table
 
 

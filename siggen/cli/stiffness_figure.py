@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["check_picture_file", "save_stiffness_figure", "stiffness_figure"]
 
+COLOURS, DASHES = 10, ("-", "--", ":")
+"""Each ten states have a dash of their own, so that no two of thirty look alike."""
 SHADES = {"pinion": "Blues", "gear": "Greens"}
 
 
@@ -35,10 +37,12 @@ def stiffness_figure(curves: Sequence[StiffnessCurve], *, parts: bool = False) -
     reference = curves[0]
     for depth, curve in enumerate(curves):  # milder states lie on top: where curves agree, the mildest is seen
         degrees = np.degrees(curve.angle_rad)
-        above.plot(degrees, curve.mesh_stiffness_n_per_m / 1e8, label=curve.state, lw=1.2, zorder=9 - depth)
+        style: dict[str, Any] = {"color": f"C{depth % COLOURS}", "ls": DASHES[depth // COLOURS % len(DASHES)]}
+        style |= {"lw": 1.2, "zorder": 2 + len(curves) - depth}
+        above.plot(degrees, curve.mesh_stiffness_n_per_m / 1e8, label=curve.state, **style)
         if curve is not reference:
             loss = 1.0 - curve.mesh_stiffness_n_per_m / reference.mesh_stiffness_n_per_m
-            below.plot(degrees, 100.0 * loss, lw=1.2, zorder=9 - depth, color=above.lines[-1].get_color())
+            below.plot(degrees, 100.0 * loss, **style)
     above.set_ylabel("mesh stiffness [10⁸ N/m]")
     figure.legend(
         *above.get_legend_handles_labels(), loc="outside upper center", frameon=False, ncols=min(len(curves), 5)

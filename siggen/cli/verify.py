@@ -22,7 +22,7 @@ def verify(
     import json
     from dataclasses import asdict
 
-    from siggen.errors import EXIT_MISMATCH
+    from siggen.errors import EXIT_MISMATCH, counted
     from siggen.verification import problem_lines
     from siggen.verification import verify as verify_set
 
@@ -30,8 +30,8 @@ def verify(
     if as_json:
         typer.echo(json.dumps({**asdict(found), "ok": not found.mismatches}, indent=2))
     else:
-        typer.echo(f"{found.path}: {found.files} files, {found.bytes / 1e6:.1f} MB")
-        records = f"{len(found.records)} records simulated again, compared {found.comparison}"
+        typer.echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
+        records = f"{counted(len(found.records), 'record')} simulated again, compared {found.comparison}"
         typer.echo(records if found.records else f"records simulated again: {found.comparison}")
         for line in problem_lines(found.mismatches):
             typer.echo(line, err=True)

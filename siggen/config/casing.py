@@ -11,10 +11,8 @@ from pydantic import Field, model_validator
 
 from siggen.config.number import Number, Within
 from siggen.config.problems import refusal
-from siggen.config.section import Real, Section
+from siggen.config.section import Position, Section
 from siggen.errors import Problem
-
-Position = tuple[Real, Real]
 
 
 class Bolts(Section):

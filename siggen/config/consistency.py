@@ -43,7 +43,7 @@ def _sample_count(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
         return
     samples = sections["fs_hz"] * sections["duration_s"]
     if round(samples) < 2 or not math.isclose(samples, round(samples), rel_tol=1e-9):
-        received = f"{sections['duration_s']} s at {sections['fs_hz']} Hz = {samples} samples"
+        received = f"{sections['duration_s']} s at {sections['fs_hz']} Hz = {samples:.10g} samples"
         yield Problem("duration_s", received, "allowed: a whole number of at least 2 samples")
 
 

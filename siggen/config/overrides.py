@@ -76,7 +76,8 @@ def _put(place: Any, part: str, value: Any, path: str) -> None:
 
 def _index(place: list[Any], part: str, path: str) -> int:
     if not (part.isascii() and part.isdigit() and int(part) < len(place)):
-        raise _Astray(f"'{part}' as an entry of {path}", f"allowed: an index from 0 to {len(place) - 1}")
+        allowed = f"an index from 0 to {len(place) - 1}" if place else "the whole list, which is empty so far"
+        raise _Astray(f"'{part}' as an entry of {path}", f"allowed: {allowed}")
     return int(part)
 
 

@@ -15,6 +15,8 @@ from siggen.errors import Problem
 
 REFUSAL = "refusal"
 MISSING = "nothing"
+SHOWN_NUMBERS = 4
+"""Lists of up to as many numbers are shown as they came."""
 
 BRANCHES = frozenset({"layered", "clustered", "spall", "list", "noise_floor", "noise_ratio", "modal", "measured"})
 """Tags by which pydantic names the branch of a union it took; no key of the file has such a name (tested)."""
@@ -34,7 +36,9 @@ def received_text(value: object) -> str:
         case Mapping():
             return f"a mapping with {_listed([str(key) for key in value])}" if value else "an empty mapping"
         case list() | tuple():
-            return f"a list of {len(value)}"
+            numbers = all(isinstance(entry, (int, float)) and not isinstance(entry, bool) for entry in value)
+            shown = f", {list(value)}" if numbers and 0 < len(value) <= SHOWN_NUMBERS else ""
+            return f"a list of {len(value)}{shown}"
         case _:
             return _shortened(repr(value))
 
@@ -97,11 +101,14 @@ def _translated(model: type[BaseModel], location: Location, error: ErrorDetails)
         case "union_tag_invalid":
             received = received_text(error["input"].get("kind"))
             return [Problem(joined(path, "kind"), received, f"allowed: one of {_kinds_at(model, location)}")]
-        case "missing":
+        case "missing" if not isinstance(location[-1], int):
             return [missing_key(path, _field_at(model, location))]
+        case "missing":  # one of the numbers of a place: the place is wrong
+            location, path = location[:-1], path.rpartition(".")[0]
         case _:
-            allowed = allowed_text(_field_at(model, location))
-            return [Problem(path, received_text(error["input"]), f"allowed: {allowed}")]
+            pass
+    allowed = allowed_text(_field_at(model, location))
+    return [Problem(path, received_text(error["input"]), f"allowed: {allowed}")]
 
 
 def _kinds_at(model: type[BaseModel], location: Location) -> str:

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from siggen.config.wording import Said
+
 
 class Section(BaseModel):
     """A mapping of the YAML file; keys are the attributes."""
@@ -22,3 +24,8 @@ Real = Annotated[float, Field(strict=True)]
 
 Whole = Annotated[int, Field(strict=True)]
 """A whole number: counts and indices; neither 18.0 nor true."""
+
+Position = Annotated[
+    tuple[Real, Real], Said("two numbers, [horizontal, vertical] in mm from the casing's centre of gravity")
+]
+"""A place on the casing."""

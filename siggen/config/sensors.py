@@ -11,7 +11,7 @@ from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tone
 from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
 from siggen.config.problems import received_text, refusal
-from siggen.config.section import Real, Section, Whole
+from siggen.config.section import Position, Real, Section, Whole
 from siggen.config.wording import Said
 from siggen.errors import Problem
 
@@ -62,7 +62,7 @@ class Sensor(Section):
             "torsional",
         )
     )
-    position_mm: tuple[Real, Real] | None = Field(
+    position_mm: Position | None = Field(
         default=None,
         description="horizontal and vertical distance from the casing's centre of gravity (place: casing); needed "
         "where the motion of the rigid casing is measured",

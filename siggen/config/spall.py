@@ -16,7 +16,7 @@ from siggen.config.places import READING, GearName, Height, HeightReading, Lengt
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Real, Section, Whole
 from siggen.config.teeth import Teeth
-from siggen.errors import Problem
+from siggen.errors import Problem, counted
 
 Shape: TypeAlias = Literal["rectangle", "ellipse", "v", "polygon"]
 DepthLaw: TypeAlias = Literal["flat", "dish", "length_squared"]
@@ -86,7 +86,7 @@ class SpallSize(Section):
                 yield Problem(key, "a value", f"allowed: nothing, shape {self.shape} takes {', '.join(needed)}")
         if self.shape == "polygon":
             if 0 < len(self.vertices) < 3:
-                yield Problem("vertices", f"{len(self.vertices)} vertices", "allowed: at least 3")
+                yield Problem("vertices", counted(len(self.vertices), "vertex", "vertices"), "allowed: at least 3")
             for key in ("centre_height_mm", "face_centre_mm"):
                 if getattr(self, key) not in ("pitch", None):
                     yield Problem(key, "a value", "allowed: nothing, a polygon lies where its vertices are")

@@ -129,7 +129,7 @@ def yaml_value(text: str, source: str) -> Any:
         mark = error.problem_mark or error.context_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}" if mark else "the file"
         hint = "indent with spaces, not with tabs" if "'\\t'" in str(error.problem) else "allowed: valid YAML"
-        raise ConfigError([Problem(where, str(error.problem), hint)], source) from None
+        raise ConfigError([Problem(where, f"what is no YAML ({error.problem})", hint)], source) from None
     except yaml.YAMLError as error:
         raise ConfigError([Problem("the file", str(error).splitlines()[0], "allowed: valid YAML")], source) from None
     if loader.problems:

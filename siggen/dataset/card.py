@@ -12,6 +12,7 @@ from siggen.dataset.internals import internals_schema
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.record import SCHEMA_VERSION, Column, channels, damage_schema, record_schema
 from siggen.dataset.sidecar import Sidecar
+from siggen.errors import counted
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -92,9 +93,10 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
 
 def _summary(config: Config, rows: int) -> str:
     sensors = ", ".join(f"`{channel.name}` ({channel.place}, {channel.axis})" for channel in channels(config))
+    records = counted(rows, "labelled acceleration record")
     return f"""# {config.name}
 
-{rows} labelled acceleration records of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
+{records} of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
 Channels: {sensors}, in m/s^2. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """
@@ -180,7 +182,8 @@ def _failures(sidecars: Sequence[Sidecar]) -> str:
         return ""
     listed = [f"| {failure.record_id} | {failure.status} | {failure.reason} |" for failure in failures[:50]]
     more = [f"\nThe remaining {len(failures) - 50} are in `manifest.json`."] if len(failures) > 50 else []
-    head = f"## Failed records\n\n{len(failures)} planned records could not be simulated and are not among the rows.\n"
+    failed = counted(len(failures), "planned record")
+    head = f"## Failed records\n\n{failed} could not be simulated and are not among the rows.\n"
     return "\n".join([head, "| record | status | reason |", "|---|---|---|", *listed, *more, ""])
 
 
@@ -249,11 +252,12 @@ Signals are `FixedSizeList<float32>`: every reader above keeps or restores their
 
 def _identity(config: Config, sidecars: Sequence[Sidecar]) -> str:
     made_with = sorted({f"siggen {s.environment['siggen']}, numpy {s.environment['numpy']}" for s in sidecars})
+    specimens = counted(config.specimens, "specimen")
     return f"""## Identity
 
 * Configuration: `config.yaml`; identity (SHA-256 of the configuration without the number of specimens):
   `{config.identity}`
-* Seed {config.seed}, {config.specimens} specimens, schema version {SCHEMA_VERSION}; made with {"; ".join(made_with)}.
+* Seed {config.seed}, {specimens}, schema version {SCHEMA_VERSION}; made with {"; ".join(made_with)}.
 * Every random number follows from seed, stage and owner, so `siggen generate config.yaml --out NEW` makes the same set
   again: bit for bit on the same CPU family and versions (`manifest.json`), elsewhere within a step of the converter.
 * `siggen verify .` checks every file against `manifest.json` and simulates a sample of records again.

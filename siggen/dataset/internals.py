@@ -10,14 +10,13 @@ import pyarrow as pa
 
 from siggen.dataset.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
 from siggen.dataset.record import ID_COLUMNS, Column, Record, list_of, record_value, schema_metadata
+from siggen.dynamics.contact_names import PAIR_PREFIX, is_of_contact_alone
 from siggen.errors import DatasetError
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 FOLDER = "internals"
-PAIR_PREFIX = "pair_"
-"""Columns of one tooth pair; a gearbox whose teeth never have that many pairs in reach holds zeros there."""
 
 
 def internals_name(shard: str) -> str:
@@ -69,7 +68,8 @@ def _series(config: Config, record: Record, name: str) -> np.ndarray:
     where = f"record {record.planned.record_id}, internal quantity {name}"
     if name not in internals:
         if name.startswith(PAIR_PREFIX):
-            return np.zeros(config.samples, dtype=np.float32)
+            # Its teeth never have that many pairs in reach: what pairs without contact have.
+            return np.full(config.samples, np.nan if is_of_contact_alone(name) else 0.0, dtype=np.float32)
         raise DatasetError(f"{where}: missing; the record has {', '.join(sorted(internals))}")
     values = np.asarray(internals[name], dtype=np.float32)
     if values.shape != (config.samples,):

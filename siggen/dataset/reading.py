@@ -18,7 +18,7 @@ from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read
 from siggen.dataset.record import TACHO_COLUMN, Channel, Column, signal_channels, signal_matrix
 from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import LocalFolder, Storage
-from siggen.errors import DatasetError, UsageError
+from siggen.errors import DatasetError, UsageError, counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,8 @@ class Dataset:
 
     def __repr__(self) -> str:
         rows = ", ".join(f"{split}: {self.manifest['splits'][split]['rows']}" for split in self.splits)
-        return f"Dataset({str(self.path)!r}, {rows} records, {len(self.channels)} channels at {self.fs_hz:g} Hz)"
+        channels = counted(len(self.channels), "channel")
+        return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.

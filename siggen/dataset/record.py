@@ -12,7 +12,8 @@ import pyarrow as pa
 from siggen.dataset.column import DECIBEL, HERTZ, MILLIMETRE, Column
 from siggen.dataset.instrument_columns import instrument_columns
 from siggen.dataset.manufacture_columns import manufacture_columns
-from siggen.errors import DatasetError
+from siggen.dynamics.contact_names import is_of_contact_alone
+from siggen.errors import DatasetError, counted
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -305,16 +306,20 @@ def _check_record(config: Config, record: Record) -> None:
 
 
 def non_finite(record: Record) -> str:
-    """Return what in a record is NaN or infinite, or an empty string (an infinite signal-to-noise ratio is allowed)."""
+    """Return what in a record is NaN or infinite, or an empty string.
+
+    Allowed are an infinite signal-to-noise ratio, and NaN in what a tooth pair has only while it touches.
+    """
     for name, signal in record.channels.items():
         if not np.isfinite(signal).all():
-            return f"channel {name} has {int((~np.isfinite(signal)).sum())} values that are not finite"
+            return f"channel {name} has {counted(int((~np.isfinite(signal)).sum()), 'value')} not finite"
     for name, label in record.labels.items():
         if isinstance(label, float) and np.isnan(label):
             return f"label {name} is NaN"
     for name, values in (record.internals or {}).items():
-        if not np.isfinite(values).all():
-            return f"internal quantity {name} has {int((~np.isfinite(values)).sum())} values that are not finite"
+        bad = np.isinf(values) if is_of_contact_alone(name) else ~np.isfinite(values)
+        if bad.any():
+            return f"internal quantity {name} has {counted(int(bad.sum()), 'value')} not finite"
     return "" if np.isfinite(record.tacho_s).all() else "tacho_s is not finite"
 
 

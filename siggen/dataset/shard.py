@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from siggen.dataset.storage import Storage, file_sha256
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, counted
 
 LIST_LEAF = ".list.element"
 """What Parquet appends to a list column; an encoding asked for without it is accepted and ignored."""
@@ -133,7 +133,7 @@ def check_footer(path: Path, schema: pa.Schema, rows: int) -> None:
         If the writer ignored an option, as it silently does for paths it does not know.
     """
     footer = pq.read_metadata(path)
-    problems = [] if footer.num_rows == rows else [f"{footer.num_rows} rows instead of {rows}"]
+    problems = [] if footer.num_rows == rows else [f"{counted(footer.num_rows, 'row')} instead of {rows}"]
     series = {leaf(field) for field in schema if _is_series(field)}
     for group in range(footer.num_row_groups):
         for index in range(footer.num_columns):

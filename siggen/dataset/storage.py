@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import secrets
@@ -16,6 +17,8 @@ LEFTOVER_SUFFIX = ".siggen-part"
 """Ending of files under construction; whatever carries it when nobody writes was left by a killed process."""
 
 READ_BYTES = 1 << 20
+UNWRITABLE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
+"""What the user of a disk can mend: it is full, at its quota, read-only, not theirs, or broken."""
 
 
 class Storage(Protocol):
@@ -142,7 +145,7 @@ class LocalFolder:
         Raises
         ------
         DatasetError
-            If another process is writing the folder, or the path is a file.
+            If another process is writing the folder, the path is a file, or the disk takes no more.
         """
         if self.path.exists() and not self.path.is_dir():
             raise DatasetError(f"{self.path} is a file; a data set is a folder: name another path")
@@ -155,6 +158,13 @@ class LocalFolder:
             ) from error
         try:
             yield
+        except OSError as error:
+            if error.errno is None or error.errno not in UNWRITABLE:
+                raise
+            raise DatasetError(
+                f"{self.path} cannot be written any further: {os.strerror(error.errno)}; finished shards stay, and the "
+                "same command continues from there once that is mended (or name another folder)"
+            ) from error
         finally:
             if lock is not None:
                 os.close(lock)

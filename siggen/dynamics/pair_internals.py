@@ -2,8 +2,9 @@
 
 Values are those of the table of pairs (`pair_places`). Film and film ratio (reference: standard literature, formulas
 of `lubrication`) are computed from them: central film by Masjedi and Khonsari at the line load on what carries; the
-roughness inside damage enters by its mean square over the face (derived). Hertz pressure: line contact. Every value of
-a pair is 0 while it does not touch, but for its sliding speed and position.
+roughness inside damage enters by its mean square over the face (derived). Hertz pressure: line contact. While a pair
+does not touch, its forces, moments, damping and load share are 0, and what only a contact has (`contact_names`) is
+NaN; a back flank that touches has forces, but neither friction, film nor pressure.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.dynamics.contact_kinematics import hertz_pressure, relative_radius
+from siggen.dynamics.contact_names import PAIR_PREFIX, PER_CONTACT, PER_FILM
 from siggen.dynamics.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
 from siggen.dynamics.pair_places import (
     ASPERITY_SHARE,
@@ -50,8 +52,6 @@ PER_PAIR = (
     "friction_coefficient",
     "damping_n_s_per_m",
 )
-PER_CONTACT = ("hertz_pressure_pa",)
-PER_FILM = ("central_film_m", "film_ratio", "asperity_share")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class PairContact:
 def pair_internal_names(slots: int, contact: PairContact | None) -> tuple[str, ...]:
     """Return the names of `pair_internals`; pair n of an engagement has the number n mod slots."""
     single = (*PER_PAIR, *_of_contact(contact))
-    return (*SUMS, *(f"pair_{slot}_{name}" for slot in range(slots) for name in single))
+    return (*SUMS, *(f"{PAIR_PREFIX}{slot}_{name}" for slot in range(slots) for name in single))
 
 
 def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None) -> FloatArray:
@@ -91,7 +91,8 @@ def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None
     sums = [total, np.where(touching, pairs[:, :, STIFFNESS], 0.0).sum(axis=1), pairs[:, :, DAMPING].sum(axis=1)]
     sums += [friction.sum(axis=1), on_pinion.sum(axis=1), on_gear.sum(axis=1)]
     single = [normal, normal / np.where(total == 0.0, 1.0, total)[:, None], friction, pairs[:, :, SLIDING], position]
-    single += [on_pinion, on_gear, pairs[:, :, COEFFICIENT], pairs[:, :, DAMPING]]
+    coefficient = np.where(_drives(pairs), pairs[:, :, COEFFICIENT], np.nan)
+    single += [on_pinion, on_gear, coefficient, pairs[:, :, DAMPING]]
     if contact is not None:
         single += _contact_values(pairs, line_m, contact)
     return np.concatenate([np.stack(sums, axis=1), np.stack(single, axis=2).reshape(len(pairs), -1)], axis=1)
@@ -103,8 +104,12 @@ def _of_contact(contact: PairContact | None) -> tuple[str, ...]:
     return PER_CONTACT if contact.oil is None else (*PER_CONTACT, *PER_FILM)
 
 
+def _drives(pairs: FloatArray) -> NDArray[np.bool_]:
+    return (pairs[:, :, FLANK] > 0.0) & (pairs[:, :, NORMAL] > 0.0)
+
+
 def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> list[FloatArray]:
-    touching = (pairs[:, :, FLANK] > 0.0) & (pairs[:, :, NORMAL] > 0.0)
+    touching = _drives(pairs)
     # Where nothing touches any contact will do: its values are replaced.
     position = np.where(touching, pairs[:, :, POSITION], 0.5 * line_m)
     force = np.where(touching, pairs[:, :, NORMAL] / np.where(touching, pairs[:, :, CARRYING], 1.0), 1.0)
@@ -115,4 +120,4 @@ def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> l
         roughness = np.sqrt(healthy**2 + np.where(touching, pairs[:, :, ROUGH], 0.0) * (pitted**2 - healthy**2))
         film = masjedi_khonsari_central(contact.oil.groups(position, force, roughness))
         values += [film, film_ratio(film, roughness), pairs[:, :, ASPERITY_SHARE]]
-    return [np.where(touching, value, 0.0) for value in values]
+    return [np.where(touching, value, np.nan) for value in values]

@@ -17,6 +17,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.errors import counted
+
 FloatArray = NDArray[np.float64]
 
 COLUMNS = 13
@@ -104,7 +106,7 @@ class Polygon:
     def problems(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, received, allowed) of what makes this no simple polygon."""
         if len(self.vertices_m) < 3:
-            yield "vertices_m", f"{len(self.vertices_m)} vertices", "at least 3"
+            yield "vertices_m", counted(len(self.vertices_m), "vertex", "vertices"), "at least 3"
         elif not np.all(np.isfinite(self.vertices_m)):
             bad = next(i for i, corner in enumerate(self.vertices_m) if not np.all(np.isfinite(corner)))
             yield "vertices_m", f"vertex {bad} {self.vertices_m[bad]!r}", "finite coordinates"

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.errors import counted
+
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
@@ -80,7 +82,7 @@ def curve_problems(
     """Yield (received, allowed) of a curve that is not finite, not causal, or rings longer than `memory_s`."""
     curve = response.curves[direction, name]
     if not np.isfinite(curve).all():
-        yield f"{int((~np.isfinite(curve)).sum())} values that are not finite", "allowed: finite numbers"
+        yield f"{counted(int((~np.isfinite(curve)).sum()), 'value')} not finite", "allowed: finite numbers"
         return
     if not curve.any():
         return

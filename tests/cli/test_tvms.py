@@ -12,7 +12,9 @@ import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
+from siggen.cli.stiffness_figure import stiffness_figure
 from siggen.errors import UsageError
+from siggen.stiffness_curves import StiffnessCurve
 
 runner = CliRunner()
 
@@ -124,3 +126,15 @@ def test_damage_through_the_face_leaves_the_pair_no_stiffness_where_it_acts_as_g
     assert np.isfinite(severe).all()
     contact = table["severe_contact_m_per_n"].to_numpy(zero_copy_only=False)
     assert np.isinf(contact[severe == 0.0]).all()
+
+
+def test_no_two_of_sixteen_states_look_alike() -> None:
+    pytest.importorskip("matplotlib")
+    angle = np.linspace(0.0, 1.0, 5)
+    curves = [StiffnessCurve(f"state_{i}", angle, np.full(5, 1e8 + i), {}) for i in range(16)]
+    figure = stiffness_figure(curves)
+    stiffness, loss = ({(line.get_color(), line.get_linestyle()) for line in axis.lines} for axis in figure.axes)
+    assert len(stiffness) == 16
+    assert len(loss) == 15
+    (mildest, *_, worst) = figure.axes[0].lines
+    assert mildest.get_zorder() > worst.get_zorder() > 2.0

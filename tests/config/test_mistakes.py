@@ -50,7 +50,26 @@ MISTAKES = [
     ({"dynamics__model": "12dof"}, "dynamics.model", "the text '12dof'", "one of 8dof, 6dof"),
     ({"sensors__0__axes": ["up"]}, "sensors.0.axes.0", "the text 'up'", "one of vertical, horizontal"),
     ({"sensors__0__place": "casing"}, "sensors.0.position_mm", "null", "with place: casing, and only there"),
-    ({"sensors__0__position_mm": [1.0, 2.0]}, "sensors.0.position_mm", "", "with place: casing, and only there"),
+    (
+        {"sensors__0__position_mm": [1.0, 2.0]},
+        "sensors.0.position_mm",
+        "[1.0, 2.0]",
+        "with place: casing, and only there",
+    ),
+    ({"sensors__0__position_mm": [1.0]}, "sensors.0.position_mm", "[1.0]", "two numbers, [horizontal, vertical] in mm"),
+    ({"sensors__0__position_mm": [1.0, 2, 3]}, "sensors.0.position_mm", "[1.0, 2, 3]", "[horizontal, vertical] in mm"),
+    (
+        {"sensors__0__position_mm": [1.0, "a"]},
+        "sensors.0.position_mm.1",
+        "the text 'a'",
+        "[horizontal, vertical] in mm",
+    ),
+    (
+        {"dynamics__casing": {"bolts": {"positions_mm": [[1.0], [2.0, 3.0]]}}},
+        "dynamics.casing.bolts.positions_mm.0",
+        "[1.0]",
+        "two numbers, [horizontal, vertical] in mm",
+    ),
     ({"sensors__0__axes": ["tangential"]}, "sensors.0.axes", "tangential", "vertical, horizontal at place"),
     ({"dynamics__model": "torsional"}, "sensors.0.place", "'pinion_bearing'", "one of pinion_rim, gear_rim"),
     (

@@ -96,7 +96,11 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
     return Record(planned, labels, signals, np.arange(3) / 30.0, fake_internals(config, planned))
 
 
-QUANTITIES = (Column("mesh_force_n", pa.float32(), "N", "force"), Column("pair_1_force_n", pa.float32(), "N", "of one"))
+QUANTITIES = (
+    Column("mesh_force_n", pa.float32(), "N", "force"),
+    Column("pair_1_force_n", pa.float32(), "N", "of one"),
+    Column("pair_1_film_ratio", pa.float32(), "", "of one"),
+)
 
 
 def quantities(config: Config) -> tuple[Column, ...]:
@@ -105,16 +109,37 @@ def quantities(config: Config) -> tuple[Column, ...]:
 
 
 def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarray] | None:
-    """Return a force that tells the record; odd specimens have no second pair."""
+    """Return a force that tells the record; odd specimens have no second pair, others one with a film half the time."""
     if not has_internals(config, planned):
         return None
     force = np.linspace(0.0, 1.0, config.samples) + planned.record_id
-    return {"mesh_force_n": force} if planned.specimen_id % 2 else {"mesh_force_n": force, "pair_1_force_n": -force}
+    if planned.specimen_id % 2:
+        return {"mesh_force_n": force}
+    film = np.where(np.arange(config.samples) < config.samples // 2, 1.0 + force, np.nan)
+    return {"mesh_force_n": force, "pair_1_force_n": -force, "pair_1_film_ratio": film}
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
     """Stand in for `siggen.simulation.simulate_specimen`."""
     return [fake_record(config, planned_record(config, i)) for i in record_ids]
+
+
+def simulate_with_thicker_films(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Change the last film of every record by 1 %."""
+    results = simulate(config, record_ids)
+    for result in results:
+        if isinstance(result, Record) and "pair_1_film_ratio" in (result.internals or {}):
+            result.internals["pair_1_film_ratio"][config.samples // 2 - 1] *= 1.01
+    return results
+
+
+def simulate_with_longer_contact(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Give every film one sample more."""
+    results = simulate(config, record_ids)
+    for result in results:
+        if isinstance(result, Record) and "pair_1_film_ratio" in (result.internals or {}):
+            result.internals["pair_1_film_ratio"][config.samples // 2] = 2.0
+    return results
 
 
 def simulate_slowly(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:

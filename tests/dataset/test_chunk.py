@@ -28,7 +28,7 @@ def test_a_chunk_gives_its_rows_and_its_failures() -> None:
     result = ChunkSimulation(CONFIG, simulate_with_failures)(Chunk("train-00000", range(12)))
     assert result.batch()["record_id"].to_pylist() == [0, 1, 2, 4, 5, 6, 7, 9, 11]
     assert [(f.record_id, f.status) for f in result.failures] == [(3, "diverged"), (8, "diverged"), (10, "not_finite")]
-    assert "bearing_vertical has 1 values" in result.failures[2].reason
+    assert "bearing_vertical has 1 value not finite" in result.failures[2].reason
 
 
 def test_a_chunk_of_failures_has_no_rows() -> None:

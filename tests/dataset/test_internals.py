@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
+import siggen.verification
 from siggen.config import parse
 from siggen.dataset.plan import has_internals, planned_record, specimens_per_shard
 from siggen.dataset.reading import open as open_set
@@ -18,11 +19,14 @@ from siggen.verification import EXACT, verify
 from tests.config.minimal import minimal
 from tests.dataset.fake_set import (
     FAKE_FILES,
+    QUANTITIES,
     fake_config,
     file_bytes,
     simulate,
     simulate_with_a_bug,
     simulate_with_failures,
+    simulate_with_longer_contact,
+    simulate_with_thicker_films,
     write_fake_set,
 )
 
@@ -58,7 +62,7 @@ def test_every_shard_has_a_file_of_internals_that_the_card_names_once(reference:
 
 def test_rows_join_the_records_and_hold_their_series(reference: Path) -> None:
     dataset = open_set(reference)
-    assert [column.name for column in dataset.internal_columns] == ["mesh_force_n", "pair_1_force_n"]
+    assert [column.name for column in dataset.internal_columns] == [q.name for q in QUANTITIES]
     ids = [i for batch in dataset.internals("train") for i in batch["record_id"].to_pylist()]
     assert ids == dataset.labels("train")["record_id"].to_pylist()
     for record_id in range(30):
@@ -66,9 +70,28 @@ def test_rows_join_the_records_and_hold_their_series(reference: Path) -> None:
         assert found["mesh_force_n"].dtype == np.float32
         expected = (np.linspace(0.0, 1.0, 512) + record_id).astype(np.float32)
         np.testing.assert_array_equal(found["mesh_force_n"], expected)
-        # A gearbox without a second pair in reach holds zeros there.
+        # A gearbox without a second pair in reach holds there no force, and a film that is not defined.
         is_odd = planned_record(config(), record_id).specimen_id % 2
         np.testing.assert_array_equal(found["pair_1_force_n"], 0.0 * expected if is_odd else -expected)
+        undefined = np.isnan(found["pair_1_film_ratio"])
+        assert undefined.all() if is_odd else (undefined == (np.arange(512) >= 256)).all()
+
+
+@pytest.mark.parametrize("elsewhere", [False, True])
+@pytest.mark.parametrize(
+    ("simulation", "problem"),
+    [
+        (simulate, None),
+        (simulate_with_thicker_films, "pair_1_film_ratio differs by up to "),
+        (simulate_with_longer_contact, "pair_1_film_ratio differs in where it is NaN"),
+    ],
+)
+def test_undefined_films_hide_no_difference(reference, monkeypatch, elsewhere, simulation, problem) -> None:
+    if elsewhere:  # then records need only be close
+        monkeypatch.setattr(siggen.verification, "environment", lambda: {"cpu": "another"})
+    mismatches = verify(reference, 30, simulate=simulation, workers=0).mismatches
+    assert len(mismatches) == (0 if problem is None else 18)  # those of specimens 0, 2 and 4
+    assert all(problem in mismatch.problem for mismatch in mismatches)
 
 
 def test_columns_and_rows_of_a_batch_are_those_asked_for(reference: Path) -> None:
@@ -164,7 +187,7 @@ def simulate_nan(config, record_ids):
 def test_a_quantity_that_is_not_a_number_fails_its_record(tmp_path: Path) -> None:
     generation = write_fake_set(tmp_path, config(), simulation=simulate_nan)
     assert {failure.status for failure in generation.failures} == {"not_finite"}
-    assert "internal quantity mesh_force_n has 1 values" in generation.failures[0].reason
+    assert "internal quantity mesh_force_n has 1 value not finite" in generation.failures[0].reason
 
 
 def simulate_without(config, record_ids):

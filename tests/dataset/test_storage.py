@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import subprocess
 import sys
 from pathlib import Path
@@ -78,3 +79,17 @@ def test_a_file_is_not_a_folder(tmp_path: Path) -> None:
     (tmp_path / "set").write_text("x")
     with pytest.raises(DatasetError, match="is a file"), LocalFolder(tmp_path / "set").writing():
         pass
+
+
+def test_a_disk_that_takes_no_more_is_named_with_how_to_go_on(tmp_path: Path) -> None:
+    full = OSError(errno.ENOSPC, "Error writing bytes to file")  # as pyarrow words it
+    expected = "No space left on device; finished shards stay, and the same command continues"
+    with pytest.raises(DatasetError, match=expected), LocalFolder(tmp_path).writing():
+        raise full
+    with LocalFolder(tmp_path).writing():
+        pass  # the lock is free again
+
+
+def test_other_failures_of_the_system_stay_what_they_are(tmp_path: Path) -> None:
+    with pytest.raises(BrokenPipeError), LocalFolder(tmp_path).writing():
+        raise BrokenPipeError(errno.EPIPE, "a worker")

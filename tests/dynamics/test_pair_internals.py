@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.asperity_table import asperity_table
+from siggen.dynamics.contact_names import OF_CONTACT_ALONE
 from siggen.dynamics.damping import DampingLaw
 from siggen.dynamics.friction import BOUNDARY_FRICTION, FLUID_FRICTION, composite_friction
 from siggen.dynamics.pair_forces import pair_forces
@@ -149,12 +150,23 @@ def test_internals_add_up_and_rough_lands_are_thinner_lubricated() -> None:
     assert ratio == pytest.approx(loads**0.5, rel=1e-9)
 
 
-def test_a_pair_apart_has_neither_film_nor_pressure() -> None:
+def test_a_pair_apart_has_no_force_and_what_only_a_contact_has_is_undefined() -> None:
     contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
     apart = internals(loaded(law(), -20e-6, ALONE), contact)
-    for name, value in apart.items():
+    undefined = {name for name, value in apart.items() if np.isnan(value)}
+    assert undefined == {name for name in apart if name.endswith(OF_CONTACT_ALONE)}
+    assert {name.removeprefix("pair_0_") for name in undefined if name.startswith("pair_0_")} == set(OF_CONTACT_ALONE)
+    for name in set(apart) - undefined:
         if not name.endswith(("position_m", "sliding_m_s")):
-            assert value == 0.0, name
+            assert apart[name] == 0.0, name
     dry = replace(contact, oil=None)
     assert "pair_0_central_film_m" not in pair_internal_names(2, dry)
     assert "pair_0_hertz_pressure_pa" not in pair_internal_names(2, None)
+
+
+def test_a_back_flank_carries_without_film_and_friction() -> None:
+    contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
+    back = internals(loaded(law(), -90e-6, ALONE), contact)
+    assert back["pair_0_force_n"] < 0.0
+    assert back["pair_0_friction_n"] == 0.0
+    assert all(np.isnan(back[f"pair_0_{name}"]) for name in OF_CONTACT_ALONE)

@@ -71,7 +71,7 @@ def test_a_frequency_step_too_wide_for_the_damping_is_refused() -> None:
 def test_numbers_that_are_not_finite_are_refused() -> None:
     curve = modal().curves[KEY].copy()
     curve[77] = np.nan
-    assert found(changed(curve)) == ["1 values that are not finite; allowed: finite numbers"]
+    assert found(changed(curve)) == ["1 value not finite; allowed: finite numbers"]
 
 
 def test_a_path_through_which_nothing_passes_is_accepted() -> None:
