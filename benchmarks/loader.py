@@ -23,7 +23,7 @@ ORDERS = StreamSettings()
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
-    """Yield records per second of CPU time (one process, files in the system's cache) of both, as a ratio of one run."""
+    """Yield records per second of CPU time (one process, files in the cache) of both, as a ratio of one run."""
     with tempfile.TemporaryDirectory() as folder:
         config = siggen.load_config(QUICKSTART, overrides=[f"specimens={5 if quick else 20}"])
         siggen.generate(config, Path(folder) / "set")
