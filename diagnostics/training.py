@@ -35,7 +35,14 @@ from diagnostics.judgement import (
 from diagnostics.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
 from diagnostics.other_set import classifier_predictions, network_predictions_of
 from diagnostics.progress import Stage, silent_stage
-from diagnostics.severity import AreaScores, area_predictions, area_scores, expected_area, mean_areas
+from diagnostics.severity import (
+    AreaScores,
+    area_predictions,
+    area_scores,
+    boosted_areas,
+    expected_area,
+    mean_areas,
+)
 from diagnostics.single_thread import single_thread
 from diagnostics.splits import SpecimenSplit, specimen_split
 
@@ -237,6 +244,7 @@ def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit
     by_state = mean_areas(matrix, split)
     predicted = {
         "ridge regression on indicators": area_predictions(matrix, split),
+        "gradient boosting on indicators": boosted_areas(matrix, split, seed),
         "ridge regression on RMS": area_predictions(alone, split),
         **{f"{TITLES[found.name]}, by its states": expected_area(found.predictions, by_state) for found in results},
         "median of training": np.full(
