@@ -79,3 +79,12 @@ def test_cepstrum_at_a_few_quefrencies_is_that_of_the_transform(size: int) -> No
     few = np.array([0, 1, size // 2, size - 1, whole.size - 1])
     # both sum rounding errors of 1e-16 of values of order one
     np.testing.assert_allclose(cepstrum_at(log_spectrum, few), whole[few], rtol=1e-12, atol=1e-15)
+
+
+def test_cepstrum_between_its_steps_is_that_of_the_ripple_it_stands_for() -> None:
+    # a ripple a cos(2 pi f tau) of the log spectrum with tau = 40.5 steps: a/2 there, a/2 sinc(1/2) at 40 and 41
+    size = 4001
+    ripple = 0.6 * np.cos(2 * np.pi * np.arange(size) * 40.5 / (2 * (size - 1)))
+    found = cepstrum_at(ripple, np.array([40.5, 40.0, 41.0]))
+    # the mirror images of the ripple add 1/(2 pi 81) of it
+    np.testing.assert_allclose(found, [0.3, 0.3 * np.sinc(0.5), 0.3 * np.sinc(0.5)], atol=0.3 / (2 * np.pi * 40))
