@@ -15,7 +15,7 @@ from diagnostics.indicators.cepstral_peak import cepstral_peak, shaft_log_spectr
 from diagnostics.indicators.phase_modulation import phase_modulation_rad
 from diagnostics.indicators.sideband_asymmetry import sideband_asymmetry_db
 from diagnostics.indicators.sideband_power import sideband_power
-from diagnostics.signal.demodulation import demodulated
+from diagnostics.signal.demodulation import Modulation, demodulated
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128
@@ -77,6 +77,15 @@ def test_mesh_line_weaker_than_its_sidebands_has_no_phase_depth() -> None:
     nothing = demodulated(np.zeros(SAMPLES), TEETH, 1, 6)
     assert math.isnan(phase_modulation_rad(nothing))
     assert math.isnan(amplitude_modulation(nothing))
+
+
+def test_phase_that_swings_by_a_turn_has_no_depth_at_any_order() -> None:
+    # cos(z a + 3.3 sin 3a + 0.1 sin a): once per revolution 0.1 rad only, but the carrier is gone at times
+    swinging = Modulation(np.ones(SAMPLES), 3.3 * np.sin(3 * ANGLE) + 0.1 * np.sin(ANGLE))
+    assert math.isnan(phase_modulation_rad(swinging))
+    assert phase_modulation_rad(Modulation(np.ones(SAMPLES), 3.0 * np.sin(3 * ANGLE) + 0.1 * np.sin(ANGLE))) == (
+        pytest.approx(0.1)
+    )
 
 
 def test_asymmetry_of_amplitude_and_phase_modulation_together() -> None:
