@@ -148,6 +148,8 @@ def tacholess_pulses(
     teeth: int,
     speed_range_hz: tuple[float, float],
     harmonics: tuple[int, ...] = HARMONICS,
+    *,
+    doubts: bool = True,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
 
@@ -160,6 +162,8 @@ def tacholess_pulses(
     ----------
     signal, fs_hz, teeth, speed_range_hz, harmonics :
         As of `mesh_ridge`.
+    doubts : bool
+        Refuse lines that plainly belong to another speed; not for a caller who compares several ranges himself.
 
     Returns
     -------
@@ -177,7 +181,7 @@ def tacholess_pulses(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
             f"speed (clarity {ridge.clarity:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
         )
-    if ridge.doubt:
+    if doubts and ridge.doubt:
         raise UsageError(
             f"within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft speed the mesh lines fit best at "
             f"{float(np.median(ridge.speed_hz)):.4g} Hz, but {ridge.doubt}. Check range and teeth, or give a tacho."

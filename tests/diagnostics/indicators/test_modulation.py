@@ -115,6 +115,13 @@ def test_echo_after_one_revolution_stands_in_the_cepstrum_of_that_shaft_only() -
     assert math.isfinite(cepstral_peak(found, found.size - 2))
 
 
+def test_cepstral_peak_is_the_largest_within_one_step_of_the_revolution() -> None:
+    size, period = 4001, 320.4
+    for aside, share in ((0.0, 1.0), (1.0, 1.0), (-1.0, 1.0), (3.0, 0.0)):
+        ripple = 0.6 * np.cos(2 * np.pi * np.arange(size) * (period + aside) / (2 * (size - 1)))
+        assert cepstral_peak(ripple, period) == pytest.approx(0.3 * share, abs=0.001)
+
+
 def test_mesh_lines_alone_leave_nothing_at_the_pinions_quefrency() -> None:
     revolutions, per_turn = 24, 18 * 32
     angle = 2 * np.pi * np.arange(revolutions * per_turn) / per_turn

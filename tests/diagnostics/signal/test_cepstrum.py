@@ -38,6 +38,15 @@ def test_removed_lines_leave_no_rahmonic() -> None:
     np.testing.assert_allclose(without_lines(log_spectrum, 50)[26:], 0.0)
 
 
+def test_removed_lines_take_the_whole_main_lobe_with_them() -> None:
+    log_spectrum = np.linspace(0.0, 1.0, 1001)
+    smooth = log_spectrum.copy()
+    for line in range(50, 1000, 50):
+        log_spectrum[line - 2 : line + 3] += [1.0, 4.0, 5.0, 4.0, 1.0]
+    # what lies beside a line is a straight line here, so that nothing of the line is left and nothing else is touched
+    np.testing.assert_allclose(without_lines(log_spectrum, 50)[:990], smooth[:990], atol=1e-12)
+
+
 def test_spectral_kurtosis_of_noise_is_zero_and_of_a_tone_minus_one() -> None:
     rng = np.random.default_rng(2)
     noise = rng.standard_normal(256 * 2000)
