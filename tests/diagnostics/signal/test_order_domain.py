@@ -41,9 +41,9 @@ def test_changing_speed_is_followed_between_the_pulses() -> None:
 
 
 def test_band_above_the_angle_steps_is_removed() -> None:
-    # 64 steps per revolution at 30 Hz carry 960 Hz; 2 kHz would fold to 80 Hz. 1e-3: leakage of the cut-off tone
+    # 64 steps per revolution at 30 Hz carry 960 Hz; 1 kHz would fold to 920 Hz. 1e-3: leakage of the cut-off tone
     grid = angle_grid(constant_speed_pulses(30.0), 64)
-    found = resample_to_angle(np.cos(2 * np.pi * 2000.0 * TIME_S), FS_HZ, grid)
+    found = resample_to_angle(np.cos(2 * np.pi * 1000.0 * TIME_S), FS_HZ, grid)
     assert np.abs(found[64:-64]).max() < 1e-3
 
 
@@ -64,6 +64,11 @@ def test_steps_lie_evenly_between_pulses_at_constant_speed(speed_hz: float, offs
     # 1e-12 s: rounding of a spline that is exactly linear
     np.testing.assert_allclose(grid.time_s, offset_s + np.arange(500) / (100 * speed_hz), atol=1e-12)
     assert grid.slowest_hz == pytest.approx(speed_hz)
+
+
+def test_band_limit_follows_the_slowest_revolution() -> None:
+    # steps per second are fewest there, so that only there could a line fold
+    assert angle_grid(np.array([0.0, 0.1, 0.15, 0.19, 0.25]), 64).slowest_hz == pytest.approx(10.0)
 
 
 def test_two_pulses_give_one_revolution_of_constant_speed() -> None:
