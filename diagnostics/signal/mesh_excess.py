@@ -2,7 +2,7 @@
 
 Lines at all multiples of a mesh frequency are lines of its half as well, and every second one of its double: the range
 of speed has to tell which is meant. Where the lines contradict the range plainly, that is said; a wrong range is not
-always found. Source: derived; the limits lie outside what 300 simulated records with the right range reach.
+always found. Source: derived; the limits lie outside what 130 simulated records with the right range reach.
 """
 
 from __future__ import annotations
