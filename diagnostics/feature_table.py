@@ -18,6 +18,7 @@ from siggen.errors import DatasetError, UsageError
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.features"
+NOTES_KEY = b"diagnostics.notes"
 WRITERS = (".parquet", ".csv")
 
 
@@ -91,6 +92,17 @@ def _rows(
         yield {**record.labels, **dict(zip(BOOKKEEPING, bookkeeping, strict=True)), **found.values}
         if advance:
             advance()
+
+
+def with_notes(table: pa.Table, notes: Sequence[str]) -> pa.Table:
+    """Return the table with notes on its records in the metadata; `table_notes` reads them."""
+    metadata = {**(table.schema.metadata or {}), NOTES_KEY: json.dumps(list(notes)).encode()}
+    return table.replace_schema_metadata(metadata)
+
+
+def table_notes(table: pa.Table) -> tuple[str, ...]:
+    """Return the notes on a table's records; none where it carries none."""
+    return tuple(json.loads((table.schema.metadata or {}).get(NOTES_KEY, b"[]")))
 
 
 def feature_settings(table: pa.Table) -> FeatureSettings:

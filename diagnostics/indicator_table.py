@@ -6,6 +6,8 @@ Values do not depend on the number of workers: records are handed out in the ord
 from __future__ import annotations
 
 import json
+import math
+import pickle
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -114,9 +116,9 @@ def indicator_table(
     Raises
     ------
     DatasetError
-        If the set holds no records, or some cannot be used and `leave_out` is not set.
+        If the set holds no records, or some cannot be used or make an own indicator fail and `leave_out` is not set.
     UsageError
-        If two indicators have one name, an own indicator fails, or the set has no such state.
+        If two indicators have one name, or the set has no such state.
     """
     chosen = settings or IndicatorSettings()
     mine = _distinct((*registered(), *own))
@@ -148,6 +150,18 @@ def _distinct(own: tuple[OwnIndicator, ...]) -> tuple[OwnIndicator, ...]:
     return own
 
 
+def _check_sendable(own: tuple[OwnIndicator, ...]) -> None:
+    """Check that other processes can take the user's functions: they go there by module and name."""
+    for indicator in own:
+        try:
+            pickle.dumps(indicator)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise UsageError(
+                f"indicator {indicator.name!r} cannot go to other processes ({error}). Define it with `def` at the top "
+                "of its module, or give --workers 1."
+            ) from error
+
+
 def _chunks(records: Iterable[Recording], size: int) -> Iterator[list[Recording]]:
     iterator = iter(records)
     while chunk := list(islice(iterator, size)):
@@ -162,6 +176,7 @@ def _mapped(
         for chunk in chunks:
             yield chunk_indicators(chunk, own, settings)
         return
+    _check_sendable(own)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         waiting: deque[Future[list[RecordIndicators]]] = deque()
         try:
@@ -218,13 +233,27 @@ def record_indicators(
     moments = {}
     for channel, signal in good.items():
         found = channel_indicators(signal, record.fs_hz, grid, shafts, chosen)
-        where = f"record {labels['record_id']}, channel {channel}"
-        mine = {indicator.name: indicator.value(signal, pulses, gears, where) for indicator in own}
+        mine, failed = _own_values(own, signal, pulses, gears)
+        problems += [RecordProblem(int(labels["record_id"]), channel, text) for text in failed]
         values |= {f"{name}__{channel}": value for name, value in (found.values | mine).items()}
         moments[channel] = found.moments
     notes = [*(shaft.note for shaft in shafts if shaft.note), *(f"{p.channel}: {p.text}" for p in problems)]
     turns = (shafts[0].revolutions, shafts[1].revolutions)
     return RecordIndicators(labels, values, moments, turns, "; ".join(notes), problems)
+
+
+def _own_values(
+    own: Sequence[OwnIndicator], signal: np.ndarray, pulses: np.ndarray, gears: Gears
+) -> tuple[dict[str, float], list[str]]:
+    """Return the user's indicators of one channel, undefined where they fail, and how they failed."""
+    values, failed = {}, []
+    for indicator in own:
+        try:
+            values[indicator.name] = indicator.value(signal, pulses, gears)
+        except UsageError as error:
+            values[indicator.name] = math.nan
+            failed.append(str(error))
+    return values, failed
 
 
 def _pulses(record: Recording, channels: dict[str, np.ndarray], teeth: int, settings: IndicatorSettings) -> np.ndarray:

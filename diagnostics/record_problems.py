@@ -44,7 +44,8 @@ def record_problems(record: Recording, frame_samples: int, *, needs_tacho: bool)
         Whether angles come from the pulses.
     """
     number = int(record.labels["record_id"])
-    found = [RecordProblem(number, "", text) for text in _whole_record(record, needs_tacho)]
+    whole = whole_record_problem(record, needs_tacho=needs_tacho)
+    found = [RecordProblem(number, "", whole)] if whole else []
     for channel, signal in record.channels.items():
         text = _channel_problem(signal, frame_samples)
         if text:
@@ -52,29 +53,46 @@ def record_problems(record: Recording, frame_samples: int, *, needs_tacho: bool)
     return found
 
 
-def _whole_record(record: Recording, needs_tacho: bool) -> list[str]:
+def whole_record_problem(record: Recording, *, needs_tacho: bool = True, gear_turns: bool = True) -> str:
+    """Return what keeps all channels of a record from being used, or an empty text.
+
+    Parameters
+    ----------
+    record : Recording
+        The record.
+    needs_tacho : bool
+        Whether angles come from the pulses.
+    gear_turns : bool
+        Whether the gear has to turn as often as an average needs, not the pinion alone.
+    """
     teeth = [_number(record.labels.get(f"teeth_{gear}")) for gear in ("pinion", "gear")]
-    if not (np.isfinite(record.fs_hz) and record.fs_hz > 0):
-        return [f"sampling rate: received {record.fs_hz}; it must be positive. Correct fs_hz in the set's manifest."]
+    fs_hz = _number(record.fs_hz)
+    if not (np.isfinite(fs_hz) and fs_hz > 0):
+        return f"sampling rate: received {record.fs_hz}; it must be positive. Correct fs_hz in the set's manifest."
     if not all(np.isfinite(z) and z >= 3 and z == round(z) for z in teeth):
-        return [
+        return (
             f"teeth_pinion, teeth_gear: received {teeth[0]:g}, {teeth[1]:g}; allowed are whole numbers from 3 on. "
             "Orders and averages need both: correct the columns."
-        ]
+        )
+    return _pulse_problem(record, teeth[1] / teeth[0] if gear_turns else 1.0) if needs_tacho else ""
+
+
+def _pulse_problem(record: Recording, ratio: float) -> str:
     pulses = np.asarray(record.tacho_s, dtype=np.float64)
-    if not needs_tacho:
-        return []
     if not np.isfinite(pulses).all() or (pulses.size > 1 and not (np.diff(pulses) > 0).all()):
-        return ["pulse times are not finite and increasing. Correct tacho_s, or give --speed-range to do without."]
+        return (
+            "pulse times are not finite and increasing. Correct tacho_s; `siggen-diagnostics indicators` takes "
+            "--speed-range to do without."
+        )
     turns = max(pulses.size - 1, 0)
-    if min(turns, turns * teeth[0] / teeth[1]) >= FEWEST_REVOLUTIONS:
-        return []
-    needed = int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, teeth[1] / teeth[0])))
-    return [
-        f"{turns} whole pinion revolutions between pulses; averages of both shafts over at least {FEWEST_REVOLUTIONS} "
-        f"revolutions need {needed}. Use longer records (duration_s) or a higher speed; without a tacho give "
-        "--speed-range."
-    ]
+    if min(turns, turns / ratio) >= FEWEST_REVOLUTIONS:
+        return ""
+    shafts = "averages" if ratio == 1.0 else "averages of both shafts"
+    return (
+        f"{turns} whole pinion revolutions between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
+        f"revolutions need {int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, ratio)))}. Use longer records (duration_s) or a "
+        "higher speed; without a tacho `siggen-diagnostics indicators` takes --speed-range."
+    )
 
 
 def _channel_problem(signal: np.ndarray, frame_samples: int) -> str:

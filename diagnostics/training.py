@@ -21,7 +21,7 @@ from diagnostics.baselines import (
 from diagnostics.boosting import train_boosting
 from diagnostics.comparison import Comparison, comparison, state_auc
 from diagnostics.evaluation import Interval, Predictions
-from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings
+from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings, table_notes
 from diagnostics.judgement import (
     BOOSTING,
     INDICATORS,
@@ -45,6 +45,7 @@ from diagnostics.severity import (
 )
 from diagnostics.single_thread import single_thread
 from diagnostics.splits import SpecimenSplit, specimen_split
+from siggen.errors import DatasetError
 
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
@@ -125,7 +126,10 @@ def train_models(
     """
     options = network or NetworkOptions()
     matrix = feature_matrix(table)
-    split = specimen_split(matrix.labels)
+    try:
+        split = specimen_split(matrix.labels)
+    except DatasetError as error:
+        raise DatasetError(f"{dataset.path}: {error}") from error
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, advance=advance)
@@ -135,7 +139,8 @@ def train_models(
         found, trained = judge_networks(dataset, matrix, split, seed, options, stage)
         results += found
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
-    notes = dict.fromkeys(str(found.details["note"]) for found in results if found.details.get("note"))
+    details = (str(found.details["note"]) for found in results if found.details.get("note"))
+    notes = dict.fromkeys((*table_notes(table), *details))
     return Training(
         judged=tuple(results),
         classifier=models[INDICATORS],

@@ -8,11 +8,12 @@ from typing import Any
 
 import pyarrow as pa
 
-from diagnostics.feature_table import feature_table
+from diagnostics.feature_table import feature_table, with_notes
 from diagnostics.other_set import check_other_set
 from diagnostics.progress import Stage
 from diagnostics.training import OtherSet
-from diagnostics.usable_channels import check_channels, with_channels
+from diagnostics.usable_channels import with_channels
+from diagnostics.usable_records import check_records
 from siggen.dataset import reading
 
 
@@ -35,16 +36,16 @@ def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tu
 
 
 def set_table(dataset: Any, stage: Stage, title: str = "indicators") -> pa.Table:
-    """Return the feature table of a set whose channels are usable.
+    """Return the feature table of a set whose records are usable, with notes on those to be taken with care.
 
     Raises
     ------
     DatasetError
-        If a channel is constant or not finite.
+        As of `check_records`.
     """
-    check_channels(dataset)
+    notes = check_records(dataset, can_leave_channels=True)
     with stage(title, int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        return feature_table(dataset, advance=advance)
+        return with_notes(feature_table(dataset, advance=advance), notes)
 
 
 def other_table(other: Any, stage: Stage) -> OtherSet:

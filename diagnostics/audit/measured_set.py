@@ -17,8 +17,9 @@ import pyarrow.parquet as pq
 
 from diagnostics.audit.channel_quantities import channel_quantities
 from diagnostics.audit.speed_variation import speed_variation_percent
-from diagnostics.recording import TACHO_NAME
+from diagnostics.recording import TACHO_NAME, Recording
 from diagnostics.signal.order_domain import angle_grid
+from diagnostics.usable_records import RecordCheck
 from siggen.errors import DatasetError
 
 VERSION = "1"
@@ -87,7 +88,7 @@ def measured_set(dataset: Any, cache: Path | None = None, advance: Callable[[], 
     Raises
     ------
     DatasetError
-        If the set holds no records.
+        If the set holds no records, or some that cannot be used.
     """
     key = _key(dataset)
     table = _cached(cache, key) if cache else None
@@ -122,24 +123,35 @@ def _cached(cache: Path, key: str) -> pa.Table | None:
 
 def _rows(dataset: Any, advance: Callable[[], None] | None) -> Iterator[dict[str, Any]]:
     columns = [*NEEDED, *(channel.column for channel in dataset.channels), TACHO_NAME]
+    check = RecordCheck()
     for split in dataset.splits:
         for batch in dataset.records(split=split, columns=columns, batch_rows=BATCH_ROWS):
             for row in range(batch.num_rows):
-                yield from _record_rows(batch, row, dataset)
+                record = _recording(batch, row, dataset)
+                if check.usable(record):
+                    yield from _record_rows(record, dataset)
                 if advance:
                     advance()
+    check.finish(dataset)
 
 
-def _record_rows(batch: Any, row: int, dataset: Any) -> Iterator[dict[str, Any]]:
-    record_id, *teeth = (int(batch.column(name)[row].as_py()) for name in NEEDED)
+def _recording(batch: Any, row: int, dataset: Any) -> Recording:
+    labels = {name: batch.column(name)[row].as_py() for name in NEEDED}
+    signals = {channel.name: np.asarray(batch.column(channel.column)[row].values) for channel in dataset.channels}
     tacho_s = np.asarray(batch.column(TACHO_NAME)[row].values, dtype=np.float64)
+    return Recording(labels, signals, tacho_s, dataset.fs_hz)
+
+
+def _record_rows(record: Recording, dataset: Any) -> Iterator[dict[str, Any]]:
+    record_id, *teeth = (int(record.labels[name]) for name in NEEDED)
+    tacho_s = record.tacho_s
     pulses = len(tacho_s)
     grid = None
     if pulses > 2:
         # as many steps as the record has samples in its slowest revolution: no band limit, no waste
         grid = angle_grid(tacho_s, _steps(dataset.fs_hz * float(np.diff(tacho_s).max())))
     for channel in dataset.channels:
-        signal = np.asarray(batch.column(channel.column)[row].values)
+        signal = record.channels[channel.name]
         found = (
             channel_quantities(signal, dataset.fs_hz, grid, tacho_s, (teeth[0], teeth[1])) if grid is not None else None
         )

@@ -19,12 +19,16 @@ def features(
     Example: siggen-diagnostics features data/quickstart --out features.parquet
     """
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.feature_table import check_suffix, feature_table, write_table
+    from diagnostics.feature_table import check_suffix, feature_table, with_notes, write_table
+    from diagnostics.usable_records import check_records
     from siggen.dataset.reading import open as open_set
 
     check_suffix(out)
     dataset = open_set(directory)
+    notes = check_records(dataset)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         table = feature_table(dataset, advance=advance)
-    write_table(table, out)
+    write_table(with_notes(table, notes), out)
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
     typer.echo(str(out))

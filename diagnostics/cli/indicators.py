@@ -61,6 +61,7 @@ def indicators(
     from diagnostics.indicators.own_indicator import load_indicator
     from diagnostics.report.indicator_report import write_indicator_report
     from diagnostics.signal.tacholess_angle import check_speed_range
+    from diagnostics.usable_records import check_states
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
@@ -68,6 +69,7 @@ def indicators(
         check_speed_range(speed_range)
     own = [load_indicator(reference) for reference in indicator or ()]
     dataset = open_set(directory)
+    check_states(dataset)
     settings = IndicatorSettings(speed_range_hz=speed_range)
     states = chosen_states(dataset, state or ())
     records = sum(name in states for name in dataset.labels(columns=["state"]).column("state").to_pylist())

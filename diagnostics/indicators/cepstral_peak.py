@@ -47,7 +47,7 @@ def cepstral_peak(log_spectrum: np.ndarray, period_steps: float) -> float:
     -----
     An echo of share a at that delay: a/2. Dimensionless (nepers). Source: Randall 2017.
     """
-    middle = round(period_steps)
-    if middle < 2 or middle + 1 > log_spectrum.size - 1:
+    if period_steps < 2 or period_steps + 1 > log_spectrum.size - 1:
         return math.nan
-    return float(cepstrum_at(log_spectrum, np.arange(middle - 1, middle + 2)).max())
+    # not at whole steps: half a step beside a peak the cepstrum is down to 0.64 of it, differently at every speed
+    return float(cepstrum_at(log_spectrum, period_steps + np.array([-1.0, 0.0, 1.0])).max())

@@ -88,7 +88,7 @@ DEFINITIONS: tuple[Definition, ...] = (
         "",
         "single mesh line: 2",
         "the mesh lines are below 1e-9 of the peak-to-peak",
-        f"Stewart 1977; {CONDITION_METRICS} forms its sum from the regular signal, so values differ",
+        f"Stewart 1977; {CONDITION_METRICS} takes average and regular signal, so its sum may differ",
     ),
     Definition(
         "fm4",

@@ -17,7 +17,8 @@ def energy_ratio(difference: np.ndarray, regular: np.ndarray) -> float:
 
     Notes
     -----
-    Below 1 in a serviceable gearbox as a rule. Source: Swansson, as in standard literature.
+    Below 1 in a serviceable gearbox as a rule. MATLAB's `gearConditionMetrics` takes difference and regular signal too.
+    Source: Swansson, as in standard literature.
     """
     kept = float(regular.std())
     return float(difference.std()) / kept if kept > 0.0 else math.nan

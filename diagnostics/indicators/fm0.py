@@ -25,7 +25,9 @@ def fm0(average: np.ndarray, amplitude: np.ndarray, teeth: int, harmonics: int) 
 
     Notes
     -----
-    One mesh line alone: 2. NaN where the lines are below 1e-9 of the peak-to-peak. Source: Stewart 1977.
+    One mesh line alone: 2. NaN where the lines are below 1e-9 of the peak-to-peak. MATLAB's `gearConditionMetrics`
+    takes average and regular signal; how it forms the sum was not found stated, so its values may differ. Source:
+    Stewart 1977.
     """
     swing = float(average.max() - average.min())
     lines = float(amplitude[teeth : harmonics * teeth + 1 : teeth].sum())

@@ -20,6 +20,7 @@ def fm4(difference: np.ndarray, average: np.ndarray) -> float:
 
     Notes
     -----
-    Gaussian: 3. Not monotone in severity: pitting over many teeth lowers it again. Source: Stewart 1977.
+    Gaussian: 3. Not monotone in severity: pitting over many teeth lowers it again. MATLAB's `gearConditionMetrics`
+    takes the difference signal too. Source: Stewart 1977.
     """
     return kurtosis(difference, reference_rms=rms(average))

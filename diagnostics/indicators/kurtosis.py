@@ -22,7 +22,8 @@ def kurtosis(signal: np.ndarray, reference_rms: float | None = None) -> float:
 
     Notes
     -----
-    Gaussian: 3; sine: 1.5. Source: standard literature.
+    Gaussian: 3; sine: 1.5. MATLAB's `gearConditionMetrics` takes it of the synchronous average. Source: standard
+    literature.
     """
     centred = signal - signal.mean()
     squared = centred * centred

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+import math
 import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -38,22 +41,33 @@ class OwnIndicator:
     name: str
     function: IndicatorFunction
 
-    def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: Gears, where: str) -> float:
+    def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
         """Return the value for one channel of a record.
+
+        The function gets copies, so that it cannot change what the next indicator sees.
 
         Raises
         ------
         UsageError
-            If the function fails or returns no number; the message names indicator and record.
+            If the function fails or returns no finite number and no nan; the message names the indicator.
         """
         try:
-            found = self.function(signal, tacho_s, gears)
-            return float(found)
+            return _one_number(self.function(signal.copy(), tacho_s.copy(), gears))
         except Exception as error:
             raise UsageError(
-                f"indicator {self.name!r} failed at {where}: {type(error).__name__}: {error}. It is called as "
+                f"indicator {self.name!r} failed: {type(error).__name__}: {error}. It is called as "
                 "function(signal, tacho, gears) and has to return one float (nan: undefined)."
             ) from error
+
+
+def _one_number(found: Any) -> float:
+    """Return a number or numpy scalar as float."""
+    if isinstance(found, str | bytes) or np.ndim(found) != 0:
+        raise TypeError(f"returned {type(found).__name__} {np.shape(found)}, not one number")
+    number = float(found)
+    if math.isinf(number):
+        raise ValueError("returned an infinite number; nan stands for undefined")
+    return number
 
 
 def register(name: str) -> Callable[[IndicatorFunction], IndicatorFunction]:
@@ -96,7 +110,8 @@ def load_indicator(reference: str) -> OwnIndicator:
     Raises
     ------
     UsageError
-        If the reference has no colon, the module cannot be imported, or it has no such function.
+        If the reference has no colon, the module cannot be imported, it has no such function, or the function does not
+        take three arguments.
     """
     module_name, colon, attribute = reference.partition(":")
     if not colon or not module_name or not attribute:
@@ -105,16 +120,36 @@ def load_indicator(reference: str) -> OwnIndicator:
     if here not in sys.path:  # an installed command does not look into the folder it is called from
         sys.path.append(here)
     try:
-        function = getattr(importlib.import_module(module_name), attribute)
-    except (ImportError, AttributeError) as error:
+        module = importlib.import_module(module_name)
+    except (Exception, SystemExit) as error:  # a user's module may fail in any way while it is read
         raise UsageError(
-            f"--indicator {reference}: {error}. The module must be importable: put it into this folder, install its "
-            "package, or set PYTHONPATH to its folder."
+            f"--indicator {reference}: {type(error).__name__}: {error}. The module must be importable: put it into "
+            "this folder, install its package, or set PYTHONPATH to its folder."
         ) from error
-    if not callable(function):
-        raise UsageError(f"--indicator {reference}: {attribute} is a {type(function).__name__}, not a function")
+    if not hasattr(module, attribute):
+        place = getattr(module, "__file__", "the interpreter itself")
+        raise UsageError(
+            f"--indicator {reference}: module {module_name!r} has no attribute {attribute!r}; it was found at {place}. "
+            "If another file of that name was meant, rename it."
+        )
+    function = getattr(module, attribute)
+    _check_function(function, reference, attribute)
     _check_name(attribute)
     return OwnIndicator(attribute, function)
+
+
+def _check_function(function: object, reference: str, attribute: str) -> None:
+    if not callable(function):
+        raise UsageError(f"--indicator {reference}: {attribute} is a {type(function).__name__}, not a function")
+    try:
+        inspect.signature(function).bind(None, None, None)
+    except ValueError:  # compiled functions may have no signature: the first record tells
+        return
+    except TypeError as error:
+        raise UsageError(
+            f"--indicator {reference}: {error}. It is called as function(signal, tacho, gears): signal (n,) [m/s²], "
+            "pulse times (k,) [s], tooth numbers and rates."
+        ) from error
 
 
 def _check_name(name: str) -> None:

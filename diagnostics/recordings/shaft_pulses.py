@@ -107,7 +107,8 @@ def _mean_speed(pulses_s: np.ndarray) -> float:
 
 def _pulses_around(signal: np.ndarray, fs_hz: float, teeth: int, speeds_hz: np.ndarray) -> np.ndarray:
     margin = 0.02 * float(speeds_hz.mean())
-    return tacholess_pulses(signal, fs_hz, teeth, (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin))
+    low_high = (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin)
+    return tacholess_pulses(signal, fs_hz, teeth, low_high, doubts=False)  # half and double are compared by the caller
 
 
 def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarray, highest_hz: float) -> float:

@@ -73,9 +73,9 @@ def write_report(
         If matplotlib or scikit-learn are missing.
     """
     require_packages("the report", "matplotlib", "sklearn", "skops")
-    folder.mkdir(parents=True, exist_ok=True)
     table = set_table(dataset, stage)
     second = other_table(other, stage) if other is not None else None
+    folder.mkdir(parents=True, exist_ok=True)
     matrix = feature_matrix(table)
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)

@@ -59,8 +59,8 @@ def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
     ----------
     log_spectrum : (k,) float64
         As of `real_cepstrum`.
-    quefrency : (m,) int
-        Indices into what `real_cepstrum` returns.
+    quefrency : (m,) int or float64
+        Indices into what `real_cepstrum` returns; between them the value is the band-limited interpolation.
 
     Returns
     -------

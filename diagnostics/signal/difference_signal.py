@@ -4,7 +4,9 @@ residual = average minus shaft orders and ALL mesh harmonics (sidebands kept); d
 order sidebands; regular = average minus difference. Orders are whole bins of one revolution, so nothing rings and
 nothing depends on speed, unlike notch filters in Hz. Source: Lebold et al. 2000 for the separation of residual and
 difference; all mesh harmonics below the band edge are removed unless `harmonics` says how many. MATLAB's `tsaresidual`,
-`tsadifference` and `tsaregular` separate alike, with the first shaft order always taken away.
+`tsadifference` and `tsaregular` separate alike (help page on filtered averages): the first shaft order always counts,
+and so do so many harmonics of it and of the mesh, two in their worked example; here that is `shaft_orders=2,
+harmonics=2`. With harmonics 3 to 5 strong, as in most measured gearboxes, two are too few.
 """
 
 from __future__ import annotations

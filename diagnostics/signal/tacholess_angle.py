@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.signal.mesh_excess import frame_excess, other_speed
 from siggen.errors import UsageError
 
 FRAME_REVOLUTIONS = 4.0
@@ -25,9 +26,6 @@ PHASE_BANDWIDTH_ORDERS = 0.1
 7e-4 of its amplitude."""
 
 PASSES = 3
-NOISE_EXCESS = 1.0
-"""Logarithm of amplitude over its median that noise reaches (Rayleigh: 1 in 160 samples); less says nothing."""
-
 LEAST_CLARITY = 0.1
 """Five times what noise reaches: one of ten harmonics that stands out by e more than noise does."""
 
@@ -46,11 +44,14 @@ class MeshRidge:
     clarity : float
         Mean over frames and harmonics of how far the lines stand above noise, as natural logarithm of amplitude; white
         noise alone gives 0.01 to 0.02.
+    doubt : str
+        What the lines say against this speed; empty where nothing does.
     """
 
     time_s: np.ndarray
     speed_hz: np.ndarray
     clarity: float
+    doubt: str = ""
 
 
 def mesh_ridge(
@@ -96,11 +97,15 @@ def mesh_ridge(
         )
     speeds = np.arange(low, high, 0.25 * fs_hz / size / teeth / max(used))
     starts = np.arange(0, signal.size - size + 1, size // HOPS_PER_FRAME)
-    score = np.stack([_frame_score(signal[i : i + size], fs_hz, teeth * np.outer(used, speeds)) for i in starts])
+    lines_hz = teeth * np.outer(used, speeds)
+    score = np.stack([frame_excess(signal[i : i + size], fs_hz, lines_hz).sum(axis=0) for i in starts])
     reach = max(1, round(LARGEST_CHANGE_PER_HOP * 0.5 * (low + high) / (speeds[1] - speeds[0])))
     path = _best_path(score, reach)
     clarity = float(score[np.arange(starts.size), path].mean() / len(used))
-    return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity)
+    apart = slice(None, None, HOPS_PER_FRAME)
+    frames = [signal[i : i + size] for i in starts[apart]]
+    doubt = other_speed(frames, fs_hz, teeth * speeds, path[apart], used) if clarity >= LEAST_CLARITY else ""
+    return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity, doubt)
 
 
 def check_speed_range(speed_range_hz: tuple[float, float]) -> None:
@@ -117,18 +122,6 @@ def check_speed_range(speed_range_hz: tuple[float, float]) -> None:
             f"speed range: received {low:g} to {high:g} Hz; allowed is 0 < low < high < 2 low, so that no other mesh "
             "harmonic lies in it. Give the range the shaft can have run in."
         )
-
-
-def _frame_score(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
-    """Return the summed excess of log amplitude over the band's median and its noise, (candidates,)."""
-    from scipy import fft
-
-    padded = fft.next_fast_len(4 * frame.size, real=True)
-    spectrum = np.abs(fft.rfft(frame * np.hanning(frame.size), padded))
-    bins = np.rint(frequency_hz * padded / fs_hz).astype(np.int64)
-    level = np.log(spectrum[bins] + 1e-12 * spectrum.max() + 1e-300)
-    excess = level - np.median(level, axis=1, keepdims=True)
-    return np.asarray(np.maximum(excess - NOISE_EXCESS, 0.0).sum(axis=0))
 
 
 def _best_path(score: np.ndarray, reach: int) -> np.ndarray:
@@ -155,15 +148,22 @@ def tacholess_pulses(
     teeth: int,
     speed_range_hz: tuple[float, float],
     harmonics: tuple[int, ...] = HARMONICS,
+    *,
+    doubts: bool = True,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
 
     The pulse's place on the shaft is arbitrary, so averages are shifted against those by a tacho; indicators are not.
+    Drift of 4 % over the record, or up and down at 1 Hz, is followed within 0.03 of a tooth pitch at noise as strong as
+    the signal (tested); speed that swings by that much within ten revolutions is not. The range has to be right: that
+    the lines belong to another speed is noticed only where they contradict it plainly.
 
     Parameters
     ----------
     signal, fs_hz, teeth, speed_range_hz, harmonics :
         As of `mesh_ridge`.
+    doubts : bool
+        Refuse lines that plainly belong to another speed; not for a caller who compares several ranges himself.
 
     Returns
     -------
@@ -173,13 +173,18 @@ def tacholess_pulses(
     Raises
     ------
     UsageError
-        As `mesh_ridge`, and if no mesh line stands above the noise within the range.
+        As `mesh_ridge`, if no mesh line stands above the noise within the range, or the lines belong to another speed.
     """
     ridge = mesh_ridge(signal, fs_hz, teeth, speed_range_hz, harmonics)
     if ridge.clarity < LEAST_CLARITY:
         raise UsageError(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
             f"speed (clarity {ridge.clarity:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
+        )
+    if doubts and ridge.doubt:
+        raise UsageError(
+            f"within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft speed the mesh lines fit best at "
+            f"{float(np.median(ridge.speed_hz)):.4g} Hz, but {ridge.doubt}. Check range and teeth, or give a tacho."
         )
     time_s = np.arange(signal.size) / fs_hz
     turns = np.cumsum(np.interp(time_s, ridge.time_s, _smoothed(ridge.speed_hz))) / fs_hz

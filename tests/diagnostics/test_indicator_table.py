@@ -17,7 +17,7 @@ from diagnostics.indicators.definitions import BY_NAME, DEFINITIONS
 from diagnostics.indicators.na4 import na4
 from diagnostics.indicators.na4_star import na4_star
 from diagnostics.indicators.nb4 import dominant_harmonic, nb4
-from diagnostics.indicators.own_indicator import Gears, OwnIndicator, load_indicator, register, unregister
+from diagnostics.indicators.own_indicator import Gears, OwnIndicator, register, unregister
 from diagnostics.record_problems import clipped_share
 from diagnostics.recording import Recording, recordings
 from diagnostics.shaft_signals import record_shafts, shaft_signals
@@ -118,31 +118,38 @@ def test_own_indicator_stands_beside_the_others(small: Any) -> None:
     assert column(found, "other__bearing_horizontal")[0] == pytest.approx(expected)
 
 
-def test_own_indicator_that_fails_is_named_with_the_record(small: Any) -> None:
-    record = next(recordings(small))
-    broken = OwnIndicator("broken", lambda signal, tacho, gears: signal[10**9])
-    with pytest.raises(UsageError, match=r"'broken' failed at record 0, channel bearing_vertical: IndexError"):
-        record_indicators(record, [broken])
-    with pytest.raises(UsageError, match="one float"):
-        record_indicators(record, [OwnIndicator("vague", lambda signal, tacho, gears: None)])  # type: ignore[arg-type, return-value]
+def broken(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    return float(signal[10**9])
+
+
+def test_own_indicator_that_fails_stops_the_set_or_is_undefined_and_noted(small: Any) -> None:
+    own = [OwnIndicator("broken", broken), OwnIndicator("other", peak)]
+    with pytest.raises(DatasetError, match=r"(?s)record 0, channel bearing_vertical: indicator 'broken' failed: Index"):
+        indicator_table(small, own)
+    found = indicator_table(small, own, leave_out=True)
+    assert np.isnan(column(found, "broken__bearing_vertical")).all()
+    assert np.isfinite(column(found, "other__bearing_vertical")).all()
+    assert np.isfinite(column(found, "rms__bearing_vertical")).all()
+    assert len(found.problems) == 2 * len(found.notes)
+    assert all("'broken' failed" in note for note in found.notes)
     with pytest.raises(UsageError, match="came twice"):
         indicator_table(small, [OwnIndicator("same", peak), OwnIndicator("same", peak)])
 
 
-def test_indicator_is_loaded_by_its_reference() -> None:
-    assert load_indicator("statistics:fmean").name == "fmean"
-    for reference, text in {
-        "statistics.fmean": "allowed is package.module:function",
-        "no_such_module:f": "PYTHONPATH",
-        "statistics:nothing": "no attribute",
-        "math:pi": "not a function",
-        "diagnostics.indicators.rms:rms": "one of the package's own",
-    }.items():
-        with pytest.raises(UsageError, match=text):
-            load_indicator(reference)
-    for name in ("Peak", "peak_h1", "peak_pinion", "a__b"):
-        with pytest.raises(UsageError, match="indicator name"):
-            register(name)
+def test_function_that_other_processes_cannot_find_is_refused_before_any_starts(small: Any) -> None:
+    with pytest.raises(UsageError, match=r"'local' cannot go to other processes.*--workers 1"):
+        indicator_table(small, [OwnIndicator("local", lambda signal, tacho, gears: 1.0)], workers=2)
+
+
+def test_own_indicator_cannot_change_what_the_next_one_sees(small: Any) -> None:
+    def greedy(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+        signal[:], tacho_s[:] = 0.0, 0.0
+        return 0.0
+
+    record = next(recordings(small))
+    alone = record_indicators(record, [OwnIndicator("other", peak)]).values
+    after = record_indicators(record, [OwnIndicator("greedy", greedy), OwnIndicator("other", peak)]).values
+    assert {name: after[name] for name in alone} == pytest.approx(alone, nan_ok=True)
 
 
 def changed(record: Recording, channel: str = "bearing_vertical", **changes: Any) -> Recording:

@@ -15,7 +15,7 @@ from diagnostics.indicators.cepstral_peak import cepstral_peak, shaft_log_spectr
 from diagnostics.indicators.phase_modulation import phase_modulation_rad
 from diagnostics.indicators.sideband_asymmetry import sideband_asymmetry_db
 from diagnostics.indicators.sideband_power import sideband_power
-from diagnostics.signal.demodulation import demodulated
+from diagnostics.signal.demodulation import Modulation, demodulated
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128
@@ -79,6 +79,15 @@ def test_mesh_line_weaker_than_its_sidebands_has_no_phase_depth() -> None:
     assert math.isnan(amplitude_modulation(nothing))
 
 
+def test_phase_that_swings_by_a_turn_has_no_depth_at_any_order() -> None:
+    # cos(z a + 3.3 sin 3a + 0.1 sin a): once per revolution 0.1 rad only, but the carrier is gone at times
+    swinging = Modulation(np.ones(SAMPLES), 3.3 * np.sin(3 * ANGLE) + 0.1 * np.sin(ANGLE))
+    assert math.isnan(phase_modulation_rad(swinging))
+    assert phase_modulation_rad(Modulation(np.ones(SAMPLES), 3.0 * np.sin(3 * ANGLE) + 0.1 * np.sin(ANGLE))) == (
+        pytest.approx(0.1)
+    )
+
+
 def test_asymmetry_of_amplitude_and_phase_modulation_together() -> None:
     # (1 + m cos a) cos(z a + b sin a): sidebands J_1 + m/2 (J_0 + J_2) above, the same with -J_1 below
     depth, beta = 0.3, 0.2
@@ -104,6 +113,13 @@ def test_echo_after_one_revolution_stands_in_the_cepstrum_of_that_shaft_only() -
     assert abs(cepstral_peak(found, gear)) < spread
     assert math.isnan(cepstral_peak(found, found.size - 1))
     assert math.isfinite(cepstral_peak(found, found.size - 2))
+
+
+def test_cepstral_peak_is_the_largest_within_one_step_of_the_revolution() -> None:
+    size, period = 4001, 320.4
+    for aside, share in ((0.0, 1.0), (1.0, 1.0), (-1.0, 1.0), (3.0, 0.0)):
+        ripple = 0.6 * np.cos(2 * np.pi * np.arange(size) * (period + aside) / (2 * (size - 1)))
+        assert cepstral_peak(ripple, period) == pytest.approx(0.3 * share, abs=0.001)
 
 
 def test_mesh_lines_alone_leave_nothing_at_the_pinions_quefrency() -> None:

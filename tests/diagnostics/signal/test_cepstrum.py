@@ -38,6 +38,15 @@ def test_removed_lines_leave_no_rahmonic() -> None:
     np.testing.assert_allclose(without_lines(log_spectrum, 50)[26:], 0.0)
 
 
+def test_removed_lines_take_the_whole_main_lobe_with_them() -> None:
+    log_spectrum = np.linspace(0.0, 1.0, 1001)
+    smooth = log_spectrum.copy()
+    for line in range(50, 1000, 50):
+        log_spectrum[line - 2 : line + 3] += [1.0, 4.0, 5.0, 4.0, 1.0]
+    # what lies beside a line is a straight line here, so that nothing of the line is left and nothing else is touched
+    np.testing.assert_allclose(without_lines(log_spectrum, 50)[:990], smooth[:990], atol=1e-12)
+
+
 def test_spectral_kurtosis_of_noise_is_zero_and_of_a_tone_minus_one() -> None:
     rng = np.random.default_rng(2)
     noise = rng.standard_normal(256 * 2000)
@@ -79,3 +88,12 @@ def test_cepstrum_at_a_few_quefrencies_is_that_of_the_transform(size: int) -> No
     few = np.array([0, 1, size // 2, size - 1, whole.size - 1])
     # both sum rounding errors of 1e-16 of values of order one
     np.testing.assert_allclose(cepstrum_at(log_spectrum, few), whole[few], rtol=1e-12, atol=1e-15)
+
+
+def test_cepstrum_between_its_steps_is_that_of_the_ripple_it_stands_for() -> None:
+    # a ripple a cos(2 pi f tau) of the log spectrum with tau = 40.5 steps: a/2 there, a/2 sinc(1/2) at 40 and 41
+    size = 4001
+    ripple = 0.6 * np.cos(2 * np.pi * np.arange(size) * 40.5 / (2 * (size - 1)))
+    found = cepstrum_at(ripple, np.array([40.5, 40.0, 41.0]))
+    # the mirror images of the ripple add 1/(2 pi 81) of it
+    np.testing.assert_allclose(found, [0.3, 0.3 * np.sinc(0.5), 0.3 * np.sinc(0.5)], atol=0.3 / (2 * np.pi * 40))

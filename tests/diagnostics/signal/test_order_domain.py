@@ -41,10 +41,18 @@ def test_changing_speed_is_followed_between_the_pulses() -> None:
 
 
 def test_band_above_the_angle_steps_is_removed() -> None:
-    # 64 steps per revolution at 30 Hz carry 960 Hz; 2 kHz would fold to 80 Hz. 1e-3: leakage of the cut-off tone
+    # 64 steps per revolution at 30 Hz carry 960 Hz; 1 kHz would fold to 920 Hz. 1e-3: leakage of the cut-off tone
     grid = angle_grid(constant_speed_pulses(30.0), 64)
-    found = resample_to_angle(np.cos(2 * np.pi * 2000.0 * TIME_S), FS_HZ, grid)
+    found = resample_to_angle(np.cos(2 * np.pi * 1000.0 * TIME_S), FS_HZ, grid)
     assert np.abs(found[64:-64]).max() < 1e-3
+
+
+def test_band_below_nine_tenths_of_what_the_angle_steps_carry_is_kept() -> None:
+    grid = angle_grid(constant_speed_pulses(30.0), 64)
+    tone = np.cos(2 * np.pi * 0.88 * 960.0 * TIME_S)
+    expected = np.cos(2 * np.pi * 0.88 * 960.0 * grid.time_s)
+    # 1e-3: what the ends of the record leave after some milliseconds
+    assert np.abs(resample_to_angle(tone, FS_HZ, grid) - expected)[64:-64].max() < 1e-3
 
 
 @given(speed_hz=st.floats(8.0, 60.0), offset_s=st.floats(0.0, 0.01))
@@ -58,6 +66,11 @@ def test_steps_lie_evenly_between_pulses_at_constant_speed(speed_hz: float, offs
     assert grid.slowest_hz == pytest.approx(speed_hz)
 
 
+def test_band_limit_follows_the_slowest_revolution() -> None:
+    # steps per second are fewest there, so that only there could a line fold
+    assert angle_grid(np.array([0.0, 0.1, 0.15, 0.19, 0.25]), 64).slowest_hz == pytest.approx(10.0)
+
+
 def test_two_pulses_give_one_revolution_of_constant_speed() -> None:
     grid = angle_grid(np.array([0.1, 0.2]), 10)
     np.testing.assert_allclose(grid.time_s, 0.1 + 0.01 * np.arange(10))
@@ -67,3 +80,35 @@ def test_two_pulses_give_one_revolution_of_constant_speed() -> None:
 def test_pulses_that_give_no_angle_are_refused(pulses: list[float]) -> None:
     with pytest.raises(ValueError, match="at least 2 increasing"):
         angle_grid(np.array(pulses), 10)
+
+
+def test_jitter_of_the_pulses_costs_a_line_what_the_phase_error_costs() -> None:
+    # pulses off by a Gaussian share s of a revolution, interpolated between: order o keeps about
+    # exp(-(2 pi o s)^2 w/2), w the mean over a revolution of the spline's squared weights on the pulses: 0.6 to 1
+    rng = np.random.default_rng(5)
+    speed_hz, order, jitter = 40.0, 18, 0.004
+    pulses = np.arange(0.02, 3.98, 1 / speed_hz)
+    late = pulses + jitter / speed_hz * rng.standard_normal(pulses.size)
+    time_s = np.arange(round(4 * FS_HZ)) / FS_HZ
+    steps = resample_to_angle(np.cos(2 * np.pi * order * speed_hz * time_s), FS_HZ, angle_grid(late, 1152))
+    kept = 2 * abs(np.mean(steps * np.exp(-2j * np.pi * order * np.arange(steps.size) / 1152)))
+    square = (2 * np.pi * order * jitter) ** 2
+    # 158 pulses: their mean square is known to sqrt(2/158) = 11 %, three of which are allowed
+    assert np.exp(-square * 1.0 / 2 * 1.34) < kept < np.exp(-square * 0.6 / 2 * 0.66)
+
+
+@given(change=st.floats(-0.2, 0.2), order=st.integers(1, 150))
+@settings(max_examples=15, deadline=None)
+def test_chirp_of_known_order_is_a_steady_tone_over_angle(change: float, order: int) -> None:
+    # speed from 30 Hz on, by up to a fifth within 2 s; exact pulses. Order 150 at 36 Hz is 0.11 of the sampling rate,
+    # where interpolation errs by 2 (0.053/0.947)^6 < 1e-7; the spline through pulses one turn apart by
+    # t''''/384 = 15 a^3/v^7/384 = 2e-10 s at 24 Hz, times 2 pi 150 * 24 Hz: 5e-6, and band limits the rest
+    time_s = np.arange(round(2 * FS_HZ)) / FS_HZ
+    slope = 30.0 * change / 2.0
+    turns = 30.0 * time_s + slope / 2 * time_s**2
+    whole = np.arange(1, int(turns[-1]))
+    pulses = np.interp(whole, turns, time_s) if slope == 0 else 2 * whole / (30 + np.sqrt(30**2 + 2 * slope * whole))
+    steps = resample_to_angle(np.cos(2 * np.pi * order * turns + 0.5), FS_HZ, angle_grid(pulses, STEPS))
+    inner = slice(3 * STEPS, -3 * STEPS)
+    expected = np.cos(2 * np.pi * order * (1 + np.arange(steps.size) / STEPS) + 0.5)
+    assert np.abs(steps - expected)[inner].max() < 1e-4

@@ -35,3 +35,9 @@ def test_shafts_with_common_orders_are_never_told_apart() -> None:
 def test_unresolved_sidebands_are_marked_around_every_mesh_line() -> None:
     marked = resolved_lines(np.ones(100), np.array([True, False, True]), teeth=47)
     assert set(np.flatnonzero(np.isnan(marked))) == {2, 45, 49, 92, 96}
+
+
+def test_far_from_the_other_shafts_sidebands_the_next_one_of_its_own_shaft_decides() -> None:
+    # 47/18 teeth: sideband 4 of the gear is 1.2 orders from the pinion's nearest, but one order from 3 and 5
+    assert revolutions_needed(4, 47, 18) == 2.0
+    assert revolutions_needed(5, 47, 18) == pytest.approx(2.0 / (2 * 47 / 18 - 5))

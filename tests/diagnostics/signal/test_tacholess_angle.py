@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.synchronous_average import synchronous_average
@@ -43,6 +45,59 @@ def test_ridge_follows_the_speed_within_its_bin() -> None:
     # a frame of 0.16 s has bins of 6.25 Hz; the first harmonic alone, of 18 teeth, would tell the speed that well
     assert np.abs(ridge.speed_hz - speed_hz).max() < 6.25 / 18
     assert ridge.clarity > 0.3  # three of ten harmonics, each at least e above what noise reaches
+
+
+def swinging(speed_hz: float, kind: str, drift: float, phase: float, noise: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a record whose speed changes by `drift` at most, with noise as a share of the signal, and its turns."""
+    rng = np.random.default_rng(round(1e6 * phase))
+    time_s = np.arange(round(2.0 * FS_HZ)) / FS_HZ
+    change = time_s / 2.0 - 0.5 if kind == "linear" else 0.5 * np.sin(2 * np.pi * float(kind) * time_s + phase)
+    turns = np.cumsum(speed_hz * (1 + drift * change)) / FS_HZ + phase
+    shape = 1 + 0.4 * np.cos(2 * np.pi * turns) + 0.2 * np.cos(2 * np.pi * RATIO * turns + 1)
+    signal = shape * sum(a * np.cos(2 * np.pi * h * TEETH * turns + h) for h, a in ((1, 0.5), (2, 1.0), (3, 0.4)))
+    return signal + noise * signal.std() * rng.standard_normal(time_s.size), turns
+
+
+@given(
+    speed_hz=st.floats(22.0, 50.0),
+    kind=st.sampled_from(["linear", "0.3", "1.0"]),
+    drift=st.floats(-0.04, 0.04),
+    phase=st.floats(0.0, 6.0),
+    low=st.floats(0.71, 0.9),
+)
+@settings(max_examples=12, deadline=None)
+def test_drift_of_four_percent_in_a_range_of_nearly_an_octave_at_noise_as_strong_as_the_signal(
+    speed_hz: float, kind: str, drift: float, phase: float, low: float
+) -> None:
+    signal, turns = swinging(speed_hz, kind, drift, phase, noise=1.0)
+    pulses = tacholess_pulses(signal, FS_HZ, TEETH, (low * speed_hz, 1.99 * low * speed_hz))
+    at = np.interp(pulses, np.arange(turns.size) / FS_HZ, turns)
+    error = at - np.arange(at.size) - np.median(at - np.arange(at.size))
+    # white noise through the phase filter, 0.25 orders wide, leaves 0.1 rad at harmonic 2: 0.008 pitches; four of them
+    assert np.abs(error[6:-6]).max() < 0.03 / TEETH
+
+
+@given(
+    speed_hz=st.floats(22.0, 50.0),
+    wrong=st.sampled_from([(1.1, 2.05), (1.4, 2.7), (0.45, 0.85), (0.26, 0.48)]),
+    phase=st.floats(0.0, 6.0),
+)
+@settings(max_examples=12, deadline=None)
+def test_range_that_holds_another_multiple_of_the_speed_only_is_refused(
+    speed_hz: float, wrong: tuple[float, float], phase: float
+) -> None:
+    signal, _ = swinging(speed_hz, "1.0", 0.02, phase, noise=0.3)
+    with pytest.raises(UsageError, match=r"Check range and teeth"):
+        tacholess_pulses(signal, FS_HZ, TEETH, (wrong[0] * speed_hz, wrong[1] * speed_hz))
+
+
+def test_sidebands_at_every_order_are_no_reason_to_refuse_the_right_range() -> None:
+    # a spall: a short pulse once per revolution beside the mesh lines gives lines at all orders, half-way ones too
+    signal, turns = swinging(30.0, "1.0", 0.02, 1.0, noise=0.1)
+    pulse = np.exp(-(((turns + 0.5) % 1.0 - 0.5) ** 2) / (2 * 0.01**2)) * np.cos(2 * np.pi * 40 * turns)
+    ridge = mesh_ridge(signal + 3.0 * pulse, FS_HZ, TEETH, (22.0, 40.0))
+    assert ridge.doubt == ""
+    assert np.median(ridge.speed_hz) == pytest.approx(30.0, rel=0.01)
 
 
 def test_noise_without_a_mesh_line_is_refused() -> None:
