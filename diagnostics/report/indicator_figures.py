@@ -77,7 +77,7 @@ def _heat_map(
         if math.isfinite(value):
             dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
             size, colour = 6.5 if crowded else 7.5, "white" if dark else "#1c2733"
-            text = f"{value:.2f}".removeprefix("0") if crowded else f"{value:.2f}"
+            text = f"{value:.2f}".removeprefix("0").replace("1.00", "1") if crowded else f"{value:.2f}"
             axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour)
     if crowded:
         axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7.5, rotation=90)
