@@ -82,7 +82,7 @@ def notes(texts: Sequence[str]) -> list[str]:
 def inline(text: str) -> str:
     """Return text for the page: `code` between backticks, long names broken between their parts."""
     found = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
-    return re.sub(r"(?<=\w)_(?=\w)", "_<wbr>", found)
+    return re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found)
 
 
 def figure_block(png: bytes, caption: str) -> str:

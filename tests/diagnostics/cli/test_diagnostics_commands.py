@@ -95,7 +95,7 @@ def test_both_programs_word_every_kind_of_error_alike(
         KeyboardInterrupt(): (130, f"{program}: interrupted\n"),
         ValueError("odd"): (
             1,
-            f"{program}: unexpected ValueError: odd; run again with SIGGEN_TRACEBACK=1 for details\n",
+            f"{program}: unexpected ValueError: odd; {again}\n",
         ),
     }
     for error, (code, text) in expected.items():
