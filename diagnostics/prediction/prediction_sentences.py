@@ -23,12 +23,13 @@ def prediction_summary(found: Prediction) -> list[str]:
     speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
     source = "the tacho" if found.pulses.source == "tacho" else f"the mesh lines of {found.pulses.source}"
     if found.reasons:
-        answer = f"No answer should be taken: {'; '.join(found.reasons)}"
+        reasons = "; ".join(reason.rstrip(".") for reason in found.reasons)
+        answer = f"No answer should be taken: {reasons}"
     else:
         answer = f"The recording is most like the state {found.state}"
     withheld = ", which is not to be taken" if found.reasons else ""
     return [
-        f"{answer.rstrip('.')}.",
+        f"{answer}.",
         *([f"Most probable is {joined(votes)}{withheld}."] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
         f"This rests on {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
