@@ -171,12 +171,14 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
     rows = (len(usable) + 1) // 2
     figure, axes = new_figure(rows, 2, height_in=0.8 + 1.75 * rows, sharex=True, sharey=True)
     for axis, (name, found) in zip(axes.ravel(), usable.items(), strict=False):
-        for colour, state in zip(fault_colours(len(states)), states, strict=True):
-            curve = found[state]
+        for place, (colour, state) in enumerate(zip(fault_colours(len(states)), states, strict=True)):
+            curve, marker = found[state], MARKERS[place % len(MARKERS)]
             low, high = [a.low for a in curve.auc], [a.high for a in curve.auc]
             axis.fill_between(curve.snr_db, low, high, color=colour, alpha=0.12, linewidth=0)
             label = state if axis is axes[0, 0] else None
-            axis.plot(curve.snr_db, [a.value for a in curve.auc], color=colour, marker="o", markersize=3, label=label)
+            axis.plot(
+                curve.snr_db, [a.value for a in curve.auc], color=colour, marker=marker, markersize=3, label=label
+            )
         axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
         axis.set_title(name.replace("__", "\n"), loc="left", fontsize=8)
     for axis in axes.ravel()[len(usable) :]:

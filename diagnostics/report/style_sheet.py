@@ -59,7 +59,7 @@ table.wider{font-size:.58rem}table.wider small{white-space:normal}
 thead{display:table-header-group}thead button{display:contents}thead button::after{content:""!important}
 tr,figure,.note,.short{break-inside:avoid}
 h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orphans:3;widows:3}
-.cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block}
+.cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block;break-before:avoid}
 .figures{grid-template-columns:1fr 1fr;gap:.8rem}figure{padding:.3rem}
 .first,.note{background:none}}
 """
