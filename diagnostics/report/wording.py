@@ -10,7 +10,7 @@ from diagnostics.evaluation import Interval
 
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural unless there is one."""
-    ending = "es" if noun.endswith("x") else "s"
+    ending = "es" if noun.endswith(("x", "ss")) else "s"
     return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else noun + ending}"
 
 

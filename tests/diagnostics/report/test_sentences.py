@@ -68,6 +68,7 @@ def classifier(name: str, accuracy: Interval, area: float, specimens: int, permu
         records=specimens,
         specimens=specimens,
         classes=("h", "s"),
+        guess=0.5,
     )
     return SimpleNamespace(name=name, scores=scores, permuted_auroc=np.array(permuted))
 
@@ -93,7 +94,8 @@ def training(
         pairs += [pair("boosting", "network", *network), pair("network", "rms", *around(gains[1]))]
     names = ("boosting", "rms", *(("network",) if network else ()))
     judged = [classifier(name, limits, 0.8, specimens, [0.49, 0.52] if name == "boosting" else []) for name in names]
-    return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe), judged=judged)
+    split = SimpleNamespace(members={"h": ("h",), "s": ("s",)})
+    return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe), judged=judged, split=split)
 
 
 @pytest.mark.parametrize(
@@ -189,6 +191,7 @@ def test_a_summary_with_scores_has_five_sentences_and_one_without_has_two() -> N
 
 def test_words_for_numbers() -> None:
     assert [counted(k, "gearbox") for k in (0, 1, 2)] == ["0\xa0gearboxes", "1\xa0gearbox", "2\xa0gearboxes"]
+    assert [counted(2, noun) for noun in ("class", "piece")] == ["2\xa0classes", "2\xa0pieces"]
     assert [joined(parts) for parts in (["a"], ["a", "b"], ["a", "b", "c"])] == ["a", "a and b", "a, b and c"]
     assert [signed(value) for value in (0.1, -0.1, 0.001, -0.001)] == ["+0.10", "\N{MINUS SIGN}0.10", "0.00", "0.00"]
     assert percent(NAN) == "undefined"
