@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench clean
+.PHONY: demo test test-slow lint bench reports clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -31,6 +31,9 @@ test-slow: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks
+
+reports: $(STAMP)
+	$(BIN)/python docs/scripts/report_pages.py
 
 clean:
 	rm -rf $(VENV) runs build dist

@@ -91,9 +91,9 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [
-            Cell(f"{entry.state} ({entry.fault})"),
-            *(Cell(f"{entry.sizes[size]:.3g}", value=entry.sizes[size]) for size in sizes),
+            Cell(entry.state, entry.fault),
             interval_cell(entry.auc),
+            *(Cell(f"{entry.sizes[size]:.3g}", value=entry.sizes[size]) for size in sizes),
         ]
         for entry in entries
     ]
@@ -108,7 +108,7 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     ]
     return (
         html.heading(title, 3)
-        + html.table(["State", *(SIZE_TITLES[size] for size in sizes), "AUC [-]"], rows, caption=caption, sortable=True)
+        + html.table(["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)], rows, caption=caption, sortable=True)
         + html.paragraph("Interpolated length along the profile: " + "; ".join(reached) + ".")
     )
 

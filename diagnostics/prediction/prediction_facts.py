@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction
+from diagnostics.report.wording import counted
 
 MEANING = (
     "The models were trained on simulated records only; no measured pitting was used. A probability says how like the "
@@ -70,10 +71,11 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     """Return what the terminal and the page show first: label and text."""
     pulses = found.pulses
     source = "tacho" if pulses.source == "tacho" else f"mesh lines of {pulses.source}"
+    pieces = counted(len(found.pieces.values), "piece")
     rows = [
         ("answer", found.state),
         ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({source}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
-        ("averaged", f"{len(found.pieces.values)} pieces of {found.pieces.revolutions} or more pinion revolutions"),
+        ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),
     ]
     for vote in found.votes:
         shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))

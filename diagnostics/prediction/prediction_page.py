@@ -9,6 +9,7 @@ from diagnostics.extras import require_packages
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Prediction
 from diagnostics.prediction.prediction_facts import MEANING, prediction_facts, prediction_rows
+from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
 from diagnostics.prediction.sideband_figure import sideband_figure
 from diagnostics.report import html
 from diagnostics.report.style import png_bytes, styled
@@ -45,11 +46,11 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
         (folder / f"sidebands_{channel}.png").write_bytes(png)
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"
-    page.write_text(_page(found, content["indicators"], blocks), encoding="utf-8")
+    page.write_text(_page(found, facts, content["indicators"], blocks), encoding="utf-8")
     return page
 
 
-def _page(found: Prediction, indicators: dict[str, float | None], blocks: list[str]) -> str:
+def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | None], blocks: list[str]) -> str:
     rows = [[html.Cell(label), html.Cell(text)] for label, text in prediction_rows(found)]
     values = [
         [html.Cell(name), html.Cell("undefined" if value is None else f"{value:.4g}", value=value)]
@@ -58,7 +59,7 @@ def _page(found: Prediction, indicators: dict[str, float | None], blocks: list[s
     name = found.recording.path.name
     parts = [
         html.heading(f"{name}: {found.state}", 1),
-        html.paragraph(MEANING, "first"),
+        *html.summary([MEANING, *prediction_summary(found)]),
         html.table(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
         html.heading("Sidebands"),
         html.figure_grid(blocks),
@@ -70,5 +71,7 @@ def _page(found: Prediction, indicators: dict[str, float | None], blocks: list[s
             sortable=True,
             tall=True,
         ),
+        html.heading("Notes"),
+        *html.notes([model_provenance(facts)]),
     ]
     return html.page(f"Prediction for {name}", parts)

@@ -21,6 +21,9 @@ SHORT_ROWS = 12
 WIDE = 9
 """Columns beyond which paper needs small print."""
 
+WIDER = 14
+"""Columns beyond which it also needs limits on lines of their own."""
+
 PLAIN_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
@@ -79,7 +82,7 @@ def notes(texts: Sequence[str]) -> list[str]:
 def inline(text: str) -> str:
     """Return text for the page: `code` between backticks, long names broken between their parts."""
     found = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
-    return re.sub(r"(?<=\w)_(?=\w)", "_<wbr>", found)
+    return re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found)
 
 
 def figure_block(png: bytes, caption: str) -> str:
@@ -121,7 +124,12 @@ def table(
     """
     long = tall and len(rows) > PRINTED_ROWS and not text
     short = len(rows) <= SHORT_ROWS
-    flags = {"sortable": sortable, "text": text, "wide": len(head) > WIDE and not text}
+    flags = {
+        "sortable": sortable,
+        "text": text,
+        "wide": len(head) > WIDE and not text,
+        "wider": len(head) > WIDER and not text,
+    }
     box = " ".join(["scroll", *(["tall"] if tall else []), *(["cut"] if long else []), *(["short"] if short else [])])
     titles = "".join(f'<th scope="col">{inline(title)}</th>' for title in head)
     body = "".join(f"<tr>{''.join(_cell(cell, place) for place, cell in enumerate(row))}</tr>" for row in rows)

@@ -77,7 +77,7 @@ def _heat_map(
         if math.isfinite(value):
             dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
             size, colour = 6.5 if crowded else 7.5, "white" if dark else "#1c2733"
-            text = f"{value:.2f}".removeprefix("0") if crowded else f"{value:.2f}"
+            text = f"{value:.2f}".removeprefix("0").replace("1.00", "1") if crowded else f"{value:.2f}"
             axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour)
     if crowded:
         axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7.5, rotation=90)
@@ -171,12 +171,14 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
     rows = (len(usable) + 1) // 2
     figure, axes = new_figure(rows, 2, height_in=0.8 + 1.75 * rows, sharex=True, sharey=True)
     for axis, (name, found) in zip(axes.ravel(), usable.items(), strict=False):
-        for colour, state in zip(fault_colours(len(states)), states, strict=True):
-            curve = found[state]
+        for place, (colour, state) in enumerate(zip(fault_colours(len(states)), states, strict=True)):
+            curve, marker = found[state], MARKERS[place % len(MARKERS)]
             low, high = [a.low for a in curve.auc], [a.high for a in curve.auc]
             axis.fill_between(curve.snr_db, low, high, color=colour, alpha=0.12, linewidth=0)
             label = state if axis is axes[0, 0] else None
-            axis.plot(curve.snr_db, [a.value for a in curve.auc], color=colour, marker="o", markersize=3, label=label)
+            axis.plot(
+                curve.snr_db, [a.value for a in curve.auc], color=colour, marker=marker, markersize=3, label=label
+            )
         axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
         axis.set_title(name.replace("__", "\n"), loc="left", fontsize=8)
     for axis in axes.ravel()[len(usable) :]:

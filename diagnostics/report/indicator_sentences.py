@@ -20,7 +20,7 @@ def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...]
         return ["The set has no damaged state: indicators stand in the tables, and nothing can be told apart."]
     if specimens < 2:
         return ["With a single specimen the numbers below describe that specimen; they say nothing about others."]
-    return [*_best(found, states), *_by_state(found, states), *_survivors(found, states, specimens), *_smallest(found)]
+    return [*_best(found, states), *_by_state(found, states), *_survivors(found, specimens), *_smallest(found)]
 
 
 def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
@@ -76,26 +76,30 @@ def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list
     ]
 
 
-def _survivors(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
-    count = len(found) * len(states)
-    others, same = (
-        sum(r.holm < SIGNIFICANT for entry in found for r in getattr(entry, design).values())
-        for design in ("others", "same")
-    )
-    mild = sum(r.false_discovery < SIGNIFICANT for entry in found for r in entry.same.values())
+def _survivors(found: Sequence[IndicatorResult], specimens: int) -> list[str]:
+    others, same = ([r for entry in found for r in getattr(entry, design).values()] for design in ("others", "same"))
+    tested = [sum(math.isfinite(r.p_value) for r in results) for results in (others, same)]
+    if not any(tested):
+        return ["No difference could be tested: a test needs three specimens, healthy and damaged."]
+    kept = [sum(r.holm < SIGNIFICANT for r in results) for results in (others, same)]
+    mild = sum(r.false_discovery < SIGNIFICANT for r in same)
     text = (
-        f"Of {counted(count, 'comparison')} (indicator, channel, state), {others} between other specimens and {same} "
-        f"on the same specimen survive Holm's correction at {SIGNIFICANT:g}; {mild} on the same specimen "
-        f"{'stays' if mild == 1 else 'stay'} below a false discovery rate of 5\N{NO-BREAK SPACE}%"
+        f"Of {counted(tested[0], 'comparison')} between other specimens (indicator, channel, state) {kept[0]} "
+        f"{_verb('survive', kept[0])} Holm's correction at {SIGNIFICANT:g}, of {tested[1]} on the same specimen "
+        f"{kept[1]}; {mild} of the latter {_verb('stay', mild)} below a false discovery rate of 5\N{NO-BREAK SPACE}%"
     )
-    if smallest_paired_p(specimens) * count <= SIGNIFICANT:
+    if smallest_paired_p(specimens) * tested[1] <= SIGNIFICANT:
         return [f"{text}."]
-    needed = math.ceil(1.0 + math.log2(count / SIGNIFICANT))
+    needed = math.ceil(1.0 + math.log2(tested[1] / SIGNIFICANT))
     least = f"{smallest_paired_p(specimens):.2g}"
     return [
         f"{text}; with {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}, so that "
-        f"Holm's correction needs at least {needed} specimens to let any of {counted(count, 'comparison')} pass."
+        f"Holm's correction needs at least {needed} specimens to let any of {counted(tested[1], 'comparison')} pass."
     ]
+
+
+def _verb(verb: str, number: int) -> str:
+    return f"{verb}s" if number == 1 else verb
 
 
 def _smallest(found: Sequence[IndicatorResult]) -> list[str]:

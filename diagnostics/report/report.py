@@ -242,7 +242,7 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
         )
     if section == "indicators":
         text = (
-            f"{counted(len(found), 'feature')} on all specimens: nothing is trained here, so none has to be held "
+            f"All {counted(len(found), 'feature')} on all specimens: nothing is trained here, so none has to be held "
             "back. AUC 0.5 means no separation, 0 and 1 a perfect one."
         )
         followed = area_sentence(found)

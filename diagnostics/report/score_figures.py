@@ -94,7 +94,7 @@ def learning_curve_figure(points: tuple[CurvePoint, ...]) -> Figure:
     axis.set_xscale("log")
     axis.set_xticks(places, [str(place) for place in places])
     axis.minorticks_off()
-    axis.set_ylim(0.4, 1.02)
+    axis.set_ylim(min(0.4, axis.get_ylim()[0]), 1.02)
     axis.set_xlabel("Training specimens [-]")
     axis.set_ylabel("Macro-AUROC [-]")
     figure.legend(loc="outside upper center", ncols=2, fontsize=8)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.report.style import new_figure, state_ticks
+from diagnostics.report.style import SLANTED, new_figure, state_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,7 +40,7 @@ def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colour
 
 def stiffness_loss_figure(labels: dict[str, np.ndarray], classes: tuple[str, ...], colours: dict[str, str]) -> Figure:
     """Return the largest relative loss of mesh stiffness, a dot per specimen, over the states."""
-    figure, axes = new_figure(height_in=2.8)
+    figure, axes = new_figure(height_in=2.8 if len(classes) < SLANTED else 3.4)
     axis = axes[0, 0]
     for position, state in enumerate(classes):
         chosen = labels["state"] == state

@@ -30,7 +30,7 @@ tbody th{font-weight:inherit}
 th:first-child{text-align:left;white-space:normal;min-width:11rem;overflow-wrap:anywhere;position:sticky;left:0;
 background:#fff;border-right:1px solid var(--line)}
 thead th{position:sticky;top:0;background:var(--band);vertical-align:bottom;white-space:normal;
-min-width:4.5rem;z-index:1}
+min-width:3.2rem;z-index:1}
 thead th:first-child{background:var(--band);z-index:2}
 tbody tr:last-child>*{border-bottom:0}
 td small,th small{display:block;color:var(--soft)}
@@ -53,12 +53,13 @@ main{max-width:none;padding:0}p,li{max-width:none}h2{margin-top:1.4rem}
 table{border-collapse:collapse;font-size:.85rem}table.wide{font-size:.64rem}
 th:first-child,thead th,thead th:first-child{position:static;background:none;border-right:0}
 thead th{border-bottom:1.5pt solid var(--ink);min-width:0}tbody th:first-child{min-width:11em}
-table.text th,table.text td{min-width:0}
-th,td{padding:.15rem .3rem}table.wide th,table.wide td{padding:.12rem .18rem}table.wide small{white-space:normal}
+table.text td{min-width:0}table.text tbody th:first-child{min-width:8em}
+th,td{padding:.15rem .3rem}table.wide th,table.wide td{padding:.12rem .18rem}
+table.wider{font-size:.58rem}table.wider small{white-space:normal}
 thead{display:table-header-group}thead button{display:contents}thead button::after{content:""!important}
 tr,figure,.note,.short{break-inside:avoid}
 h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orphans:3;widows:3}
-.cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block}
+.cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block;break-before:avoid}
 .figures{grid-template-columns:1fr 1fr;gap:.8rem}figure{padding:.3rem}
 .first,.note{background:none}}
 """

@@ -7,14 +7,18 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pyarrow.parquet as pq
 import pytest
 
+import diagnostics.cli.app
+import siggen.cli.app
 from diagnostics.cli.app import main
 from diagnostics.recording import LABEL_NAMES, TACHO_NAME
 from siggen.dataset import reading
 from siggen.dataset.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
+from siggen.errors import UsageError
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -79,6 +83,32 @@ def test_interruption_has_its_exit_code(tmp_path: Path, monkeypatch: pytest.Monk
     assert run(monkeypatch, "report", str(tmp_path)) == 130
 
 
+@pytest.mark.parametrize("program", ["siggen", "siggen-diagnostics"])
+def test_both_programs_word_every_kind_of_error_alike(
+    program: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    module = {"siggen": siggen.cli.app, "siggen-diagnostics": diagnostics.cli.app}[program]
+    monkeypatch.delenv("SIGGEN_TRACEBACK", raising=False)
+    again = "run again with SIGGEN_TRACEBACK=1 for details"
+    expected = {
+        UsageError("no such set"): (2, f"{program}: no such set\n"),
+        KeyboardInterrupt(): (130, f"{program}: interrupted\n"),
+        ValueError("odd"): (
+            1,
+            f"{program}: unexpected ValueError: odd; {again}\n",
+        ),
+    }
+    for error, (code, text) in expected.items():
+        monkeypatch.setattr(module, "app", Mock(side_effect=error))
+        with pytest.raises(SystemExit) as stop:
+            module.main()
+        assert (stop.value.code, capsys.readouterr().err) == (code, text)
+    monkeypatch.setenv("SIGGEN_TRACEBACK", "1")
+    monkeypatch.setattr(module, "app", Mock(side_effect=ZeroDivisionError))
+    with pytest.raises(ZeroDivisionError):
+        module.main()
+
+
 def test_features_are_written_where_asked(
     dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,10 +146,13 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
     monkeypatch.setattr(reading, "open", lambda path: short)
     assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o")) == 2
     error = capsys.readouterr().err
-    for part in ("memory_set", "record 0", "revolutions need 6", "--leave-out"):
+    # 7 / 30 s: six pinion revolutions at 30 Hz, and one until the first pulse
+    for part in ("memory_set", "record 0", "revolutions need 6", "they have to last 0.24 s", "--leave-out"):
         assert part in error
     assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o"), "--leave-out") == 2
-    assert "not one of 6 records can be used" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "not one of 6 records can be used" in error
+    assert "they have to last 0.24 s" in error
     assert run(monkeypatch, "indicators", "x", "--speed-range", "40", "30") == 2
     assert "speed range" in capsys.readouterr().err
 

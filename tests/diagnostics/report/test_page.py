@@ -118,18 +118,46 @@ def test_states_have_different_colours_that_darken_with_severity(count: int) -> 
     assert state_colours(("h", *map(str, range(count))), {"h"})[str(count - 1)] == colours[-1]
 
 
+def opened(page: str, tmp_path: Path, width: int = 1200) -> str:
+    """Return the page after its scripts ran in a real browser."""
+    (tmp_path / "page.html").write_text(page, encoding="utf-8")
+    flags = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
+    command = [BROWSER, *flags, f"--window-size={width},900", "--dump-dom", (tmp_path / "page.html").as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+
+
 def sorted_names(clicks: str, tmp_path: Path) -> tuple[list[str], list[str]]:
-    """Return the names of the rows and the states of the heads after clicks on heads, in a real browser."""
+    """Return the names of the rows and the states of the heads after clicks on heads."""
     page = html.page("x", [html.table(HEAD, ROWS, sortable=True)])
-    script = (
-        f"<script>var heads=document.querySelectorAll('thead button');[{clicks}].forEach(k=>heads[k].click())</script>"
-    )
-    (tmp_path / "page.html").write_text(page.replace("</body>", f"{script}</body>"), encoding="utf-8")
-    flags = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom"]
-    command = [BROWSER, *flags, (tmp_path / "page.html").as_uri()]
-    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    clicked = f"var heads=document.querySelectorAll('thead button');[{clicks}].forEach(k=>heads[k].click())"
+    dom = opened(page.replace("</body>", f"<script>{clicked}</script></body>"), tmp_path)
     names = re.findall(r'<th scope="row">(.*?)</th>', dom)
     return [name.replace("<wbr>", "") for name in names], re.findall(r'aria-sort="(\w+)"', dom)
+
+
+@pytest.mark.skipif(not BROWSER, reason="no chromium or chrome on this machine")
+def test_on_a_phone_wide_tables_scroll_in_their_own_box_and_the_page_does_not(tmp_path: Path) -> None:
+    wide = [
+        [Cell(f"energy_operator_teager_pinion_{k}__side_horizontal"), *[Cell("+0.50", "+0.40 … +0.60")] * 20]
+        for k in (1, 2)
+    ]
+    head = ("Indicator, channel", *[f"AUC, through_{k:03d}" for k in range(20)])
+    with styled():
+        figure = html.figure_block(
+            png_bytes(new_figure(height_in=1.0)[0]), "A curve of energy_operator_teager_pinion_h5_k3."
+        )
+    tables = [html.table(head, wide, caption="Wide.", sortable=True), html.table(HEAD, ROWS)]
+    parts = [html.heading("sideband_ratio_pinion_h5_k3__side_horizontal", 1), html.paragraph("a" * 90), *tables]
+    script = (
+        "var root=document.documentElement,box=document.querySelector('.scroll');"
+        "document.title=[root.scrollWidth<=window.innerWidth,box.scrollWidth>box.clientWidth,window.innerWidth]"
+    )
+    page = html.page("x", [*parts, html.figure_grid([figure])]).replace("</body>", f"<script>{script}</script></body>")
+    found = re.search(r"<title>(.*?)</title>", opened(page, tmp_path, width=390))
+    assert found is not None
+    fits, scrolls, width = found.group(1).split(",")
+    assert (fits, scrolls) == ("true", "true")
+    assert int(width) <= 600  # narrow enough for the rules of a phone
 
 
 @pytest.mark.skipif(not BROWSER, reason="no chromium or chrome on this machine")

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,9 @@ import pytest
 from diagnostics.network_training import NetworkOptions
 from diagnostics.realism import meaning_of_scores
 from diagnostics.report.examples import OrderSpectrum, strongest_harmonic
+from diagnostics.report.provenance import without_path
 from diagnostics.report.report import write_report
+from siggen.errors import DatasetError
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +66,22 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     assert metrics["training"]["specimens"] == {"train": 12, "validation": 4, "test": 8}
     assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
     assert len(metrics["separability"]["features"]) == 312
+
+
+def test_a_page_names_what_to_cite_and_no_place_on_the_machine_that_made_it(folder: Path, dataset: Any) -> None:
+    text = (folder / "report.html").read_text().replace("<wbr>", "")
+    assert "with seed 0 from the set memory_set, identity 000000" in text
+    assert "72\xa0records of 1\xa0s in 2\xa0channels" in text
+    assert str(folder) not in text
+    error = DatasetError(f"{Path('/data/sets/memory_set')}: 3 records")
+    assert without_path(error, SimpleNamespace(path=Path("/data/sets/memory_set"))) == "memory_set: 3 records"
+
+
+@pytest.mark.slow  # trains everything twice
+def test_the_same_input_gives_the_same_page(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
+    small = make_dataset(("train",) * 3 + ("validation",) + ("test",) * 2)
+    pages = [write_report(small, tmp_path / name, 0, network=NetworkOptions(cnn=False)).read_bytes() for name in "ab"]
+    assert pages[0] == pages[1]
 
 
 def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:

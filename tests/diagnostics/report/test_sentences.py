@@ -1,58 +1,197 @@
-"""The summary says nothing that its numbers cannot carry."""
+"""The summary says nothing that its numbers cannot carry, and reads well with few of everything."""
 
 from __future__ import annotations
 
 import math
+import re
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from diagnostics.comparison import Comparison
 from diagnostics.evaluation import Interval
-from diagnostics.report.sentences import area_sentence, comparison_sentence, indicator_sentences
+from diagnostics.report.sentences import (
+    area_sentence,
+    certainty_sentence,
+    comparison_sentence,
+    control_sentence,
+    indicator_sentences,
+    scores_sentence,
+    summary,
+    trust_sentence,
+)
+from diagnostics.report.wording import counted, joined, percent, signed
 from diagnostics.separability import Separability
 
+NAN = math.nan
+UNDEFINED = Interval(NAN, NAN, NAN)
 
-def indicator(low: float, high: float) -> Separability:
-    return Separability("fm4__a", {"slight": Interval(0.9, low, high)}, Interval(0.5, low, high), 1.0)
+
+def indicator(low: float, high: float, value: float = 0.9, name: str = "fm4__a", state: str = "slight") -> Separability:
+    return Separability(name, {state: Interval(value, low, high)}, Interval(0.5, low, high), 1.0)
 
 
 def test_one_specimen_makes_no_statement_about_others() -> None:
-    sentences = indicator_sentences([indicator(math.nan, math.nan)])
+    sentences = indicator_sentences([indicator(NAN, NAN)])
     assert len(sentences) == 1
     assert "nothing about others" in sentences[0]
     assert "nan" not in sentences[0]
 
 
 def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
-    (first,) = indicator_sentences([indicator(0.8, 0.95)])
-    (second,) = area_sentence([indicator(0.8, 0.95)])
-    assert "0.90 (0.80 to 0.95" in first
+    one, two = indicator(0.8, 0.95), indicator(0.6, 0.8, 0.7, "rms__a", "severe")
+    (first,) = indicator_sentences([one, two])
+    (second,) = area_sentence([one])
+    assert "hardest to tell from healthy is severe: the best of 2\xa0single indicators, rms__a, which rises" in first
+    assert "0.70 (0.60 to 0.80" in first
     assert "+0.50" in second
 
 
-def training(severe: float, network: tuple[float, float, float]) -> Any:
-    """A training in which boosting is ahead of RMS, and the network differs from boosting as given."""
+def test_an_indicator_that_falls_is_turned_and_a_single_state_is_not_the_hardest() -> None:
+    (sentence,) = indicator_sentences([indicator(0.05, 0.2, 0.1)])
+    assert sentence.startswith("The damaged state is slight: the best of 1\xa0single indicator, fm4__a, which falls")
+    assert "an AUC of 0.90 (0.80 to 0.95;" in sentence
+
+
+@pytest.mark.parametrize("found", [[], [Separability("rms__a", {}, UNDEFINED, 1.0)], [indicator(NAN, NAN, NAN)]])
+def test_without_healthy_or_damaged_records_that_is_said(found: list[Separability]) -> None:
+    (sentence,) = indicator_sentences(found)
+    assert "lacks healthy or damaged records" in sentence
+
+
+def classifier(name: str, accuracy: Interval, area: float, specimens: int, permuted: list[float]) -> Any:
+    scores = SimpleNamespace(
+        accuracy=accuracy,
+        macro_auroc=Interval(area, NAN, NAN),
+        records=specimens,
+        specimens=specimens,
+        classes=("h", "s"),
+        guess=0.5,
+    )
+    return SimpleNamespace(name=name, scores=scores, permuted_auroc=np.array(permuted))
+
+
+def training(
+    severe: float = 0.5,
+    network: tuple[float, float, float] | None = (0.1, -0.05, 0.2),
+    gains: tuple[float, float] = (0.3, 0.2),
+    specimens: int = 5,
+    share: float = 0.6,
+) -> Any:
+    """A training in which boosting and the network gain over RMS as given, and boosting differs from the network."""
 
     def pair(first: str, second: str, *gain: float) -> Comparison:
         return Comparison(first, second, Interval(*gain), Interval(*gain))
 
-    pairs = (
-        pair("boosting", "network", *network),
-        pair("boosting", "rms", 0.3, 0.2, 0.4),
-        pair("network", "rms", 0.2, 0.1, 0.3),
-    )
-    return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe))
+    def around(value: float) -> tuple[float, float, float]:
+        return (value, value - 0.1, value + 0.1) if specimens > 1 else (value, NAN, NAN)
+
+    limits = Interval(share, share - 0.1, share + 0.1) if specimens > 1 else Interval(share, NAN, NAN)
+    pairs = [pair("boosting", "rms", *around(gains[0]))]
+    if network:
+        pairs += [pair("boosting", "network", *network), pair("network", "rms", *around(gains[1]))]
+    names = ("boosting", "rms", *(("network",) if network else ()))
+    judged = [classifier(name, limits, 0.8, specimens, [0.49, 0.52] if name == "boosting" else []) for name in names]
+    split = SimpleNamespace(members={"h": ("h",), "s": ("s",)})
+    return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe), judged=judged, split=split)
 
 
-@pytest.mark.parametrize(("severe", "text"), [(0.97, "already tells"), (0.95, "AUC of 0.95 only"), (0.5, "0.50 only")])
+@pytest.mark.parametrize(
+    ("severe", "text"), [(0.97, "already tells"), (0.95, "AUC of 0.95."), (0.5, "0.50 only."), (NAN, "told apart.")]
+)
 def test_a_level_that_finds_severe_damage_by_itself_is_said(severe: float, text: str) -> None:
-    sentence = comparison_sentence(training(severe, (0.1, -0.05, 0.2)))
+    sentence = comparison_sentence(training(severe))
     assert text in sentence
     assert "gradient boosting on indicators gains +0.30 of macro-AUROC (+0.20 to +0.40, paired)" in sentence
 
 
 def test_the_network_is_ahead_or_behind_only_where_the_paired_interval_says_so() -> None:
-    assert "cannot be told apart" in comparison_sentence(training(0.5, (0.1, -0.05, 0.2)))
-    assert "1-D network being -0.10 from it (-0.15 to -0.05)" in comparison_sentence(training(0.5, (0.1, 0.05, 0.15)))
+    assert "cannot be told apart" in comparison_sentence(training())
+    sentence = comparison_sentence(training(network=(0.1, 0.05, 0.15))).replace("\N{MINUS SIGN}", "-")
+    assert "1-D network being -0.10 from it (-0.15 to -0.05)" in sentence
+
+
+def test_a_network_that_is_best_is_compared_with_the_best_of_the_others() -> None:
+    ahead = training(network=(-0.1, -0.15, -0.05), gains=(0.2, 0.3))
+    sentence = comparison_sentence(ahead).replace("\N{MINUS SIGN}", "-")
+    assert "Over RMS alone, 1-D network gains +0.30" in sentence
+    assert "best of the others, gradient boosting on indicators, being -0.10 from it (-0.15 to -0.05)" in sentence
+    alike = comparison_sentence(training(network=(-0.1, -0.15, 0.05), gains=(0.2, 0.3)))
+    assert "from which the best of the others, gradient boosting on indicators, cannot be told apart" in alike
+
+
+def test_a_gain_that_may_be_none_is_not_sold_as_one() -> None:
+    assert (
+        "+0.05 of macro-AUROC (\N{MINUS SIGN}0.05 to +0.15, paired, not told apart from none)"
+        in comparison_sentence(training(gains=(0.05, 0.0)))
+    )
+    assert comparison_sentence(training(gains=(-0.05, -0.1))).startswith("Nothing beats RMS alone")
+
+
+def test_a_set_without_network_has_no_word_about_it() -> None:
+    alone = training(network=None)
+    text = " ".join([scores_sentence(alone), comparison_sentence(alone), trust_sentence(alone)])
+    assert "network" not in text
+    assert "gradient boosting on indicators 60\xa0% (50\xa0% to 70\xa0%, macro-AUROC 0.80) and RMS alone" in text
+
+
+def test_one_test_specimen_has_no_interval_and_no_plural() -> None:
+    single = training(specimens=1, network=(0.1, NAN, NAN))
+    text = " ".join([scores_sentence(single), comparison_sentence(single), trust_sentence(single)])
+    assert "On 1\xa0record of 1\xa0test specimen" in text
+    assert "no interval from one specimen" in text
+    assert "From a single test specimen there are no intervals" in text
+    assert not re.search(r"\bnan\b|\b1\s\w+s\b", text)
+
+
+def test_undefined_scores_are_called_undefined() -> None:
+    lost = training()
+    lost.comparisons = [Comparison("boosting", "rms", UNDEFINED, UNDEFINED)]
+    for found in lost.judged:
+        found.scores.macro_auroc = UNDEFINED
+    assert "macro-AUROC undefined" in scores_sentence(lost)
+    assert "macro-AUROC is undefined" in comparison_sentence(lost)
+    assert "nan" not in scores_sentence(lost) + comparison_sentence(lost)
+
+
+def test_no_error_at_all_is_no_proof() -> None:
+    sentence = certainty_sentence(training(share=1.0))
+    # 1 - 0.05^(1/5): five specimens without an error
+    assert "up to 45\xa0% of specimens with errors" in sentence
+
+
+@pytest.mark.parametrize(("specimens", "verdict"), [(5, "few they are rough"), (40, "many they are meaningful")])
+def test_few_specimens_give_rough_intervals(specimens: int, verdict: str) -> None:
+    assert verdict in certainty_sentence(training(specimens=specimens))
+
+
+def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> None:
+    off = training()
+    off.judged[0].permuted_auroc = np.array([0.7, 0.75, NAN])
+    assert "off chance (0.5) for gradient boosting on indicators" in control_sentence(off)
+    assert "2 runs" in control_sentence(off)
+    for found in off.judged:
+        found.permuted_auroc = np.array([])
+    assert control_sentence(off) == ""
+    assert "permuted" not in trust_sentence(off)
+
+
+def test_a_summary_with_scores_has_five_sentences_and_one_without_has_two() -> None:
+    found = [indicator(0.8, 0.95)]
+    config = {"manufacture": {"accuracy_class": 6}}
+    for sentences, count in ((summary(config, training(), found), 5), (summary(config, None, found), 2)):
+        assert len(sentences) == count
+        for sentence in sentences:
+            assert sentence.endswith(".")
+            # one sentence each: a full stop only inside numbers
+            assert not re.search(r"[.] [A-Z]", sentence)
+
+
+def test_words_for_numbers() -> None:
+    assert [counted(k, "gearbox") for k in (0, 1, 2)] == ["0\xa0gearboxes", "1\xa0gearbox", "2\xa0gearboxes"]
+    assert [counted(2, noun) for noun in ("class", "piece")] == ["2\xa0classes", "2\xa0pieces"]
+    assert [joined(parts) for parts in (["a"], ["a", "b"], ["a", "b", "c"])] == ["a", "a and b", "a, b and c"]
+    assert [signed(value) for value in (0.1, -0.1, 0.001, -0.001)] == ["+0.10", "\N{MINUS SIGN}0.10", "0.00", "0.00"]
+    assert percent(NAN) == "undefined"

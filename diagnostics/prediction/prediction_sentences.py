@@ -1,0 +1,42 @@
+"""What a prediction says, in sentences written from its numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.prediction.model_facts import ModelFacts
+from diagnostics.prediction.prediction import Prediction
+from diagnostics.report.wording import counted, joined, percent
+
+TITLES = {"healthy_referenced": "differences from the healthy reference", "network": "the network"}
+
+
+def prediction_summary(found: Prediction) -> list[str]:
+    """Return the answer or why there is none, the votes, the distance, and what they rest on."""
+    votes = [
+        f"{found.classes[int(np.argmax(vote.probability))]} by {TITLES.get(vote.classifier, vote.classifier)} "
+        f"({percent(float(vote.probability.max()))}; {percent(vote.agreement)} of the pieces agree)"
+        for vote in found.votes
+    ]
+    near = found.nearness
+    side = "beyond" if near.outside else "within"
+    speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
+    source = "the tacho" if found.pulses.source == "tacho" else f"the mesh lines of {found.pulses.source}"
+    if found.reasons:
+        reasons = "; ".join(reason.rstrip(".") for reason in found.reasons)
+        answer = f"No answer should be taken: {reasons}"
+    else:
+        answer = f"The recording is most like the state {found.state}"
+    withheld = ", which is not to be taken" if found.reasons else ""
+    return [
+        f"{answer}.",
+        *([f"Most probable is {joined(votes)}{withheld}."] if votes else []),
+        f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
+        f"This rests on {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
+        f"revolutions at {speed}, from {source}.",
+    ]
+
+
+def model_provenance(facts: ModelFacts) -> str:
+    """Return which set the models were trained on."""
+    return f"Models trained on the set {facts.set_name}, identity {facts.identity}."

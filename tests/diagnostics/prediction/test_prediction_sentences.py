@@ -1,0 +1,47 @@
+"""The sentences of a prediction: an answer, or the reasons for none, and what both rest on."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from diagnostics.prediction.prediction import Nearness, Vote
+from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
+
+
+def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) -> Any:
+    votes = (Vote("indicators", np.array([0.05, 0.95]), 1.0), Vote("network", np.array([0.6, 0.4]), 0.5))
+    return SimpleNamespace(
+        classes=("healthy", "severe"),
+        votes=votes,
+        nearness=Nearness(distance, 2.0, ()),
+        reasons=reasons,
+        state="abstains" if reasons else "severe",
+        pieces=SimpleNamespace(values=np.zeros((pieces, 3)), revolutions=53),
+        pulses=SimpleNamespace(speed_hz=36.325, source="tacho"),
+    )
+
+
+def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
+    assert prediction_summary(prediction(0.83)) == [
+        "The recording is most like the state severe.",
+        "Most probable is severe by indicators (95\xa0%; 100\xa0% of the pieces agree) and healthy by the network "
+        "(60\xa0%; 50\xa0% of the pieces agree).",
+        "Its distance to the training records is 0.83, within the threshold of 2.00.",
+        "This rests on 1\xa0piece of 53 or more pinion revolutions at 36.33\xa0Hz, from the tacho.",
+    ]
+
+
+def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -> None:
+    found = prediction_summary(prediction(3.0, ("too far from training.", "other teeth"), pieces=2))
+    assert found[0] == "No answer should be taken: too far from training; other teeth."
+    assert found[1].endswith(", which is not to be taken.")
+    assert "3.00, beyond the threshold" in found[2]
+    assert "2\xa0pieces" in found[3]
+
+
+def test_the_set_behind_the_models_is_named() -> None:
+    facts: Any = SimpleNamespace(set_name="quickstart", identity="42ab")
+    assert model_provenance(facts) == "Models trained on the set quickstart, identity 42ab."

@@ -1,0 +1,68 @@
+"""What the page says about splits and the learning curve, and what it says where they were not run or are undefined."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnostics.evaluation import Interval
+from diagnostics.learning_curve import CurvePoint
+from diagnostics.report.comparison_tables import curve_table, split_sentence, split_table, study_blocks
+from diagnostics.report.score_figures import learning_curve_figure
+from diagnostics.report.style import png_bytes, styled
+from diagnostics.studies import Studies
+
+
+def row(title: str, area: float) -> Any:
+    found = SimpleNamespace(
+        macro_auroc=Interval(area, area - 0.05, area + 0.05), accuracy=Interval(area, area - 0.05, area + 0.05)
+    )
+    return SimpleNamespace(title=title, indicators=found, rms=found, leaky="leaky" in title, folds=5)
+
+
+@pytest.mark.parametrize(
+    ("leaky", "records", "specimens", "text", "below"),
+    [
+        (0.861, 0.9, 0.799, "the score loses 0.06 (0.80)", False),
+        (0.80, 0.9, 0.804, "the score loses nothing (0.80)", False),
+        (0.86, 0.69, 0.80, "Held out by record the score is lower still (0.69)", True),
+    ],
+)
+def test_the_difference_that_is_said_is_that_of_the_numbers_that_are_shown(
+    leaky: float, records: float, specimens: float, text: str, below: bool
+) -> None:
+    rows = (row("random windows (leaky)", leaky), row("records", records), row("specimens", specimens))
+    assert text in split_sentence(rows)
+    assert ("lower still" in split_sentence(rows)) == below
+
+
+def test_splits_that_could_not_be_scored_are_not_compared() -> None:
+    sentence = split_sentence((row("random windows (leaky)", math.nan), row("specimens", 0.8)))
+    assert sentence.endswith("split in different ways.")
+    assert "undefined" in split_table((row("specimens", math.nan),))
+
+
+POINTS = (
+    CurvePoint(1, np.array([np.nan, np.nan]), np.array([0.5, 0.7])),
+    CurvePoint(2, np.array([0.6, 0.8]), np.array([0.5, 0.7])),
+    CurvePoint(3, np.array([0.9]), np.array([0.6])),
+)
+
+
+def test_the_curve_shows_mean_and_range_and_leaves_out_what_is_undefined() -> None:
+    text = curve_table(POINTS)
+    assert '<td data-value="">undefined</td>' in text
+    assert "<td>0.70 <small>0.60 … 0.80</small></td>" in text
+    assert "<td>0.90</td>" in text
+    with styled():
+        assert png_bytes(learning_curve_figure(POINTS)).startswith(b"\x89PNG")
+
+
+def test_studies_that_were_not_run_say_how_to_have_them() -> None:
+    (text,) = study_blocks(None)
+    assert "<code>siggen-diagnostics report DIR --studies</code>" in text
+    assert len(study_blocks(Studies((row("specimens", 0.8),), POINTS))) == 3

@@ -1,0 +1,59 @@
+"""docs/reports: every page is one file that names no machine, and the commands in its README are those that make it."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+FOLDER = ROOT / "docs" / "reports"
+PAGES = sorted(FOLDER.glob("*.html"))
+
+
+@pytest.fixture(scope="module")
+def script() -> ModuleType:
+    specification = importlib.util.spec_from_file_location(
+        "report_pages", ROOT / "docs" / "scripts" / "report_pages.py"
+    )
+    assert specification is not None
+    assert specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_is_complete_small_and_names_no_machine(page: Path, script: ModuleType) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert script.places(text) == []
+    assert not re.search(r'(src|href)="(?!data:)', text)
+    # what a phone loads at once; quickstart is what a reader opens first
+    assert page.stat().st_size <= (1.0e6 if page.stem.startswith("quickstart") else 1.5e6)
+    assert "Made by siggen-diagnostics" in text
+
+
+def test_the_readme_names_every_page_with_the_command_that_makes_it(script: ModuleType) -> None:
+    text = (FOLDER / "README.md").read_text(encoding="utf-8")
+    named = dict(
+        re.findall(r"^\| \[(\w+)\.html\]\(\1\.html\) \|.*\| `siggen-diagnostics ([^`]+)` \|$", text, re.MULTILINE)
+    )
+    assert named == {name: command for pages in script.REPORTS.values() for name, (_, command) in pages.items()}
+    assert {page.stem for page in PAGES} <= set(named)
+
+
+def test_places_on_a_machine_are_found_and_other_words_are_not(script: ModuleType) -> None:
+    assert script.places("see /tmp/set/a.json and /home/ann/x") == ["/tmp/set/a.json", "/home/ann/x"]
+    assert script.places(f"in {Path.cwd()}/runs")[0] == str(Path.cwd())
+    assert script.places("healthy / damaged, 1/2, m/s², </small>, root mean square") == []
+
+
+def test_the_commands_that_make_the_bench_are_those_of_the_presets_page(script: ModuleType) -> None:
+    page = re.sub(r"(?:\\|\s)+", " ", (ROOT / "docs" / "presets.md").read_text(encoding="utf-8"))
+    for command in (*script.SETS["bench"], *script.SETS["other"]):
+        assert command in page
+    for _, command in script.REPORTS["bench"].values():
+        assert f"siggen-diagnostics {command}" in page

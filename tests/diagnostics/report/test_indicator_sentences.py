@@ -1,0 +1,87 @@
+"""The findings of the page of indicators, with few states, few specimens and nothing defined."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from diagnostics.assessment.indicator_result import UNDEFINED, IndicatorResult, StateResult
+from diagnostics.evaluation import Interval
+from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
+from diagnostics.report.indicator_tables import undefined_html
+
+NAN = math.nan
+
+
+def state(value: float, p_value: float = 0.001, holm: float = 0.01) -> StateResult:
+    found = Interval(value, value - 0.1, value + 0.1)
+    return StateResult(found, found, p_value, holm, holm)
+
+
+def result(
+    name: str, others: dict[str, StateResult], size: Interval = UNDEFINED, direction: int = 1
+) -> IndicatorResult:
+    values = [r.separation.value for r in others.values()]
+    score = Interval(0.5 + direction * (sum(values) / len(values) - 0.5), 0.6, 0.9) if values else UNDEFINED
+    found = IndicatorResult(
+        f"{name}__x", name, "x", direction, others, others, score, score, UNDEFINED, UNDEFINED, UNDEFINED, 0.9
+    )
+    found.detectable, found.smallest_size = {"others_area_mm2_a90": size}, {"others_area_mm2": 2.0}
+    return found
+
+
+def test_two_states_give_four_sentences_that_name_hardest_and_easiest() -> None:
+    falls = result("fm4", {"slight": state(0.4), "severe": state(0.05)}, Interval(8.0, 6.0, math.inf), direction=-1)
+    rises = result("rms", {"slight": state(0.55), "severe": state(0.8)})
+    found = indicator_findings([falls, rises], ("slight", "severe"), 24)
+    assert len(found) == 4
+    assert "fm4__x separates best" in found[0]
+    assert "it is also fm4__x" in found[0]
+    assert "from 0.60 for slight (fm4__x) to 0.95 for severe (fm4__x)" in found[1]
+    assert "Of 4\xa0comparisons between other specimens (indicator, channel, state) 4 survive" in found[2]
+    assert "is 8\xa0mm² (6 to ∞), by fm4__x" in found[3]
+
+
+def test_one_state_and_one_survivor_are_in_the_singular() -> None:
+    found = indicator_findings([result("rms", {"slight": state(0.9)}, Interval(2.0, 2.0, 2.0))], ("slight",), 24)
+    text = " ".join(found)
+    assert "with an AUC of 0.90" in found[0]
+    assert "Of 1\xa0comparison between other specimens (indicator, channel, state) 1 survives" in text
+    assert "1 of the latter stays below" in text
+    assert "at most 2\xa0mm²" in text
+    assert "By state" not in text
+
+
+def test_few_specimens_are_told_how_many_a_correction_takes() -> None:
+    (text,) = [t for t in indicator_findings([result("rms", {"slight": state(0.9)})], ("slight",), 4) if "Holm" in t]
+    # 2^(1 - n) below 0.05 for one comparison: n = 6
+    assert "needs at least 6 specimens to let any of 1\xa0comparison pass" in text
+
+
+def test_nothing_defined_is_said_and_no_number_is_made_up() -> None:
+    lost = result("rms", {"slight": StateResult(UNDEFINED, UNDEFINED, NAN)})
+    lost.score_others = lost.score_same = UNDEFINED
+    text = " ".join(indicator_findings([lost], ("slight",), 5))
+    for part in ("No indicator can be judged", "No difference could be tested", "too few records"):
+        assert part in text
+    assert "nan" not in text
+    assert "inf" not in text
+    assert best_by_state([lost], ("slight",)) == {}
+
+
+@pytest.mark.parametrize(
+    ("states", "specimens", "text"), [((), 24, "no damaged state"), (("slight",), 1, "With a single specimen")]
+)
+def test_sets_that_allow_no_finding(states: tuple[str, ...], specimens: int, text: str) -> None:
+    (sentence,) = indicator_findings([], states, specimens)
+    assert text in sentence
+
+
+def test_indicators_that_lack_only_records_that_were_left_out_are_not_called_undefined() -> None:
+    found = [result("rms", {"slight": state(0.9)}), result("fm4", {"slight": state(0.9)})]
+    found[1].defined_share = 0.7
+    page = undefined_html(found, {"x": 0.1})  # both lack a tenth; fm4 lacks two more
+    assert "rms__x" not in page
+    assert "<td>20.0</td>" in page
+    assert undefined_html(found[:1], {"x": 0.1}) == ""
