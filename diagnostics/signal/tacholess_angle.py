@@ -155,6 +155,7 @@ def tacholess_pulses(
     teeth: int,
     speed_range_hz: tuple[float, float],
     harmonics: tuple[int, ...] = HARMONICS,
+    least_clarity: float = LEAST_CLARITY,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
 
@@ -164,6 +165,8 @@ def tacholess_pulses(
     ----------
     signal, fs_hz, teeth, speed_range_hz, harmonics :
         As of `mesh_ridge`.
+    least_clarity : float
+        Clarity below which the ridge counts as noise; 0 where the speed is known and the range is narrow around it.
 
     Returns
     -------
@@ -176,10 +179,10 @@ def tacholess_pulses(
         As `mesh_ridge`, and if no mesh line stands above the noise within the range.
     """
     ridge = mesh_ridge(signal, fs_hz, teeth, speed_range_hz, harmonics)
-    if ridge.clarity < LEAST_CLARITY:
+    if ridge.clarity < least_clarity:
         raise UsageError(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
-            f"speed (clarity {ridge.clarity:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
+            f"speed (clarity {ridge.clarity:.2f}, at least {least_clarity:g}). Check range and teeth, or give a tacho."
         )
     time_s = np.arange(signal.size) / fs_hz
     turns = np.cumsum(np.interp(time_s, ridge.time_s, _smoothed(ridge.speed_hz))) / fs_hz
