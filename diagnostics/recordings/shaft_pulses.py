@@ -43,6 +43,9 @@ LEAST_CONTRAST = 0.25
 CLEAR_LEAD = 0.8
 """Contrast, relative to the best one, from which another speed fits alike."""
 
+LEAST_MESH_SHARE = 0.5
+"""Share of the power that mesh lines must hold where the shaft does not show."""
+
 JUDGED_S = 3.0
 """Seconds on which candidates are compared."""
 
@@ -120,7 +123,10 @@ def _from_mesh(
         chosen = _surest(recording, channel, pinion, speeds, speed_range_hz) if gear % pinion else None
         if chosen is None:
             doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
-            chosen = _by_power(signal[: round(JUDGED_S * fs_hz)], fs_hz, pinion, _distinct([*speeds, *doubled]))
+            judged = signal[: round(JUDGED_S * fs_hz)]
+            chosen = _by_power(judged, fs_hz, pinion, _distinct([*speeds, *doubled]))
+            if gear % pinion:
+                _check_mesh_rules(judged, fs_hz, pinion, chosen)
         return ShaftPulses(_pulses_around(signal, fs_hz, pinion, chosen), channel)
     except UsageError as error:
         raise UsageError(f"{recording.path}: {error}") from error
@@ -158,6 +164,17 @@ def _surest(
         listed = ", ".join(f"{_mean_speed(one.pulses_s):.4g}" for one in (best, *rivals))
         raise UsageError(f"speeds of {listed} Hz fit alike. Give a narrower --speed-range, or a tacho.")
     return best.speed_hz
+
+
+def _check_mesh_rules(signal: np.ndarray, fs_hz: float, teeth: int, speed_hz: np.ndarray) -> None:
+    """Check that mesh lines hold most of the power; without lines of the shaft nothing else speaks for a comb."""
+    pulses = _pulses_around(signal, fs_hz, teeth, speed_hz)
+    share = 0.5 * line_power(signal, fs_hz, teeth, pulses, 0.45 * fs_hz) / float(np.var(signal))
+    if share < LEAST_MESH_SHARE:
+        raise UsageError(
+            f"{_mean_speed(pulses):.4g} Hz would fit, but neither do lines of that shaft show nor is most power "
+            "in its mesh lines. Check teeth, give a narrower --speed-range, or a tacho."
+        )
 
 
 def _distinct(speeds: list[np.ndarray]) -> list[np.ndarray]:
