@@ -59,8 +59,12 @@ def load_model(folder: Path) -> ReleasedModel:
     Raises
     ------
     UsageError
-        If it is a file (a pickled one, say), or its files are missing, damaged, or hold what is not trusted.
+        If it is missing or a file (a pickled one, say), or its files are missing, damaged, or hold what is not trusted.
     """
+    if not folder.exists():
+        raise UsageError(
+            f"{folder}: no such folder; MODEL is the folder that `siggen-diagnostics train SET --out MODEL` wrote"
+        )
     if not folder.is_dir():
         raise UsageError(
             f"{folder}: a model is the folder that `siggen-diagnostics train` wrote; single files, pickled ones above "

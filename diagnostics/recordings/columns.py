@@ -58,6 +58,8 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
         ".wav": read_wav,
     }
     readers |= {".npy": read_numpy, ".npz": read_numpy, ".parquet": lambda file: read_parquet(file, row)}
+    if path.is_dir():
+        raise UsageError(f"{path}: is a folder; give the file of one recording")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
     if path.suffix.lower() not in readers:

@@ -1,9 +1,11 @@
 """Pulse times of the pinion of a recording: from its tacho, or from the mesh lines in a range of speed of any width.
 
 A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits in part at twice, half
-or two thirds of the speed. It is searched in parts narrower than that; among what is found, the fastest comb that holds
-practically all power in mesh lines is taken: slower ones hold it too, with empty lines between, faster ones lose lines.
-Source: derived; the search itself is in `tacholess_angle`.
+or two thirds of the speed. It is searched in parts narrower than that; what is found, and what stands to it in such a
+ratio, is judged by the lines of the shaft itself (see `shaft_contrast`). Where those are missing, or the gear's teeth
+are a multiple of the pinion's, so that its lines fall between, the fastest comb that holds practically all power in
+mesh lines is taken: slower ones hold it too, with empty lines between, faster ones lose lines. Where two speeds fit
+alike, or the best one lies outside the range, none is taken. Source: derived; the search is in `tacholess_angle`.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_contrast import shaft_contrast
 from diagnostics.report.examples import order_spectrum
 from diagnostics.signal.tacholess_angle import LEAST_CLARITY, MeshRidge, mesh_ridge, tacholess_pulses
 from siggen.errors import UsageError
@@ -29,6 +32,22 @@ POWER_KEPT = 0.99
 noise, at -20 dB and below."""
 
 LINES_COMPARED = 10
+SAME_SPEED = 0.01
+
+RATIOS = (0.5, 2.0 / 3.0, 0.75, 1.0, 4.0 / 3.0, 1.5, 2.0)
+"""Speeds over the one that a part shows, at which mesh harmonics fall on each other."""
+
+LEAST_CONTRAST = 0.25
+"""Two and a half times what noise reaches: with less, the shaft itself cannot be seen, and mesh lines must do."""
+
+CLEAR_LEAD = 0.8
+"""Contrast, relative to the best one, from which another speed fits alike."""
+
+LEAST_MESH_SHARE = 0.5
+"""Share of the power that mesh lines must hold where the shaft does not show."""
+
+JUDGED_S = 3.0
+"""Seconds on which candidates are compared."""
 
 FEWEST_REVOLUTIONS = 2
 SEARCHED_S = 12.0
@@ -75,7 +94,7 @@ def shaft_pulses(
             "can have run in with --speed-range LOW,HIGH"
         )
     else:
-        found = _from_mesh(recording, teeth[0], speed_range_hz)
+        found = _from_mesh(recording, teeth, speed_range_hz)
     turns = found.times_s.size - 1
     if min(turns, turns * teeth[0] / teeth[1]) < FEWEST_REVOLUTIONS:
         needed = int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, teeth[1] / teeth[0])))
@@ -85,20 +104,102 @@ def shaft_pulses(
     return found
 
 
-def _from_mesh(recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]) -> ShaftPulses:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Candidate:
+    """A speed over time, its pulses in the seconds judged, and how far the shaft's lines stand out at it."""
+
+    speed_hz: np.ndarray
+    pulses_s: np.ndarray
+    contrast: float
+
+
+def _from_mesh(
+    recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
+) -> ShaftPulses:
+    pinion, gear = teeth
     try:
-        channel, candidates = _candidates(recording, teeth, speed_range_hz)
+        channel, speeds = _candidates(recording, pinion, speed_range_hz)
         signal, fs_hz = recording.channels[channel], recording.fs_hz
-        found = [_pulses_around(signal, fs_hz, teeth, speeds) for speeds in candidates]
+        chosen = _surest(recording, channel, pinion, speeds, speed_range_hz) if gear % pinion else None
+        if chosen is None:
+            doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
+            judged = signal[: round(JUDGED_S * fs_hz)]
+            chosen = _by_power(judged, fs_hz, pinion, _distinct([*speeds, *doubled]))
+            if gear % pinion:
+                _check_mesh_rules(judged, fs_hz, pinion, chosen)
+        return ShaftPulses(_pulses_around(signal, fs_hz, pinion, chosen), channel)
     except UsageError as error:
         raise UsageError(f"{recording.path}: {error}") from error
-    if len(found) == 1:
-        return ShaftPulses(found[0], channel)
-    fastest_hz = max(_mean_speed(pulses) for pulses in found)
-    highest_hz = min(LINES_COMPARED * teeth * fastest_hz, 0.45 * fs_hz)
-    power = np.array([line_power(signal, fs_hz, teeth, pulses, highest_hz) for pulses in found])
-    kept = [pulses for pulses, share in zip(found, power / power.max(), strict=True) if share >= POWER_KEPT]
-    return ShaftPulses(max(kept, key=_mean_speed), channel)
+
+
+def _surest(
+    recording: MeasuredRecording,
+    channel: str,
+    teeth: int,
+    speeds: list[np.ndarray],
+    speed_range_hz: tuple[float, float],
+) -> np.ndarray | None:
+    """Return the speed over time whose shaft shows; None where none does."""
+    signal, fs_hz = recording.channels[channel][: round(JUDGED_S * recording.fs_hz)], recording.fs_hz
+    highest_hz = min(LINES_COMPARED * teeth * max(float(np.median(speed)) for speed in speeds), 0.45 * fs_hz)
+    found = []
+    for speed in _distinct([*speeds, *(ratio * speed for speed in speeds for ratio in RATIOS)]):
+        pulses = _pulses_around(signal, fs_hz, teeth, speed)
+        contrast = [
+            shaft_contrast(other[: signal.size], pulses, fs_hz, teeth, highest_hz)
+            for other in recording.channels.values()
+        ]
+        found.append(_Candidate(speed, pulses, float(np.mean(contrast))))
+    inside = [one for one in found if _within(one, speed_range_hz)]
+    best = max(found, key=lambda one: one.contrast)
+    if best.contrast < LEAST_CONTRAST:
+        return None
+    if best not in inside:
+        raise UsageError(
+            f"the lines fit {_mean_speed(best.pulses_s):.4g} Hz of pinion speed best, outside of {speed_range_hz[0]:g} "
+            f"to {speed_range_hz[1]:g} Hz. Check range and teeth, or give a tacho."
+        )
+    rivals = [one for one in inside if one.contrast >= CLEAR_LEAD * best.contrast and one is not best]
+    if rivals:
+        listed = ", ".join(f"{_mean_speed(one.pulses_s):.4g}" for one in (best, *rivals))
+        raise UsageError(f"speeds of {listed} Hz fit alike. Give a narrower --speed-range, or a tacho.")
+    return best.speed_hz
+
+
+def _check_mesh_rules(signal: np.ndarray, fs_hz: float, teeth: int, speed_hz: np.ndarray) -> None:
+    """Check that mesh lines hold most of the power; without lines of the shaft nothing else speaks for a comb."""
+    pulses = _pulses_around(signal, fs_hz, teeth, speed_hz)
+    share = 0.5 * line_power(signal, fs_hz, teeth, pulses, 0.45 * fs_hz) / float(np.var(signal))
+    if share < LEAST_MESH_SHARE:
+        raise UsageError(
+            f"{_mean_speed(pulses):.4g} Hz would fit, but neither do lines of that shaft show nor is most power "
+            "in its mesh lines. Check teeth, give a narrower --speed-range, or a tacho."
+        )
+
+
+def _distinct(speeds: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the speeds, those within one per cent of each other once."""
+    distinct: list[np.ndarray] = []
+    for speed in speeds:
+        if all(abs(np.median(speed) / np.median(known) - 1.0) > SAME_SPEED for known in distinct):
+            distinct.append(speed)
+    return distinct
+
+
+def _within(one: _Candidate, speed_range_hz: tuple[float, float]) -> bool:
+    low, high = speed_range_hz
+    return (1.0 - SAME_SPEED) * low <= _mean_speed(one.pulses_s) <= (1.0 + SAME_SPEED) * high
+
+
+def _by_power(signal: np.ndarray, fs_hz: float, teeth: int, speeds: list[np.ndarray]) -> np.ndarray:
+    """Return the fastest speed over time whose mesh lines hold practically all of the power."""
+    if len(speeds) == 1:
+        return speeds[0]
+    pulses = [_pulses_around(signal, fs_hz, teeth, speed) for speed in speeds]
+    highest_hz = min(LINES_COMPARED * teeth * max(_mean_speed(own) for own in pulses), 0.45 * fs_hz)
+    power = np.array([line_power(signal, fs_hz, teeth, own, highest_hz) for own in pulses])
+    kept = np.flatnonzero(power >= POWER_KEPT * power.max())
+    return speeds[max(kept, key=lambda k: _mean_speed(pulses[k]))]
 
 
 def _mean_speed(pulses_s: np.ndarray) -> float:
@@ -107,8 +208,10 @@ def _mean_speed(pulses_s: np.ndarray) -> float:
 
 def _pulses_around(signal: np.ndarray, fs_hz: float, teeth: int, speeds_hz: np.ndarray) -> np.ndarray:
     margin = 0.02 * float(speeds_hz.mean())
-    low_high = (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin)
-    return tacholess_pulses(signal, fs_hz, teeth, low_high, doubts=False)  # half and double are compared by the caller
+    limits = (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin)
+    # In so narrow a range the lines' own skirts are the median that clarity counts from; half and double are compared
+    # by the caller.
+    return tacholess_pulses(signal, fs_hz, teeth, limits, least_clarity=0.0, doubts=False)
 
 
 def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarray, highest_hz: float) -> float:
@@ -122,7 +225,7 @@ def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarra
 def _candidates(
     recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]
 ) -> tuple[str, list[np.ndarray]]:
-    """Return the clearest channel and the speeds over time that its parts of the range show, and twice those."""
+    """Return the clearest channel and the speeds over time that its parts of the range show."""
     samples = round(SEARCHED_S * recording.fs_hz)
     found: dict[str, list[MeshRidge]] = {
         name: [mesh_ridge(signal[:samples], recording.fs_hz, teeth, part) for part in range_parts(speed_range_hz)]
@@ -135,13 +238,7 @@ def _candidates(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of pinion "
             f"speed (clarity {clearest:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
         )
-    clear = [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
-    doubled = [2.0 * speeds for speeds in clear if 2.0 * np.median(speeds) <= speed_range_hz[1]]
-    distinct: list[np.ndarray] = []
-    for speeds in (*clear, *doubled):
-        if all(abs(np.median(speeds) / np.median(known) - 1.0) > 0.01 for known in distinct):
-            distinct.append(speeds)
-    return channel, distinct
+    return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
 
 
 def range_parts(speed_range_hz: tuple[float, float]) -> list[tuple[float, float]]:

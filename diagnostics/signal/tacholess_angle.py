@@ -149,6 +149,7 @@ def tacholess_pulses(
     speed_range_hz: tuple[float, float],
     harmonics: tuple[int, ...] = HARMONICS,
     *,
+    least_clarity: float = LEAST_CLARITY,
     doubts: bool = True,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
@@ -162,6 +163,8 @@ def tacholess_pulses(
     ----------
     signal, fs_hz, teeth, speed_range_hz, harmonics :
         As of `mesh_ridge`.
+    least_clarity : float
+        Clarity below which the ridge counts as noise; 0 where the speed is known and the range is narrow around it.
     doubts : bool
         Refuse lines that plainly belong to another speed; not for a caller who compares several ranges himself.
 
@@ -176,10 +179,10 @@ def tacholess_pulses(
         As `mesh_ridge`, if no mesh line stands above the noise within the range, or the lines belong to another speed.
     """
     ridge = mesh_ridge(signal, fs_hz, teeth, speed_range_hz, harmonics)
-    if ridge.clarity < LEAST_CLARITY:
+    if ridge.clarity < least_clarity:
         raise UsageError(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
-            f"speed (clarity {ridge.clarity:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
+            f"speed (clarity {ridge.clarity:.2f}, at least {least_clarity:g}). Check range and teeth, or give a tacho."
         )
     if doubts and ridge.doubt:
         raise UsageError(

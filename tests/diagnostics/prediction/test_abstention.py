@@ -1,6 +1,8 @@
-"""What the distance is made of: the noise floor by octaves, the bound for a new gearbox, and the larger of two parts."""
+"""What the distance is made of: noise floor by octaves, the bound for a new gearbox, and the larger of two parts."""
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 import pytest
@@ -27,7 +29,7 @@ def test_noise_floor_of_white_noise_is_its_density_and_lines_do_not_move_it() ->
     assert list(plain) == [f"noise_floor_{100 * 2**k}hz__a" for k in range(6)]
     # 39 half-overlapping segments: the median of the density lies within 5 % of 2/fs (it is 2 % below for 39 averages)
     np.testing.assert_allclose(list(plain.values()), 2.0 / FS_HZ, rtol=0.1)
-    # 26 dB lines every 30 Hz fill 3 of 15 bins: the median moves to the quantile 0.5/0.8, 0.3 of a scatter of 1/sqrt(25)
+    # 26 dB lines every 30 Hz fill 3 of 15 bins: the median moves to the quantile 0.5/0.8, a third of a scatter of 0.2
     np.testing.assert_allclose(list(with_lines.values()), list(plain.values()), rtol=0.15)
 
 
@@ -36,7 +38,7 @@ def test_octaves_end_where_recorders_are_flat(fs_hz: float, highest: float) -> N
     found = octaves_hz(fs_hz)
     assert found[0] == (100.0, 200.0)
     assert found[-1][1] == pytest.approx(highest)
-    assert all(low[1] == high[0] for low, high in zip(found[:-1], found[1:], strict=True))
+    assert all(low[1] == high[0] for low, high in itertools.pairwise(found))
 
 
 def test_bound_of_single_values_is_the_prediction_bound_of_the_normal_distribution() -> None:

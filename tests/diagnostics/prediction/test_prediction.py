@@ -103,6 +103,51 @@ def test_what_is_missing_is_a_usage_error_with_a_way_out(
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("nan.npz", {"bearing_vertical": np.r_[np.nan, np.ones(12_799)]}, "nan.npz: cannot be used channel"),
+        ("still.npz", {"bearing_vertical": np.ones(12_800)}, "constant over all 12800 samples; check sensor"),
+        (
+            "clipped.npz",
+            {"bearing_vertical": np.clip(np.sin(np.arange(12_800)), -0.5, 0.5)},
+            "record again with a wider",
+        ),
+        ("short.npz", {}, "short.npz: received 0.0781 s"),
+        ("other.npz", {"strange": np.ones(9)}, "other.npz: no column bearing_vertical"),
+        ("run.docx", {}, "received suffix '.docx'"),
+        ("torn.mat", {}, "torn.mat: cannot be read as a MAT file"),
+        (".", {}, "is a folder; give the file of one recording"),
+        ("gone.npz", {}, "gone.npz: no such file"),
+    ],
+)
+def test_a_recording_that_cannot_be_used_is_named_with_the_way_out(
+    name: str, change: dict[str, np.ndarray], message: str, folder: Path, dataset: Any, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    with np.load(save(tmp_path / "run.npz", dataset, 0)) as whole:
+        signals = {key: value.astype(float) for key, value in whole.items()}
+    if name == "other.npz":
+        np.savez(name, **change)
+    elif name == "short.npz":
+        np.savez(name, **{key: value[:1000] for key, value in signals.items()})
+    elif name.endswith(".npz") and name != "gone.npz":
+        np.savez(name, **(signals | change))
+    elif name != ".":
+        Path(name).write_bytes(b"no recording") if name != "gone.npz" else None
+    assert run(monkeypatch, str(folder), name, *options()) == 2
+    assert message in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_model_that_is_not_there_is_called_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, "gone", "run.npz", *options()) == 2
+    assert "gone: no such folder; MODEL is the folder that" in " ".join(capsys.readouterr().err.split())
+
+
 class Trap:
     def __reduce__(self) -> tuple[Any, ...]:
         return (pytest.fail, ("a pickle was executed",))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_contrast import shaft_contrast
 from diagnostics.recordings.shaft_pulses import range_parts, shaft_pulses
 from siggen.errors import UsageError
 
@@ -29,6 +30,53 @@ def test_the_speed_is_found_not_half_or_twice_of_it(speed_hz: float, limits: tup
     found = shaft_pulses(recording(speed_hz), TEETH, limits)
     assert found.speed_hz == pytest.approx(speed_hz, rel=1e-3)  # the drift itself is 0.03 %
     assert found.source == "vertical"
+
+
+def rough(speed_hz: float, teeth: tuple[int, int], spall: float, seed: int = 0) -> MeasuredRecording:
+    """Return mesh lines of which the second rules, lines at all orders of both shafts, and a blow per revolution."""
+    rng = np.random.default_rng(seed)
+    time_s = np.arange(round(1.5 * FS_HZ)) / FS_HZ
+    turns = speed_hz * time_s + 0.002 * np.sin(2 * np.pi * 0.7 * time_s)
+    mesh = sum(a * np.cos(2 * np.pi * h * teeth[0] * turns + h) for h, a in enumerate((0.1, 1.5, 0.1, 0.2), start=1))
+    own = (0.05 * np.cos(2 * np.pi * (k * turns + rng.uniform())) for k in range(1, 9 * teeth[0]))
+    others = (
+        0.02 * np.cos(2 * np.pi * (k * teeth[0] / teeth[1] * turns + rng.uniform())) for k in range(1, 9 * teeth[1])
+    )
+    blow = spall * np.exp(-0.5 * (((turns % 1.0) - 0.5) / 0.004) ** 2)
+    signal = mesh + sum(own) + sum(others) + blow + 0.1 * rng.standard_normal(time_s.size)
+    return MeasuredRecording(Path("run.npz"), {"vertical": signal}, FS_HZ, None)
+
+
+@pytest.mark.parametrize("spall", [0.0, 10.0])
+@pytest.mark.parametrize("speed_hz", [30.0, 36.0])
+@pytest.mark.parametrize("limits", [(0.8, 1.25), (0.55, 1.4)])
+def test_the_shaft_itself_decides_where_even_mesh_lines_or_sidebands_rule(
+    speed_hz: float, spall: float, limits: tuple[float, float]
+) -> None:
+    low, high = (factor * speed_hz for factor in limits)
+    found = shaft_pulses(rough(speed_hz, TEETH, spall), TEETH, (low, high))
+    assert found.speed_hz == pytest.approx(speed_hz, rel=2e-3)
+
+
+@pytest.mark.parametrize("limits", [(20.0, 28.0), (40.0, 60.0)])
+def test_a_range_that_misses_the_speed_gives_no_other_one(limits: tuple[float, float]) -> None:
+    with pytest.raises(UsageError, match=r"run.npz: (the lines fit 3|speeds of|no mesh line)"):
+        shaft_pulses(rough(36.0, TEETH, 0.0), TEETH, limits)
+
+
+def test_lines_of_a_gear_with_twice_the_teeth_do_not_pass_for_another_speed() -> None:
+    found = shaft_pulses(rough(33.0, (23, 46), 0.0), (23, 46), (25.0, 45.0))
+    assert found.speed_hz == pytest.approx(33.0, rel=2e-3)
+
+
+def test_contrast_is_the_height_of_the_lines_and_falls_to_half_at_half_of_the_speed() -> None:
+    recording = rough(36.0, TEETH, 0.0)
+    signal, pulses = recording.channels["vertical"], np.arange(1, 50) / 36.0
+    found = [shaft_contrast(signal, own, FS_HZ, 18, 5000.0) for own in (pulses, pulses[::2])]
+    nowhere = shaft_contrast(np.random.default_rng(1).standard_normal(signal.size), pulses, FS_HZ, 18, 5000.0)
+    assert abs(nowhere) < 0.25  # 130 pairs of Rayleigh amplitudes, each of 0.64 in logarithm: 0.08 is one deviation
+    assert found[0] > 0.5
+    assert found[1] < 0.8 * found[0]
 
 
 def test_parts_cover_the_range_and_hold_one_harmonic_each() -> None:
