@@ -189,7 +189,7 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, command, str(folder), *COMMANDS[command]) == 2
     error = capsys.readouterr().err
-    assert error.startswith("error: ")
+    assert error.startswith("siggen-diagnostics: ")
     for part in ("bad_set", *parts):
         assert part in error
     assert "Traceback" not in error
