@@ -116,7 +116,7 @@ def test_a_wrong_configuration_is_reported_on_stderr_without_a_traceback():
     assert result.returncode == 2
     assert result.stdout == ""
     assert "Traceback" not in result.stderr
-    assert "configs/linear_pits.yaml: 2 problems" in result.stderr
+    assert "configs/linear_pits.yaml with overrides: 2 problems" in result.stderr
     assert "gears.modul_mm: received 3; there is no such key here; did you mean 'module_mm'?" in result.stderr
 
 
