@@ -45,7 +45,6 @@ from diagnostics.severity import (
 )
 from diagnostics.single_thread import single_thread
 from diagnostics.splits import SpecimenSplit, specimen_split
-from siggen.errors import DatasetError
 
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
@@ -126,10 +125,7 @@ def train_models(
     """
     options = network or NetworkOptions()
     matrix = feature_matrix(table)
-    try:
-        split = specimen_split(matrix.labels)
-    except DatasetError as error:
-        raise DatasetError(f"{dataset.path}: {error}") from error
+    split = specimen_split(matrix.labels)
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, advance=advance)

@@ -37,6 +37,7 @@ def train(
     from diagnostics.studies import run_studies, studies_metrics
     from diagnostics.training import save_models, train_models, training_metrics
     from diagnostics.training_sets import open_sets, other_table, set_table
+    from siggen.errors import DatasetError
 
     if cnn:
         check_device(device)
@@ -44,7 +45,10 @@ def train(
     table = set_table(dataset, terminal_stage)
     other = other_table(second, terminal_stage) if second else None
     options = NetworkOptions(cnn, device, augment, ablation=studies)
-    training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
+    try:
+        training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
+    except DatasetError as error:
+        raise DatasetError(f"{directory}: {error}") from error
     notes = save_models(training, table, dataset, out)
     metrics = {**training_metrics(training), "seed": seed, "file_notes": notes}
     if studies:

@@ -175,6 +175,21 @@ def test_closed_form_of_a_history_in_any_order_of_rows(name: str, order: list[in
     np.testing.assert_allclose(found, np.array(CLOSED_OF_HISTORIES[name])[order], rtol=1e-9)
 
 
+def test_a_history_is_one_specimen_at_one_operating_point_in_one_repeat() -> None:
+    owners = [(s, p, r, i) for i in (2, 0, 1) for s in (0, 1) for p in (0, 1) for r in (0, 1)]
+    level = {(s, p, r): 1.0 + 4 * s + 2 * p + r for s in (0, 1) for p in (0, 1) for r in (0, 1)}
+    moments = []
+    for s, p, r, i in owners:
+        average = tone(2 * Z, 2.0) + tone(2 * Z, 0.02 * level[s, p, r] * SCALES[i]) * 2 * np.cos(ANGLE)
+        moments.append(shaft_indicators(average, PINION, SETTINGS).moments)
+    names = ("specimen_id", "operating_point_id", "repeat")
+    own = {name: np.array([owner[place] for owner in owners]) for place, name in enumerate(names)}
+    found = history_indicators({**labels([owner[3] for owner in owners]), **own}, moments, "a")
+    for name, expected in CLOSED_OF_HISTORIES.items():
+        wanted = [expected[owner[3]] for owner in owners]
+        np.testing.assert_allclose(found[f"{name}_pinion__a"], wanted, rtol=1e-9, err_msg=name)
+
+
 # --- a second computation ---------------------------------------------------------------------------------------------
 
 
