@@ -55,7 +55,7 @@ def predict(
 ) -> None:
     """Say which state a recording is most like, with probability, or that it is unlike the training records.
 
-    Example: siggen-diagnostics predict models run.csv --fs 51200 --teeth 18,47 --speed-range 20,35
+    Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.extras import require_packages
     from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
