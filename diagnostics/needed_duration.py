@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.record_problems import FEWEST_REVOLUTIONS
+from diagnostics.record_problems import FEWEST_REVOLUTIONS, is_rate
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 
 
@@ -38,7 +38,7 @@ def needed_duration(dataset: Any, frame_samples: int) -> tuple[float, float]:
 
 def duration_advice(dataset: Any, frame_samples: int) -> str:
     """Return what to do about records that are too short, as a line of its own; nothing where they are long enough."""
-    if not np.isfinite(dataset.fs_hz) or dataset.fs_hz <= 0.0:
+    if not is_rate(dataset.fs_hz):
         return ""
     needed_s, speed_hz = needed_duration(dataset, frame_samples)
     if not dataset.duration_s < needed_s:

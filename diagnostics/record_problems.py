@@ -66,8 +66,7 @@ def whole_record_problem(record: Recording, *, needs_tacho: bool = True, gear_tu
         Whether the gear has to turn as often as an average needs, not the pinion alone.
     """
     teeth = [_number(record.labels.get(f"teeth_{gear}")) for gear in ("pinion", "gear")]
-    fs_hz = _number(record.fs_hz)
-    if not (np.isfinite(fs_hz) and fs_hz > 0):
+    if not is_rate(record.fs_hz):
         return f"sampling rate: received {record.fs_hz}; it must be positive. Correct fs_hz in the set's manifest."
     if not all(np.isfinite(z) and z >= 3 and z == round(z) for z in teeth):
         return (
@@ -124,6 +123,12 @@ def clipped_share(signal: np.ndarray) -> float:
         runs = np.diff(np.flatnonzero(np.diff(at, prepend=-2, append=signal.size + 1) > 1))
         share += int(runs[runs >= CLIPPED_RUN].sum())
     return share / signal.size
+
+
+def is_rate(fs_hz: object) -> bool:
+    """Return whether what a set says of its sampling rate is one."""
+    number = _number(fs_hz)
+    return bool(np.isfinite(number) and number > 0.0)
 
 
 def _number(value: Any) -> float:

@@ -7,6 +7,7 @@ import math
 from diagnostics.judgement import RMS_ALONE, TITLES, Judged
 from diagnostics.report.html import Cell, paragraph, table
 from diagnostics.report.tables import interval_cell
+from diagnostics.report.wording import joined, percent, percent_limits, signed, signed_limits
 from diagnostics.training import Training
 
 
@@ -16,11 +17,11 @@ def detection_blocks(training: Training) -> list[str]:
     shown = tuple(found for found in training.judged if found.detection)
     if not shown:
         return blocks
-    sentences = [detection_sentence(training), *gain_sentences(training)]
-    blocks += [paragraph(" ".join(sentences)), detection_table(shown)]
+    blocks += [paragraph(text) for text in gain_sentences(training)]
+    blocks.append(detection_table(shown, f"Damaged or not: {reading(training)}"))
     other = tuple(found for found in training.other if found.detection)
     if other:
-        blocks += [paragraph(f"Damaged or not on the other set {training.other_name}:"), detection_table(other)]
+        blocks.append(detection_table(other, f"Damaged or not on the other set {training.other_name}, read likewise."))
     return blocks
 
 
@@ -39,20 +40,21 @@ def balance_sentences(training: Training) -> list[str]:
     if first.balanced:
         return []
     parts = [
-        f"{TITLES[found.name]} {found.scores.balanced_accuracy.value:.0%} ({found.scores.balanced_accuracy.low:.0%} to "
-        f"{found.scores.balanced_accuracy.high:.0%})"
+        f"{TITLES[found.name]} {percent(found.scores.balanced_accuracy.value)} "
+        f"({percent_limits(found.scores.balanced_accuracy)})"
         for found in training.judged
     ]
     return [
-        f"Classes are unequal: always naming the most frequent one gives an accuracy of {first.guess:.0%}. Averaged "
-        f"over the classes, the right one is named by {', '.join(parts)}; guessing gives {1 / len(first.classes):.0%}."
+        f"Classes are unequal: always naming the most frequent one gives an accuracy of {percent(first.guess)}. "
+        f"Averaged over the classes, the right one is named by {joined(parts)}; guessing gives "
+        f"{percent(1 / len(first.classes))}."
     ]
 
 
-def detection_sentence(training: Training) -> str:
+def reading(training: Training) -> str:
     """Say how the table is to be read."""
     return (
-        f"Damaged or not: AUROC of 1 − p({training.split.healthy}) on the test specimens, one alarm for all damages; "
+        f"AUROC of 1 − p({training.split.healthy}) on the test specimens, one alarm for all damages; "
         "0.5 is chance. Limits: 95 %, resampled specimens."
     )
 
@@ -65,12 +67,11 @@ def gain_sentences(training: Training) -> list[str]:
         return []
     best, gain = max(defined, key=lambda entry: entry[1].value)
     return [
-        f"Over RMS alone, {TITLES[best.first]} gains {gain.value:+.2f} ({gain.low:+.2f} to {gain.high:+.2f}, paired "
-        "over the specimens)."
+        f"Over RMS alone, {TITLES[best.first]} gains {signed(gain.value)} ({signed_limits(gain)}, paired over the specimens)."
     ]
 
 
-def detection_table(found: tuple[Judged, ...]) -> str:
+def detection_table(found: tuple[Judged, ...], caption: str) -> str:
     """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
     states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
     rows = [
@@ -82,4 +83,4 @@ def detection_table(found: tuple[Judged, ...]) -> str:
         for judged in found
         if judged.detection
     ]
-    return table(["Damaged or not", "all damages", *states], rows, sortable=True)
+    return table(["Classifier", "all damages", *states], rows, caption=caption, sortable=True)

@@ -11,7 +11,7 @@ from diagnostics.comparison import SATURATED, Comparison
 from diagnostics.evaluation import Interval, error_share_limit
 from diagnostics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, Judged
 from diagnostics.realism import meaning_of_scores
-from diagnostics.report.wording import counted, decimal, joined, limits, percent, signed, signed_limits
+from diagnostics.report.wording import counted, decimal, joined, limits, percent, percent_limits, signed, signed_limits
 from diagnostics.separability import Separability
 from diagnostics.training import Training
 
@@ -46,7 +46,7 @@ def scores_sentence(training: Training) -> str:
     """Say how often each classifier named the right state; the network without augmentation is for the tables."""
     first = training.judged[0].scores
     parts = [
-        f"{TITLES[judged.name]} {percent(judged.scores.accuracy.value)} ({_range(judged.scores.accuracy)}, "
+        f"{TITLES[judged.name]} {percent(judged.scores.accuracy.value)} ({percent_limits(judged.scores.accuracy)}, "
         f"macro-AUROC {decimal(judged.scores.macro_auroc.value)})"
         for judged in training.judged
         if judged.name != PLAIN_NETWORK
@@ -60,12 +60,6 @@ def scores_sentence(training: Training) -> str:
 
 def _told_apart(training: Training) -> str:
     return "state" if all(len(states) == 1 for states in training.split.members.values()) else "class"
-
-
-def _range(found: Interval) -> str:
-    if math.isnan(found.low):
-        return "no interval from one specimen"
-    return f"{percent(found.low)} to {percent(found.high)}"
 
 
 def comparison_sentence(training: Training) -> str:

@@ -47,3 +47,10 @@ def signed_limits(found: Interval) -> str:
     if math.isnan(found.low):
         return "no interval from one specimen"
     return f"{signed(found.low)} to {signed(found.high)}"
+
+
+def percent_limits(found: Interval) -> str:
+    """Return the limits of a share, or why there are none."""
+    if math.isnan(found.low):
+        return "no interval from one specimen"
+    return f"{percent(found.low)} to {percent(found.high)}"
