@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from diagnostics.features import FeatureSettings, RecordFeatures, record_features
+from diagnostics.shaft_signals import record_shafts
+from diagnostics.signal.order_domain import angle_grid
 
 FS_HZ, TEETH = 25_600.0, (18, 47)
 
@@ -107,3 +109,12 @@ def test_ten_seconds_take_less_than_120_ms_per_channel() -> None:
         record_features({"a": signal}, pulses, 51_200.0, TEETH)
         elapsed.append(time.perf_counter() - start)
     assert min(elapsed) < 0.12
+
+
+@pytest.mark.parametrize(("turns", "resolved"), [(6, True), (5, False)])
+def test_sideband_is_resolved_from_exactly_the_revolutions_it_needs(turns: int, resolved: bool) -> None:
+    # 18/47 teeth: two gear revolutions, 5.2 of the pinion, resolve the gear's first sideband, one order off the line
+    grid = angle_grid(np.arange(turns + 1) / 30.0, 18 * 128)
+    _, gear = record_shafts(grid, (18, 47), 128, 1)
+    assert gear.revolutions == (2 if resolved else 1)
+    assert gear.resolved.tolist() == [resolved]
