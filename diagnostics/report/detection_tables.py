@@ -67,7 +67,8 @@ def gain_sentences(training: Training) -> list[str]:
         return []
     best, gain = max(defined, key=lambda entry: entry[1].value)
     return [
-        f"Over RMS alone, {TITLES[best.first]} gains {signed(gain.value)} ({signed_limits(gain)}, paired over the specimens)."
+        f"Over RMS alone, {TITLES[best.first]} gains {signed(gain.value)} ({signed_limits(gain)}, paired over the "
+        "specimens)."
     ]
 
 
