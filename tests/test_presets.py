@@ -98,4 +98,4 @@ def test_the_ideal_set_is_trivially_separable(tmp_path: Path) -> None:
     siggen.generate(config, tmp_path / "ideal")
     findings = separability_findings(measured_set(siggen.open(tmp_path / "ideal")))
     assert "healthy_without_sidebands" in [finding.trap for finding in findings]
-    assert verdict(findings).startswith("The set is trivially separable")
+    assert verdict(findings, config.specimens).startswith("The set is trivially separable")
