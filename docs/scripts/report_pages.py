@@ -17,18 +17,14 @@ import sys
 from pathlib import Path
 
 RUNS, PAGES = Path("runs"), Path("docs/reports")
-BENCH_STATES = "healthy healthy_again slight face_40 face_80 through_040 through_060 through_080 through_100 through_150"
 OTHER_GEARS = (
     "--set gears.pinion.teeth=21 --set gears.gear.teeth=50 --set specimens=24 --set seed=99 "
     "--set 'splits={train: 0, validation: 0, test: 20}'"
 )
 SETS = {
     "quickstart": ("siggen generate configs/quickstart.yaml --out runs/quickstart",),
-    "bench": (
-        f"python docs/scripts/chosen_states.py configs/bench.yaml runs/bench.yaml {BENCH_STATES}",
-        "siggen generate runs/bench.yaml --out runs/bench --workers 2",
-    ),
-    "other": (f"siggen generate runs/bench.yaml {OTHER_GEARS} --out runs/other",),
+    "bench": ("siggen generate configs/bench.yaml --out runs/bench --workers 2",),
+    "other": (f"siggen generate configs/bench.yaml {OTHER_GEARS} --out runs/other --workers 2",),
 }
 """Commands that make a set, by its folder in runs/."""
 
