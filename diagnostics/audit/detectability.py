@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -169,6 +170,8 @@ class DetectedLength:
 def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLength | None]:
     """Return by fault the profile length at which the AUC first reaches a target, linear between states; None if never.
 
+    A fault whose states do not differ in length, such as spalls that grow along the face, is left out.
+
     Parameters
     ----------
     entries : list of Detection
@@ -177,8 +180,13 @@ def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLeng
         AUC.
     """
     judged = [entry for entry in entries if math.isfinite(entry.auc.value) and SIZES[2] in entry.sizes]
-    faults = dict.fromkeys(entry.fault for entry in entries)
-    return {fault: _first_reaching([entry for entry in judged if entry.fault == fault], target) for fault in faults}
+    ladders = {fault: [entry for entry in judged if entry.fault == fault] for fault in (e.fault for e in entries)}
+    return {fault: _first_reaching(found, target) for fault, found in ladders.items() if _differ_in_length(found)}
+
+
+def _differ_in_length(entries: list[Detection]) -> bool:
+    lengths = sorted(entry.sizes[SIZES[2]] for entry in entries)
+    return all(high > low * (1.0 + 1e-6) for low, high in pairwise(lengths))
 
 
 def _first_reaching(entries: list[Detection], target: float) -> DetectedLength | None:

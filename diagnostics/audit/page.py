@@ -109,7 +109,7 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     return (
         html.heading(title, 3)
         + html.table(["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)], rows, caption=caption, sortable=True)
-        + html.paragraph("Interpolated length along the profile: " + "; ".join(reached) + ".")
+        + (html.paragraph("Interpolated length along the profile: " + "; ".join(reached) + ".") if reached else "")
     )
 
 

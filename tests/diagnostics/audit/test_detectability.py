@@ -122,3 +122,9 @@ def test_length_at_an_auc_is_interpolated_between_states_of_one_fault() -> None:
     first = length_at([entry(0.5, 0.9)], 0.85)["spalling"]
     assert first is not None
     assert first.is_upper_bound
+
+
+def test_states_of_one_length_give_no_length_at_an_auc() -> None:
+    along_the_face = [entry(1.0, 0.6), entry(1.0, 0.7), entry(1.0, 0.9)]
+    assert length_at(along_the_face, 0.85) == {}
+    assert length_at([*along_the_face, entry(0.5, 0.9, "pitting")], 0.85).keys() == {"pitting"}
