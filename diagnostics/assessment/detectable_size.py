@@ -1,10 +1,10 @@
 """Smallest damage that an indicator finds at a given rate of false alarms.
 
 The threshold is the quantile of healthy records that the rate leaves above it. Damaged records are sorted by size into
-groups of equal count; the share of alarms per group is made to rise with size by isotonic regression, and the size at
-which it reaches the wanted share is read between the groups' medians, on a logarithmic axis. Source: probability of
-detection (a50, a90), standard literature of non-destructive testing; isotonic instead of logistic: derived, since no
-indicator has to follow a logistic curve.
+groups, of one size each where the set holds few sizes, else of equal count; the share of alarms per group is made to
+rise with size by isotonic regression, and the size at which it reaches the wanted share is read between the groups'
+medians, on a logarithmic axis. Source: probability of detection (a50, a90), standard literature of non-destructive
+testing; isotonic instead of logistic: derived, since no indicator has to follow a logistic curve.
 """
 
 from __future__ import annotations
@@ -63,18 +63,27 @@ def detection_curve(
         Share of healthy records above the threshold.
     """
     damaged = np.flatnonzero(~healthy & (size > 0.0))
-    groups = min(GROUPS, damaged.size // RECORDS_PER_GROUP)
-    if groups < 2 or not healthy.any():
+    order = damaged[np.argsort(size[damaged], kind="stable")]
+    members = _groups(order, size[order])
+    if len(members) < 2 or not healthy.any():
         return None
     threshold = weighted_quantile(values[healthy], weights[:, healthy], 1.0 - false_alarms)
-    order = damaged[np.argsort(size[damaged], kind="stable")]
-    members = np.array_split(order, groups)
     counts = np.stack([weights[:, rows].sum(axis=1) for rows in members], axis=1)
     alarms = np.stack(
         [(weights[:, rows] * (values[rows] > threshold[:, None])).sum(axis=1) for rows in members], axis=1
     )
     medians = np.array([float(np.median(size[rows])) for rows in members])
     return DetectionCurve(medians, isotonic(alarms, counts))
+
+
+def _groups(order: np.ndarray, size: np.ndarray) -> list[np.ndarray]:
+    """Return rows in order of size as groups: one per size where a ladder has few sizes, else of equal count."""
+    rises = np.flatnonzero(np.diff(size) > 1e-9 * size[:-1]) + 1
+    levels = np.split(order, rises)
+    if len(levels) <= GROUPS and min(map(len, levels)) >= RECORDS_PER_GROUP:
+        return levels
+    groups = min(GROUPS, order.size // RECORDS_PER_GROUP)
+    return np.array_split(order, groups) if groups else []
 
 
 def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:

@@ -181,10 +181,11 @@ def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLeng
     """
     judged = [entry for entry in entries if math.isfinite(entry.auc.value) and SIZES[2] in entry.sizes]
     ladders = {fault: [entry for entry in judged if entry.fault == fault] for fault in (e.fault for e in entries)}
-    return {fault: _first_reaching(found, target) for fault, found in ladders.items() if _differ_in_length(found)}
+    return {fault: _first_reaching(found, target) for fault, found in ladders.items() if differ_in_length(found)}
 
 
-def _differ_in_length(entries: list[Detection]) -> bool:
+def differ_in_length(entries: list[Detection]) -> bool:
+    """Return whether states differ in profile length, so that they can be ranked by it."""
     lengths = sorted(entry.sizes[SIZES[2]] for entry in entries)
     return all(high > low * (1.0 + 1e-6) for low, high in pairwise(lengths))
 

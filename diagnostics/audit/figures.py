@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.audit.detectability import SIZES, TARGETS, Detection
+from diagnostics.audit.detectability import SIZES, TARGETS, Detection, differ_in_length
 from diagnostics.audit.envelope import QuantityShare, Realism
 from diagnostics.report.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
 
@@ -50,7 +50,10 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 
 
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
-    """Return AUC over profile length with intervals; a colour per variant, a marker per fault; dotted: targets."""
+    """Return AUC over profile length with intervals; a colour per variant, a marker per fault; dotted: targets.
+
+    Faults whose states do not differ in length stand in the tables only.
+    """
     figure, axes = new_figure(height_in=4.2)
     axis = axes[0, 0]
     lines = [
@@ -59,7 +62,7 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
         for fault in dict.fromkeys(entry.fault for entry in entries)
     ]
     variant, kind = (list(dict.fromkeys(line[place] for line in lines)).index for place in (0, 1))
-    for name, fault, entries in (line for line in lines if line[2]):
+    for name, fault, entries in (line for line in lines if line[2] and differ_in_length(line[2])):
         length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
         value = np.array([entry.auc.value for entry in entries])
         low = np.array([entry.auc.low for entry in entries])

@@ -32,7 +32,7 @@ RANGE_CAPTION = "Quantities of the healthy records and the ranges that measured 
 REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
 SIZE_CAPTION = (
     "AUC against healthy over the length of the damage along the profile, 95 % limits; dashed: chance, dotted: 0.75 "
-    "and 0.85."
+    "and 0.85. Damage that grows along the face alone stands in the tables only."
 )
 
 

@@ -21,6 +21,7 @@ OTHER_GEARS = (
     "--set gears.pinion.teeth=21 --set gears.gear.teeth=50 --set specimens=24 --set seed=99 "
     "--set 'splits={train: 0, validation: 0, test: 20}'"
 )
+LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
 SETS = {
     "quickstart": ("siggen generate configs/quickstart.yaml --out runs/quickstart",),
     "bench": ("siggen generate configs/bench.yaml --out runs/bench --workers 2",),
@@ -36,10 +37,19 @@ REPORTS = {
     "bench": {
         "bench_report": ("report.html", "report runs/bench --test runs/other --channel lid_vertical"),
         "bench_indicators": ("indicators.html", "indicators runs/bench --leave-out"),
+        "bench_ladder": ("indicators.html", f"indicators runs/bench --leave-out {LADDER}"),
         "bench_audit": ("audit.html", "audit runs/bench --realism --paired"),
     },
 }
 """By preset: the name of a page, what the program calls it, and the command that writes it."""
+
+FIGURES = {
+    "bench_detectability.png": "bench_audit/figures/detectability.png",
+    "bench_realism.png": "bench_audit/figures/realism.png",
+    "bench_indicators.png": "bench_indicators/figures/separation.png",
+    "bench_ladder.png": "bench_ladder/figures/detection.png",
+}
+"""Figures of docs/presets.md, and what writes them."""
 
 NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")}
 
@@ -81,6 +91,9 @@ def main(*presets: str) -> None:
                     run(command)
         for name, (page, command) in REPORTS[preset].items():
             write_page(name, page, command)
+            for figure, source in FIGURES.items():
+                if source.startswith(f"{name}/"):
+                    shutil.copyfile(RUNS / source, Path("docs/figures") / figure)
 
 
 if __name__ == "__main__":

@@ -148,6 +148,18 @@ def test_size_is_found_where_the_indicator_crosses_its_healthy_spread() -> None:
     assert np.isinf(size_at(detection_curve(-values, healthy, size, np.ones((1, 6000)), 0.05), 0.9)[0])  # type: ignore[arg-type]
 
 
+def test_a_ladder_of_few_sizes_has_one_group_per_size() -> None:
+    healthy = np.arange(200) < 100
+    size = np.where(healthy, 0.0, np.repeat([0.0, 1.0, 2.0, 4.0], [100, 20, 30, 50]))
+    values = np.concatenate([np.arange(100.0), np.full(20, 0.0), np.tile([0.0, 99.5], 15), np.full(50, 99.5)])
+    curve = detection_curve(values, healthy, size, np.ones((1, 200)), 0.05)
+    assert curve is not None
+    np.testing.assert_array_equal(curve.size, [1.0, 2.0, 4.0])
+    np.testing.assert_array_equal(curve.share, [[0.0, 0.5, 1.0]])
+    # between 2 and 4 on a logarithmic axis: 2^(1 + 0.4/0.5)
+    assert size_at(curve, 0.9)[0] == pytest.approx(2.0**1.8)
+
+
 def test_too_few_damaged_records_give_no_curve() -> None:
     healthy = np.arange(20) < 12
     assert detection_curve(np.arange(20.0), healthy, np.where(healthy, 0, 1.0), np.ones((1, 20)), 0.05) is None
