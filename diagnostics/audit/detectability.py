@@ -186,7 +186,7 @@ def length_at(entries: list[Detection], target: float) -> dict[str, DetectedLeng
 
 def differ_in_length(entries: list[Detection]) -> bool:
     """Return whether states differ in profile length, so that they can be ranked by it."""
-    lengths = sorted(entry.sizes[SIZES[2]] for entry in entries)
+    lengths = sorted(entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries)
     return all(high > low * (1.0 + 1e-6) for low, high in pairwise(lengths))
 
 

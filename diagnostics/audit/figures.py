@@ -52,7 +52,7 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     """Return AUC over profile length with intervals; a colour per variant, a marker per fault; dotted: targets.
 
-    Faults whose states do not differ in length stand in the tables only.
+    Faults whose states do not differ in length stand in the tables only, unless there are no others.
     """
     figure, axes = new_figure(height_in=4.2)
     axis = axes[0, 0]
@@ -61,8 +61,10 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
         for name, entries in variants.items()
         for fault in dict.fromkeys(entry.fault for entry in entries)
     ]
+    lines = [line for line in lines if line[2]]
+    lines = [line for line in lines if differ_in_length(line[2])] or lines
     variant, kind = (list(dict.fromkeys(line[place] for line in lines)).index for place in (0, 1))
-    for name, fault, entries in (line for line in lines if line[2] and differ_in_length(line[2])):
+    for name, fault, entries in lines:
         length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
         value = np.array([entry.auc.value for entry in entries])
         low = np.array([entry.auc.low for entry in entries])
