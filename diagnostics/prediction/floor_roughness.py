@@ -8,6 +8,7 @@ training records. Source: derived; the density is that of Welch 1967.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -73,5 +74,5 @@ def _log_floor(signal: np.ndarray, fs_hz: float) -> np.ndarray:
     ends = np.searchsorted(frequency_hz, edges - 1e-6)
     if np.diff(ends).min() < LEAST_IN_BIN:
         return np.empty(0)
-    lows = [np.quantile(density[a:b], QUANTILE) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    lows = [np.quantile(density[a:b], QUANTILE) for a, b in itertools.pairwise(ends)]
     return np.asarray(np.log(np.maximum(lows, np.finfo(np.float64).tiny)))

@@ -71,7 +71,7 @@ def record_pieces(
     duration_s: float,
     settings: FeatureSettings,
 ) -> RecordPieces:
-    """Return features, those between the lines too, of consecutive pieces; a rest shorter than a piece counts if there is no more.
+    """Return features of consecutive pieces, between lines too; a rest shorter than a piece counts if there is no more.
 
     Parameters
     ----------

@@ -12,9 +12,9 @@ import pyarrow as pa
 from diagnostics.baselines import FeatureClassifier, train_classifier
 from diagnostics.evaluation import Scores, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
+from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.prediction.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
-from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.recording import recordings
 from diagnostics.splits import SpecimenSplit
