@@ -37,8 +37,8 @@ class DistancePart:
         Median absolute deviation from the line, times 1.4826.
     precision : (k, k) float64
         Inverse covariance of the standardised log features.
-    typical : float
-        Median distance of records of held-out gearboxes, which the distance is divided by.
+    scale : float
+        What the distance is divided by: a bound that nine of ten records of new gearboxes keep.
     """
 
     features: tuple[str, ...]
@@ -46,7 +46,7 @@ class DistancePart:
     slope: np.ndarray
     spread: np.ndarray
     precision: np.ndarray
-    typical: float = 1.0
+    scale: float = 1.0
 
     def standardised(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
         """Return how far log features (n, k) lie off the line at speeds (n,) [Hz], in spreads; 0 where undefined."""
@@ -54,7 +54,7 @@ class DistancePart:
         return np.asarray(np.nan_to_num((logs - line) / self.spread))
 
     def distance(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
-        """Return the distance of records, (n,), one for a typical one; undefined features count as typical.
+        """Return the distance of records, (n,), in `scale`; undefined features count as typical.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class DistancePart:
         """
         standard = np.clip(self.standardised(logs, speed_hz), -CLIPPED_AT, CLIPPED_AT)
         square = np.einsum("ij,jk,ik->i", standard, self.precision, standard) / logs.shape[1]
-        return np.asarray(np.sqrt(square) / self.typical)
+        return np.asarray(np.sqrt(square) / self.scale)
 
 
 def fit_part(logs: np.ndarray, speed_hz: np.ndarray, features: tuple[str, ...]) -> DistancePart:
@@ -98,7 +98,7 @@ def _line(log_speed: np.ndarray, column: np.ndarray) -> tuple[float, float]:
 def part_facts(found: DistancePart) -> dict[str, Any]:
     """Return the distance as JSON can hold it."""
     arrays = {name: getattr(found, name).tolist() for name in ARRAYS}
-    return {"features": list(found.features), **arrays, "typical": found.typical}
+    return {"features": list(found.features), **arrays, "scale": found.scale}
 
 
 def part_from_facts(facts: dict[str, Any]) -> DistancePart:
@@ -114,4 +114,4 @@ def part_from_facts(facts: dict[str, Any]) -> DistancePart:
     for name, array in arrays.items():
         if array.shape != ((size, size) if name == "precision" else (size,)):
             raise ValueError(f"distance: {size} features, but {name} has shape {array.shape}")
-    return DistancePart(features, **arrays, typical=float(facts["typical"]))
+    return DistancePart(features, **arrays, scale=float(facts["scale"]))

@@ -15,7 +15,7 @@ from diagnostics.prediction.training_distance import TrainingDistance, distance_
 from siggen.errors import UsageError
 
 FACTS_FILE = "model.json"
-FORMAT = "siggen-diagnostics model 2"
+FORMAT = "siggen-diagnostics model 3"
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,6 +30,14 @@ def octaves_hz(fs_hz: float) -> list[tuple[float, float]]:
     return [(low, min(2.0 * low, highest_hz)) for low in lows]
 
 
+def spectral_density(signal: np.ndarray, fs_hz: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies [Hz] and the density per Hz of a signal (n,), 2 Hz apart unless it is shorter than 0.5 s."""
+    from scipy.signal import welch
+
+    frequency_hz, density = welch(signal, fs_hz, nperseg=min(signal.size, round(SEGMENT_S * fs_hz)))
+    return frequency_hz, density
+
+
 def noise_floor(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, float]:
     """Return the median spectral density [(m/s^2)^2/Hz] of every octave and channel by name.
 
@@ -45,12 +53,9 @@ def noise_floor(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, f
     dict of str to float
         `noise_floor_100hz__lid` is the octave from 100 Hz on in channel `lid`.
     """
-    from scipy.signal import welch
-
     found = {}
     for channel, signal in channels.items():
-        segment = min(signal.size, round(SEGMENT_S * fs_hz))
-        frequency_hz, density = welch(np.asarray(signal, dtype=np.float64), fs_hz, nperseg=segment)
+        frequency_hz, density = spectral_density(np.asarray(signal, dtype=np.float64), fs_hz)
         for low_hz, high_hz in octaves_hz(fs_hz):
             inside = density[(frequency_hz >= low_hz) & (frequency_hz < high_hz)]
             found[f"{FLOOR}_{low_hz:g}hz__{channel}"] = float(np.median(inside)) if inside.size else np.nan

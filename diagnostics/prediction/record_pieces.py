@@ -12,7 +12,7 @@ from fractions import Fraction
 import numpy as np
 
 from diagnostics.features import FeatureSettings, record_features
-from diagnostics.prediction.noise_floor import noise_floor
+from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 
@@ -71,7 +71,7 @@ def record_pieces(
     duration_s: float,
     settings: FeatureSettings,
 ) -> RecordPieces:
-    """Return features and noise floors of consecutive pieces; a rest shorter than a piece counts if there is no more.
+    """Return features of consecutive pieces, between lines too; a rest shorter than a piece counts if there is no more.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def record_pieces(
         times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
         piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
         found.append(record_features(piece, times_s, recording.fs_hz, teeth, settings))
-        values.append(found[-1].values | noise_floor(piece, recording.fs_hz))
+        values.append(found[-1].values | floor_features(piece, recording.fs_hz))
     names = tuple(values[0])
     table = np.array([[piece[name] for name in names] for piece in values])
     notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))

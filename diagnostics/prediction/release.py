@@ -12,9 +12,9 @@ import pyarrow as pa
 from diagnostics.baselines import FeatureClassifier, train_classifier
 from diagnostics.evaluation import Scores, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
+from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.prediction.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
-from diagnostics.prediction.noise_floor import noise_floor
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.recording import recordings
 from diagnostics.splits import SpecimenSplit
@@ -79,7 +79,7 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
         Seeds the bootstrap of the variant's scores.
     """
     matrix, split = feature_matrix(table), training.split
-    whole = with_noise_floor(matrix, dataset)
+    whole = with_floor_features(matrix, dataset)
     distance, distances = _distance(log_values(whole.values), whole, split)
     referenced, note = _referenced(matrix, whole, split, seed)
     ratio = reference_speed_ratio(matrix.labels) if referenced else None
@@ -95,8 +95,8 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
     )
 
 
-def with_noise_floor(matrix: FeatureMatrix, dataset: Any) -> FeatureMatrix:
-    """Return the features of a set with the noise floors of its records as further columns, which only distances take.
+def with_floor_features(matrix: FeatureMatrix, dataset: Any) -> FeatureMatrix:
+    """Return the features of a set with what lies between the lines as further columns, which only distances take.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def with_noise_floor(matrix: FeatureMatrix, dataset: Any) -> FeatureMatrix:
         The set, with the same channels.
     """
     found = {
-        int(record.labels["record_id"]): noise_floor(record.channels, record.fs_hz) for record in recordings(dataset)
+        int(record.labels["record_id"]): floor_features(record.channels, record.fs_hz) for record in recordings(dataset)
     }
     names = tuple(next(iter(found.values())))
     floors = np.array([[found[number][name] for name in names] for number in matrix.labels["record_id"].tolist()])

@@ -1,9 +1,11 @@
-"""How far a record lies from the training records, with a threshold: the larger of the distances of lines and noise.
+"""How far a record lies from the training records, with a threshold: the largest of the distances of three parts.
 
-One part takes what gears and supports decide (levels, mesh lines, first sidebands), the other the noise floor by
-octaves, which path, mounting and sensor decide. Few features each, since distances are estimated from few gearboxes,
-and not those that damage moves most (FM4 and its like), which would make the states clusters. Taken together in one
-covariance the parts would dilute each other.
+One part takes what gears and supports decide (levels, mesh lines, first sidebands), one the noise floor by octaves,
+which path, mounting and sensor decide, one the roughness of that floor, which damping and number of modes decide. Few
+features each, since distances are estimated from few gearboxes, and not those that damage moves most (FM4 and its
+like), which would make the states clusters. Taken together in one covariance the parts would dilute each other; over
+their medians the part with the fewest features, whose distance scatters most, would rule the largest. So each is
+divided by a bound that nine of ten records of new gearboxes keep.
 
 The threshold comes from held-out gearboxes alone: the validation specimens, and every training specimen left out of
 the fit in turn. It is an upper prediction bound for the record of a new gearbox (see `group_bound`), so that it widens
@@ -18,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.prediction.distance_part import DistancePart, fit_part, part_facts, part_from_facts
+from diagnostics.prediction.floor_roughness import DIFFERENCE, ROUGHNESS
 from diagnostics.prediction.group_bound import group_bound
 from diagnostics.prediction.noise_floor import FLOOR
 from diagnostics.splits import SpecimenSplit
@@ -30,6 +33,9 @@ LINES = (
 SHARE_INSIDE = 0.97
 """Share of records of new gearboxes that counts as like training: 5 % of false alarms are allowed, of which two fifths
 are kept for what a threshold from few gearboxes misses by."""
+
+SHARE_IN_SCALE = 0.9
+"""Share of records of new gearboxes that the distance of one part, divided by its scale, keeps below one."""
 
 SMALLEST_DISTANCE = 1e-6
 """Keeps the logarithm finite where records are equal."""
@@ -86,7 +92,8 @@ def distance_features(names: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
     """Return the columns that each part of the distance takes, of all channels."""
     lines = tuple(name for name in names if name.split("__")[0] in LINES)
     floor = tuple(name for name in names if name.startswith(FLOOR))
-    return tuple(part for part in (lines, floor) if part)
+    roughness = tuple(name for name in names if name in (ROUGHNESS, DIFFERENCE))
+    return tuple(part for part in (lines, floor, roughness) if part)
 
 
 def calibrated_distance(
@@ -117,11 +124,16 @@ def calibrated_distance(
     for names, own in zip(parts, np.split(logs, ends[:-1], axis=1), strict=True):
         part = fit_part(own[split.train], speed_hz[split.train], names)
         held_out = _held_out(part, own, speed_hz, split, specimen)
-        typical = max(float(np.median(held_out[used])), SMALLEST_DISTANCE)
-        fitted.append(replace(part, typical=typical))
-        farthest = np.maximum(farthest, held_out / typical)
-    bound = group_bound(np.log(np.maximum(farthest[used], SMALLEST_DISTANCE)), specimen[used], SHARE_INSIDE)
-    return TrainingDistance(tuple(fitted), float(np.exp(bound)), int(np.unique(specimen[used]).size))
+        scale = _bound(held_out[used], specimen[used], SHARE_IN_SCALE)
+        fitted.append(replace(part, scale=scale))
+        farthest = np.maximum(farthest, held_out / scale)
+    threshold = _bound(farthest[used], specimen[used], SHARE_INSIDE)
+    return TrainingDistance(tuple(fitted), threshold, int(np.unique(specimen[used]).size))
+
+
+def _bound(distance: np.ndarray, specimen: np.ndarray, share: float) -> float:
+    """Return what a share of the distances of new gearboxes lies below, taken as log-normal."""
+    return float(np.exp(group_bound(np.log(np.maximum(distance, SMALLEST_DISTANCE)), specimen, share)))
 
 
 def _held_out(
