@@ -25,10 +25,16 @@ def chosen_states(dataset: Any, names: Sequence[str]) -> tuple[str, ...]:
     Raises
     ------
     UsageError
-        If the set has no state of that name.
+        If the set has no state of that name, or it is a healthy one.
     """
     labels = dataset.labels(columns=["state_id", "state", "fault"]).to_pylist()
     faults = {row["state"]: row["fault"] for row in sorted(labels, key=lambda row: row["state_id"])}
     if unknown := [name for name in names if name not in faults]:
         raise UsageError(f"{dataset.path}: has no state {', '.join(unknown)}; it has {', '.join(faults)}")
+    if healthy := [name for name in names if faults[name] == HEALTHY]:
+        damaged = [state for state, fault in faults.items() if fault != HEALTHY]
+        raise UsageError(
+            f"{dataset.path}: state {', '.join(healthy)} is healthy and taken anyway; name damaged ones, "
+            f"of which the set has {', '.join(damaged) or 'none'}"
+        )
     return tuple(state for state, fault in faults.items() if not names or fault == HEALTHY or state in names)

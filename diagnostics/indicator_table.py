@@ -28,7 +28,7 @@ from diagnostics.record_problems import RecordProblem, problem_list, record_prob
 from diagnostics.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.shaft_signals import record_shafts
 from diagnostics.signal.order_domain import angle_grid
-from diagnostics.signal.tacholess_angle import tacholess_pulses
+from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
 from diagnostics.state_history import history_indicators
 from siggen.errors import DatasetError, UsageError
 
@@ -257,10 +257,15 @@ def _own_values(
 
 
 def _pulses(record: Recording, channels: dict[str, np.ndarray], teeth: int, settings: IndicatorSettings) -> np.ndarray:
-    """Return the pulse times: the tacho's, or those that the first usable channel's mesh lines give."""
+    """Return the pulse times: the tacho's, or those that the mesh lines of the clearest usable channel give."""
     if settings.speed_range_hz is None or not channels:
         return np.asarray(record.tacho_s, dtype=np.float64)
-    return tacholess_pulses(next(iter(channels.values())), record.fs_hz, teeth, settings.speed_range_hz)
+    clarity = {
+        name: mesh_ridge(signal, record.fs_hz, teeth, settings.speed_range_hz).clarity
+        for name, signal in channels.items()
+    }
+    clearest = channels[max(clarity, key=lambda name: clarity[name])]
+    return tacholess_pulses(clearest, record.fs_hz, teeth, settings.speed_range_hz)
 
 
 def _table(dataset: Any, found: list[RecordIndicators], settings: IndicatorSettings) -> IndicatorTable:

@@ -81,15 +81,30 @@ def register(name: str) -> Callable[[IndicatorFunction], IndicatorFunction]:
     Raises
     ------
     UsageError
-        If the name cannot be used.
+        If the name cannot be used, or another function has it; the same function defined again replaces itself.
     """
     _check_name(name)
 
     def keep(function: IndicatorFunction) -> IndicatorFunction:
+        before = _REGISTERED.get(name)
+        if before is not None and _defined_as(before.function) != _defined_as(function):
+            raise UsageError(
+                f"indicator name: {name!r} is registered for {'.'.join(_defined_as(before.function))} already; choose "
+                f"another name, or call unregister({name!r}) first"
+            )
         _REGISTERED[name] = OwnIndicator(name, function)
         return function
 
     return keep
+
+
+def _defined_as(function: IndicatorFunction) -> tuple[str, str]:
+    """Return module and qualified name: a notebook's cell that runs again defines the same function anew."""
+    kind = type(function)
+    return (
+        str(getattr(function, "__module__", kind.__module__)),
+        str(getattr(function, "__qualname__", f"{kind.__qualname__} at {id(function):#x}")),
+    )
 
 
 def registered() -> tuple[OwnIndicator, ...]:

@@ -11,6 +11,9 @@ from diagnostics.report.indicator_tables import size_text
 from diagnostics.report.wording import counted, limits, percent
 
 SIGNIFICANT = 0.05
+FEWEST_SPECIMENS = 3
+"""Of which a summary speaks: fewer give no test, and an interval of two points."""
+
 WITH_HISTORY = ("na4_", "nb4_")
 
 
@@ -18,8 +21,12 @@ def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...]
     """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
     if not states:
         return ["The set has no damaged state: indicators stand in the tables, and nothing can be told apart."]
-    if specimens < 2:
-        return ["With a single specimen the numbers below describe that specimen; they say nothing about others."]
+    if specimens < FEWEST_SPECIMENS:
+        whose, those = ("a single specimen", "that specimen") if specimens == 1 else (f"{specimens} specimens", "those")
+        return [
+            f"With {whose} the numbers below describe {those} and name no best indicator: they say nothing about "
+            f"others. It takes {FEWEST_SPECIMENS} specimens at least."
+        ]
     return [*_best(found, states), *_by_state(found, states), *_survivors(found, specimens), *_smallest(found)]
 
 

@@ -86,6 +86,17 @@ def test_angle_from_the_mesh_lines_gives_nearly_the_same_average(small: Any, tab
     np.testing.assert_allclose(column(found, name), column(table, name), rtol=0.02)
 
 
+def test_angle_comes_from_the_channel_whose_mesh_lines_are_clearest(small: Any) -> None:
+    record = next(recordings(small))
+    noise = np.random.default_rng(1).standard_normal(12_800)
+    settings = IndicatorSettings(speed_range_hz=(25.0, 36.0))
+    clear = record.channels["bearing_vertical"]
+    both = record_indicators(replace(record, channels={"a": noise, "b": clear}), settings=settings)
+    alone = record_indicators(replace(record, channels={"b": clear}), settings=settings)
+    assert not both.problems
+    assert both.values["fm4_pinion__b"] == alone.values["fm4_pinion__b"]
+
+
 def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)

@@ -74,6 +74,41 @@ def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
     np.testing.assert_array_equal(found.channels["horizontal"], [-2.25, 3.0, 1.0])
 
 
+@pytest.mark.parametrize(
+    "above",
+    [
+        "# recorder 7, 12 bit\n# 8000 Hz\nvertical,horizontal\n",
+        "% recorder 7\n\nvertical,horizontal\n",
+        "vertical,horizontal\n[m/s2],[m/s2]\n",
+        "# recorder 7\nvertical,horizontal\nm/s²,g\n",
+    ],
+)
+def test_comments_and_units_above_the_samples_are_skipped(above: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(above + "1.5,-2.25\n0.5,3.0\n-1.0,1.0\n", encoding="utf-8")
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    np.testing.assert_array_equal(found.channels["vertical"], [1.5, 0.5, -1.0])
+
+
+def test_units_with_decimal_commas(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("vertical;horizontal\ng;g\n1,5;-2\n0,5;3\n-1;1\n")
+    found = read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+    np.testing.assert_array_equal(found.channels["vertical"], [1.5, 0.5, -1.0])
+
+
+@pytest.mark.parametrize("second", ["start,here", "g,3.0", "g", "g,rotor"])
+def test_a_second_row_that_is_not_plainly_units_is_no_sample_and_refused(second: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(f"vertical,horizontal\n{second}\n1.5,2.5\n0.5,3.0\n")
+    with pytest.raises(UsageError, match="cannot be read as a table of numbers"):
+        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+
+
+@pytest.mark.parametrize("text", ["vertical,horizontal\n", "vertical,horizontal\ng,g\n", "# only this\n", ""])
+def test_a_text_file_without_samples_says_so(text: str, tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text(text)
+    with pytest.raises(UsageError, match=r"run.csv: holds no samples"):
+        read_recording(tmp_path / "run.csv", NAMES, RecordingFacts(fs_hz=FS_HZ))
+
+
 def test_a_record_of_this_package_is_read_by_row_with_its_pulses(tmp_path: Path) -> None:
     first, second = signals().astype(np.float32)
     rows = {"accel_vertical_m_s2": [first, second], "accel_horizontal_m_s2": [second, first]}

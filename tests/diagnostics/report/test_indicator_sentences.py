@@ -71,11 +71,13 @@ def test_nothing_defined_is_said_and_no_number_is_made_up() -> None:
 
 
 @pytest.mark.parametrize(
-    ("states", "specimens", "text"), [((), 24, "no damaged state"), (("slight",), 1, "With a single specimen")]
+    ("states", "specimens", "text"),
+    [((), 24, "no damaged state"), (("slight",), 1, "With a single specimen"), (("slight",), 2, "With 2 specimens")],
 )
 def test_sets_that_allow_no_finding(states: tuple[str, ...], specimens: int, text: str) -> None:
-    (sentence,) = indicator_findings([], states, specimens)
+    (sentence,) = indicator_findings([result("rms", {"slight": state(0.9)})], states, specimens)
     assert text in sentence
+    assert "rms" not in sentence
 
 
 def test_indicators_that_lack_only_records_that_were_left_out_are_not_called_undefined() -> None:
