@@ -17,6 +17,7 @@ import numpy as np
 
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.damage_kind import damage_kind
 from diagnostics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
 from diagnostics.seeding import Purpose, generator
 
@@ -109,17 +110,10 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
         )
         rows = labels["state"] == state
         sizes = {name: float(np.mean(labels[name][rows])) for name in SIZES if name in labels}
-        found.append(Detection(state, _kind(labels, rows), sizes, auc, count))
+        found.append(Detection(state, damage_kind(labels, rows), sizes, auc, count))
     return sorted(
         found, key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]), entry.sizes[SIZES[0]])
     )
-
-
-def _kind(labels: dict[str, np.ndarray], rows: np.ndarray) -> str:
-    """Return the fault; damage through the face is another kind, since no land beside it carries at any length."""
-    fault = str(labels["fault"][rows][0])
-    through = "through_face" in labels and bool(np.all(labels["through_face"][rows]))
-    return f"{fault} through the face" if through else fault
 
 
 def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, seed: int) -> np.ndarray:

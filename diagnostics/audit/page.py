@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 HOW = (
     "Logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels; cross-validated "
     "by specimen, healthy and faulty records from different specimens; limits: 95 %, resampled specimens. Where a "
-    "state is at 0.5 nothing can be found on a gearbox that was not seen before."
+    "state is at 0.5 nothing can be found by these four indicators on a gearbox that was not seen before."
 )
 
 SIZE_TITLES = {

@@ -14,6 +14,7 @@ from diagnostics.assessment.assessment import AssessmentSettings, Records, asses
 from diagnostics.assessment.indicator_result import IndicatorResult
 from diagnostics.assessment.noise_curve import NoiseCurve, noise_curve
 from diagnostics.assessment.paired_differences import HEALTHY
+from diagnostics.damage_kind import damage_kinds
 from diagnostics.extras import require_packages
 from diagnostics.feature_table import write_table
 from diagnostics.indicator_table import IndicatorTable
@@ -285,6 +286,7 @@ def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
     return [
         *(f"Left out: {problem}" for problem in table.problems),
         *_note_counts(table),
+        *kind_notes(dataset, evaluated.records.states),
         *clipping_notes(dataset),
         f"Revolutions averaged: pinion {_range(table.revolutions[:, 0])}, gear {_range(table.revolutions[:, 1])}. "
         "Values of averages depend on their number where noise matters (see noise_share).",
@@ -293,6 +295,20 @@ def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
         f"{evaluated.records.weights.shape[0] - 1} resamples.",
         f"Shaft angles come from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}.",
         provenance(dataset, evaluated.settings.seed),
+    ]
+
+
+def kind_notes(dataset: Any, damaged: Sequence[str]) -> list[str]:
+    """Return a note where damaged states are of several kinds: sizes, trends and histories run across ladders."""
+    present = set(dataset.labels().column_names)
+    table = dataset.labels(columns=[name for name in ("state", "fault", "through_face") if name in present])
+    kinds = damage_kinds({name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}, damaged)
+    if len(kinds) < 2:
+        return []
+    listed = "; ".join(f"{kind}: {', '.join(members)}" for kind, members in kinds.items())
+    return [
+        f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 mean something along one "
+        "ladder of damage only, not across these; --state NAME, given once per state, judges those of one kind."
     ]
 
 

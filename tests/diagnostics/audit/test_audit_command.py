@@ -59,7 +59,13 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
     assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", "--realism", "--paired") == 0
     assert capsys.readouterr().out.strip().endswith("audit.html")
     page = (tmp_path / "audit.html").read_text()
-    for part in ("No trap", "Against healthy gearboxes", "Spread between the sensors", "Detectability", "base64"):
+    for part in (
+        "No trap",
+        "Against healthy gearboxes",
+        "Spread between the sensors",
+        "by these four indicators",
+        "base64",
+    ):
         assert part in page
     assert "http" not in page.replace("http-equiv", "")
     assert len(json.loads((tmp_path / "audit.json").read_text())["realism"]["quantities"]) == 13

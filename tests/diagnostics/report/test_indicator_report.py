@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -15,7 +17,7 @@ from diagnostics.assessment.assessment import AssessmentSettings
 from diagnostics.assessment.noise_curve import noise_curve
 from diagnostics.indicator_table import indicator_table
 from diagnostics.indicators.definitions import DEFINITIONS
-from diagnostics.report.indicator_report import write_indicator_report
+from diagnostics.report.indicator_report import kind_notes, write_indicator_report
 
 SETTINGS = AssessmentSettings(resamples=60)
 
@@ -81,3 +83,30 @@ def test_noise_curve_falls_where_noise_covers_the_effect() -> None:
     assert areas[0] < 0.72  # a shift of 0.1 to 0.3 deviations at -20 to -10 dB: Phi(0.2 / sqrt 2) = 0.56, 4 x 0.04
     assert areas[-1] > 0.99
     assert list(curve.snr_db) == pytest.approx([-15, -5, 5, 15], abs=2.5)
+
+
+def with_labels(dataset: Any, **columns: list[Any]) -> Any:
+    table = dataset.table
+    for name, values in columns.items():
+        table = table.drop_columns([name]) if name in table.column_names else table
+        table = table.append_column(name, pa.array(values))
+    return replace(dataset, table=table)
+
+
+def test_states_of_several_kinds_are_noted_with_their_kinds(dataset: Any) -> None:
+    state = dataset.table.column("state").to_pylist()
+    assert kind_notes(dataset, ("slight", "severe")) == []
+    faults = {"healthy": "healthy", "slight": "pitting", "severe": "spalling"}
+    (note,) = kind_notes(with_labels(dataset, fault=[faults[name] for name in state]), ("slight", "severe"))
+    assert "2 kinds (pitting: slight; spalling: severe)" in note
+    assert "--state" in note
+    (note,) = kind_notes(with_labels(dataset, through_face=[name == "severe" for name in state]), ("slight", "severe"))
+    assert "pitting: slight; pitting through the face: severe" in note
+
+
+def test_page_carries_the_note_on_kinds(dataset: Any, tmp_path: Path) -> None:
+    state = dataset.table.column("state").to_pylist()
+    mixed = with_labels(dataset, through_face=[name == "severe" for name in state])
+    table = indicator_table(mixed)
+    write_indicator_report(mixed, table, tmp_path, SETTINGS)
+    assert "pitting through the face: severe" in (tmp_path / "indicators.html").read_text(encoding="utf-8")
