@@ -136,10 +136,11 @@ def predict_recording(
     Raises
     ------
     UsageError
-        If pulses cannot be found, or references were given to a model without the variant.
+        If pulses cannot be found, references were given to a model without the variant, or one is the recording itself.
     """
     if references:
         _check_variant(model)
+        _check_references(recording, references)
     facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
@@ -183,6 +184,17 @@ def _check_variant(model: ReleasedModel) -> None:
             "record per gearbox; leave --reference out, or train on a set with a second healthy state (as "
             "configs/bench.yaml), repeat or operating point"
         )
+
+
+def _check_references(recording: MeasuredRecording, references: tuple[MeasuredRecording, ...]) -> None:
+    """Refuse the recording as its own reference; one channel suffices, since noise does not repeat."""
+    for reference in references:
+        if any(np.array_equal(signal, reference.channels[name]) for name, signal in recording.channels.items()):
+            raise UsageError(
+                f"{reference.path}: has the same samples as the recording {recording.path}; a difference to "
+                "itself hides damage. Give another recording of the same machine in healthy state (another file, or "
+                "another row in --reference FILE:ROW), or leave --reference out"
+            )
 
 
 def _reference(
