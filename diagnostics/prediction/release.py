@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.baselines import FeatureClassifier, train_classifier
+from diagnostics.baselines import FeatureClassifier, calibrated_classifier, train_classifier
 from diagnostics.evaluation import Scores, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
 from diagnostics.prediction.floor_roughness import floor_features
@@ -137,7 +137,7 @@ def _referenced(
             "no healthy-referenced variant: it needs a second healthy record of every specimen, in another state, "
             "repeat or operating point"
         )
-    classifier = train_classifier(differences, part)
+    classifier = calibrated_classifier(train_classifier(differences, part), differences, part)
     judged = scores(classifier.predict(differences.rows(part.test)), seed)
     apart = healthy_referenced(whole)[0]
     distance, distances = _distance(apart.values, apart, part)
