@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
+
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.report.wording import counted, joined, percent
@@ -42,5 +44,8 @@ def _weight(vote: Vote) -> str:
 
 
 def model_provenance(facts: ModelFacts) -> str:
-    """Return which set the models were trained on."""
-    return f"Models trained on the set {facts.set_name}, identity {facts.identity}."
+    """Return which program made the page, and which set the models were trained on."""
+    return (
+        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set {facts.set_name}, identity "
+        f"{facts.identity}."
+    )

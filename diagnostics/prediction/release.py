@@ -82,7 +82,8 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
     whole = with_floor_features(matrix, dataset)
     distance, distances = _distance(log_values(whole.values), whole, split)
     referenced, note = _referenced(matrix, whole, split, seed)
-    ratio = reference_speed_ratio(matrix.labels) if referenced else None
+    seen = {name: column[~split.test] for name, column in matrix.labels.items()}
+    ratio = reference_speed_ratio(seen) if referenced else None
     return Release(
         facts=replace(model_facts(dataset, table, split.classes), reference_speed_ratio=ratio),
         distance=distance,

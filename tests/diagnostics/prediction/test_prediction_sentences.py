@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
 from types import SimpleNamespace
 from typing import Any
 
@@ -47,6 +48,8 @@ def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -
     assert "2\xa0pieces" in found[3]
 
 
-def test_the_set_behind_the_models_is_named() -> None:
+def test_the_program_and_the_set_behind_the_models_are_named() -> None:
     facts: Any = SimpleNamespace(set_name="quickstart", identity="42ab")
-    assert model_provenance(facts) == "Models trained on the set quickstart, identity 42ab."
+    assert model_provenance(facts) == (
+        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set quickstart, identity 42ab."
+    )

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from diagnostics.cli.app import main
 from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_table
 from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.log_features import healthy_referenced, healthy_references, reference_speed_ratio
-from diagnostics.prediction.release import REFERENCED
+from diagnostics.prediction.release import REFERENCED, release
 from diagnostics.splits import specimen_split
 from diagnostics.training import save_models, train_models
 
@@ -166,6 +167,18 @@ def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
     plain = replace(saved, temperature=1.0).predict(held_out)
     assert saved.temperature == pytest.approx(fitted_temperature(plain))
     assert saved.temperature != pytest.approx(1.0, rel=0.01)
+
+
+def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
+    measured: Any, features_of_measured: pa.Table
+) -> None:
+    labels = feature_matrix(features_of_measured).labels
+    rows = {name: (labels["split"] == name) & (labels["repeat"] == 1) for name in ("validation", "test")}
+    speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
+    position = features_of_measured.schema.get_field_index("speed_hz")
+    table = features_of_measured.set_column(position, "speed_hz", pa.array(speed))
+    training: Any = SimpleNamespace(split=specimen_split(labels))
+    assert release(training, table, measured).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
 
 
 def test_a_long_label_stands_apart_from_its_text(
