@@ -49,6 +49,11 @@ class Vote:
     accuracy: Interval | None = None
 
     @property
+    def parts(self) -> str:
+        """What `agreement` counts: the network takes windows of few revolutions, of which a piece holds many."""
+        return "windows" if self.classifier == NETWORK else "pieces"
+
+    @property
     def named(self) -> int:
         """Which state it names."""
         return int(self.probability.argmax())

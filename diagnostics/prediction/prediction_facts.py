@@ -91,6 +91,6 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
 
 def _vote_text(found: Prediction, vote: Vote) -> str:
     shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
-    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of pieces agree"
+    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of {vote.parts} agree"
     right = "" if vote.accuracy is None else f"; right on {vote.accuracy.value:.0%} of its test records"
     return f"{shares}{agree}{right}{' (not to be taken)' if found.reasons else ''}"

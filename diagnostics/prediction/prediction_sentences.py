@@ -38,7 +38,7 @@ def prediction_summary(found: Prediction) -> list[str]:
 
 def _weight(vote: Vote) -> str:
     """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
-    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the pieces agree"]
+    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the {vote.parts} agree"]
     right = [] if vote.accuracy is None else [f"right on {percent(vote.accuracy.value)} of its test records"]
     return "; ".join([percent(float(vote.probability.max())), *agree, *right])
 

@@ -33,7 +33,7 @@ def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
     assert prediction_summary(prediction(0.83)) == [
         "The recording is most like the state severe.",
         "Most probable is severe by indicators (95\xa0%; right on 45\xa0% of its test records) and healthy by the "
-        "network (60\xa0%; 50\xa0% of the pieces agree).",
+        "network (60\xa0%; 50\xa0% of the windows agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
         "This rests on 1\xa0piece of 53 or more pinion revolutions at 36.33\xa0Hz, from the tacho.",
     ]

@@ -59,7 +59,7 @@ def test_the_answer_is_withheld_where_the_votes_name_different_states(
     assert not found.nearness.outside  # a reason apart from the distance, which JSON gives apart as well
     assert prediction_facts(found, model.facts)["distance"]["outside"] is False
     text = dict(prediction_rows(found))
-    assert text["by network"].endswith("(not to be taken)")
+    assert text["by network"].endswith("; 100% of windows agree (not to be taken)")
 
 
 def test_votes_that_name_one_state_are_an_answer_however_sure_they_are(
