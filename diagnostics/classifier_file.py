@@ -77,6 +77,11 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
     )
 
 
+def classifier_identity(folder: Path, prefix: str = "") -> str:
+    """Return the identity of the set that a classifier written by `save_classifier` was trained on; empty if untold."""
+    return str(_facts(folder, prefix).get("identity", ""))
+
+
 def load_settings(folder: Path) -> FeatureSettings:
     """Read the settings of the features of a classifier written by `save_classifier`.
 

@@ -79,7 +79,7 @@ def predict(
     low_high = _pair(speed_range, "--speed-range", "20,50") if speed_range else None
     found = predict_recording(loaded, recording, pair, low_high, references)
     for label, text in prediction_rows(found):
-        typer.echo(f"{label + ':':22}{text}")
+        typer.echo(f"{label + ':':21} {text}")
     typer.echo(MEANING)
     if out:
         from diagnostics.prediction.prediction_page import write_prediction

@@ -22,11 +22,11 @@ def known_reasons(
     found = []
     if teeth not in facts.teeth:
         known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
-        found.append(f"{teeth[0]}/{teeth[1]} teeth; the training set knows {known} only")
+        found.append(f"{teeth[0]}/{teeth[1]} teeth; training knows {known} only")
     found += _rate_reasons(facts, recording)
     low, high = facts.speed_range_hz
     if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
-        found.append(f"pinion speed of {pulses.speed_hz:.4g} Hz; the training set covers {low:.4g} to {high:.4g} Hz")
+        found.append(f"pinion speed of {pulses.speed_hz:.4g} Hz; training covers {low:.4g} to {high:.4g} Hz")
     return found + _length_reasons(facts, pieces)
 
 

@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from diagnostics.evaluation import Interval
 from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.splits import TEST
 from siggen.errors import UsageError
 
 FACTS_FILE = "model.json"
@@ -36,13 +38,13 @@ class ModelFacts:
     fs_hz, duration_s : float
         Rate and length of the training records.
     teeth : tuple of (int, int)
-        Pairs of teeth that occur in the set.
+        Pairs of teeth that occur in training and validation, as all that follows: models never saw test records.
     speed_range_hz, torque_range_nm : (float, float)
-        Operating points of the set.
+        Operating points.
     fewest_revolutions : int
-        Pinion revolutions of the shortest training average.
+        Pinion revolutions of the shortest average.
     reference_speed_ratio : float or None
-        Largest ratio, 1 or more, of the speeds of a training record and of one it refers to; None without the
+        Largest ratio, 1 or more, of the speeds of a record and of one it refers to; None without the
         healthy-referenced variant.
     """
 
@@ -68,7 +70,7 @@ def manifest_digest(manifest: dict[str, Any]) -> str:
 
 
 def model_facts(dataset: Any, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
-    """Return the facts of models trained on a set.
+    """Return the facts of models trained on a set; ranges are those of its training and validation records.
 
     Parameters
     ----------
@@ -79,9 +81,10 @@ def model_facts(dataset: Any, table: pa.Table, classes: tuple[str, ...]) -> Mode
     classes : tuple of str
         States in the order of the models.
     """
+    seen = table.filter(pc.not_equal(table.column("split"), TEST))
 
     def column(name: str) -> np.ndarray:
-        return np.asarray(table.column(name).to_pylist())
+        return np.asarray(seen.column(name).to_pylist())
 
     def limits(name: str) -> tuple[float, float]:
         return float(column(name).min()), float(column(name).max())

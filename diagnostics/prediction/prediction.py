@@ -1,7 +1,8 @@
 """State of a recording by the saved models, with probabilities, and the reasons for which no answer should be taken.
 
 The answer is withheld where the recording is unlike the training records: by distance, or by what is known of it
-(teeth, rate, speed, length). So it is where the classifiers name different states. Source: derived.
+(teeth, rate, speed, length). Where the classifiers name different states the answer stands, with the
+contradiction beside it: that says how little it is worth, not that the recording is foreign. Source: derived.
 """
 
 from __future__ import annotations
@@ -47,6 +48,11 @@ class Vote:
     probability: np.ndarray
     agreement: float | None
     accuracy: Interval | None = None
+
+    @property
+    def parts(self) -> str:
+        """What `agreement` counts: the network takes windows of few revolutions, of which a piece holds many."""
+        return "windows" if self.classifier == NETWORK else "pieces"
 
     @property
     def named(self) -> int:
@@ -104,6 +110,14 @@ class Prediction:
     reasons: tuple[str, ...]
     notes: tuple[str, ...]
     pieces: RecordPieces
+
+    @property
+    def contradiction(self) -> str:
+        """How the classifiers contradict each other; empty where they name one state, or there is one only."""
+        if len({vote.named for vote in self.votes}) < 2:
+            return ""
+        said = (f"{vote.classifier} {self.classes[vote.named]} ({vote.probability.max():.2f})" for vote in self.votes)
+        return f"the classifiers name different states: {', '.join(said)}"
 
     @property
     def state(self) -> str:
@@ -164,7 +178,6 @@ def predict_recording(
         plain_nearness=plain,
         reasons=(
             *_distance_reasons(plain, nearness),
-            *_vote_reasons(facts.classes, votes),
             *known_reasons(facts, source, pulses, teeth, pieces),
             *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
@@ -192,8 +205,8 @@ def _check_references(recording: MeasuredRecording, references: tuple[MeasuredRe
         if any(np.array_equal(signal, reference.channels[name]) for name, signal in recording.channels.items()):
             raise UsageError(
                 f"{reference.path}: has the same samples as the recording {recording.path}; a difference to "
-                "itself hides damage. Give another recording of the same machine in healthy state (another file, another "
-                "row in --reference FILE:ROW), or leave --reference out"
+                "itself hides damage. Give another recording of the same machine in healthy state (another file, or "
+                "another row in --reference FILE:ROW), or leave --reference out"
             )
 
 
@@ -262,14 +275,6 @@ def _network_vote(
         return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
     found = network_probabilities(*model.network, recording, pulses)
     return (_vote(NETWORK, found, facts.temperature),), ()
-
-
-def _vote_reasons(classes: tuple[str, ...], votes: tuple[Vote, ...]) -> list[str]:
-    """Return how the classifiers contradict each other; nothing where they name one state, or there is one only."""
-    if len({vote.named for vote in votes}) < 2:
-        return []
-    said = ", ".join(f"{vote.classifier} {classes[vote.named]} ({vote.probability.max():.2f})" for vote in votes)
-    return [f"the classifiers name different states: {said}"]
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

@@ -24,6 +24,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         "file": str(found.recording.path),
         "state": found.state,
         "reasons_to_abstain": list(found.reasons),
+        "contradiction": found.contradiction or None,
         "probabilities": {
             vote.classifier: {
                 **dict(zip(found.classes, vote.probability.tolist(), strict=True)),
@@ -86,11 +87,12 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
         plain = found.plain_nearness
         rows.append(("without reference", f"{plain.distance:.2f}, threshold {plain.threshold:.2f}"))
     rows += [("abstains because", reason) for reason in found.reasons]
+    rows += [("little rests on that", found.contradiction)] if found.contradiction else []
     return [*rows, *(("note", note) for note in found.notes)]
 
 
 def _vote_text(found: Prediction, vote: Vote) -> str:
     shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
-    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of pieces agree"
+    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of {vote.parts} agree"
     right = "" if vote.accuracy is None else f"; right on {vote.accuracy.value:.0%} of its test records"
     return f"{shares}{agree}{right}{' (not to be taken)' if found.reasons else ''}"

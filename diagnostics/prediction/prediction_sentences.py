@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
+
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.report.wording import counted, joined, percent
@@ -24,6 +26,8 @@ def prediction_summary(found: Prediction) -> list[str]:
         answer = f"No answer should be taken: {reasons}"
     else:
         answer = f"The recording is most like the state {found.state}"
+        if found.contradiction:
+            answer += f", but little rests on that: {found.contradiction}"
     withheld = ", which is not to be taken" if found.reasons else ""
     return [
         f"{answer}.",
@@ -36,11 +40,14 @@ def prediction_summary(found: Prediction) -> list[str]:
 
 def _weight(vote: Vote) -> str:
     """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
-    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the pieces agree"]
+    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the {vote.parts} agree"]
     right = [] if vote.accuracy is None else [f"right on {percent(vote.accuracy.value)} of its test records"]
     return "; ".join([percent(float(vote.probability.max())), *agree, *right])
 
 
 def model_provenance(facts: ModelFacts) -> str:
-    """Return which set the models were trained on."""
-    return f"Models trained on the set {facts.set_name}, identity {facts.identity}."
+    """Return which program made the page, and which set the models were trained on."""
+    return (
+        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set {facts.set_name}, identity "
+        f"{facts.identity}."
+    )

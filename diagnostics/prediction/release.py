@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.baselines import FeatureClassifier, train_classifier
+from diagnostics.baselines import FeatureClassifier, calibrated_classifier, train_classifier
 from diagnostics.evaluation import Scores, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
 from diagnostics.prediction.floor_roughness import floor_features
@@ -82,7 +82,8 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
     whole = with_floor_features(matrix, dataset)
     distance, distances = _distance(log_values(whole.values), whole, split)
     referenced, note = _referenced(matrix, whole, split, seed)
-    ratio = reference_speed_ratio(matrix.labels) if referenced else None
+    seen = {name: column[~split.test] for name, column in matrix.labels.items()}
+    ratio = reference_speed_ratio(seen) if referenced else None
     return Release(
         facts=replace(model_facts(dataset, table, split.classes), reference_speed_ratio=ratio),
         distance=distance,
@@ -137,7 +138,7 @@ def _referenced(
             "no healthy-referenced variant: it needs a second healthy record of every specimen, in another state, "
             "repeat or operating point"
         )
-    classifier = train_classifier(differences, part)
+    classifier = calibrated_classifier(train_classifier(differences, part), differences, part)
     judged = scores(classifier.predict(differences.rows(part.test)), seed)
     apart = healthy_referenced(whole)[0]
     distance, distances = _distance(apart.values, apart, part)

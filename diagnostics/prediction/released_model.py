@@ -8,11 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diagnostics.baselines import FeatureClassifier
-from diagnostics.classifier_file import load_classifier, load_settings
+from diagnostics.classifier_file import (
+    CLASSIFIER_FILE,
+    NAMES_FILE,
+    classifier_identity,
+    load_classifier,
+    load_settings,
+)
 from diagnostics.evaluation import Interval
 from diagnostics.extras import missing_packages
 from diagnostics.features import FeatureSettings
+from diagnostics.judgement import NETWORK
 from diagnostics.prediction.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
+from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
 from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
 from siggen.errors import UsageError
@@ -64,7 +72,8 @@ def load_model(folder: Path) -> ReleasedModel:
     Raises
     ------
     UsageError
-        If it is missing or a file (a pickled one, say), or its files are missing, damaged, or hold what is not trusted.
+        If it is missing or a file (a pickled one, say), or its files are missing, damaged, hold what is not trusted, or
+        were not written together.
     """
     if not folder.exists():
         raise UsageError(
@@ -78,25 +87,45 @@ def load_model(folder: Path) -> ReleasedModel:
     if not (folder / FACTS_FILE).is_file():
         raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics train` wrote")
     facts, distance, referenced = read_facts(folder)
-    network, note = _network(folder)
+    accuracy = read_accuracy(folder)
+    network, note = _network(folder, NETWORK in accuracy)
+    classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
+    _check_folder(folder, facts, classifiers, network)
     return ReleasedModel(
         folder=folder,
         facts=facts,
         settings=load_settings(folder),
-        classifier=load_classifier(folder),
+        classifier=classifiers[""],
         distance=distance,
-        referenced_classifier=load_classifier(folder, REFERENCED) if referenced else None,
+        referenced_classifier=classifiers.get(REFERENCED),
         referenced_distance=referenced,
         network=network,
-        accuracy=read_accuracy(folder),
+        accuracy=accuracy,
         note=note,
     )
 
 
-def _network(folder: Path) -> tuple[tuple[WideKernelNetwork, NetworkFile] | None, str]:
+def _check_folder(
+    folder: Path,
+    facts: ModelFacts,
+    classifiers: Mapping[str, FeatureClassifier],
+    network: tuple[WideKernelNetwork, NetworkFile] | None,
+) -> None:
+    parts = []
+    for prefix, classifier in classifiers.items():
+        check_size(folder, f"{prefix}{CLASSIFIER_FILE}", classifier)
+        identity = classifier_identity(folder, prefix)
+        parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
+    if network:
+        parts.append(ModelPart(NETWORK_FILE, network[1].identity, network[1].classes, network[1].channels))
+    check_parts(folder, facts, parts)
+
+
+def _network(folder: Path, scored: bool) -> tuple[tuple[WideKernelNetwork, NetworkFile] | None, str]:
     path = folder / NETWORK_FILE
     if not path.is_file():
-        return None, ""
+        missing_note = f"network left out: {FACTS_FILE} gives its scores, but {NETWORK_FILE} is missing; train again"
+        return None, missing_note if scored else ""
     if missing := missing_packages("torch", "safetensors"):
         return None, f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
     from diagnostics.cnn_files import load_network

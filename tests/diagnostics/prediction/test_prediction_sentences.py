@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
 from types import SimpleNamespace
 from typing import Any
 
@@ -32,7 +33,7 @@ def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
     assert prediction_summary(prediction(0.83)) == [
         "The recording is most like the state severe.",
         "Most probable is severe by indicators (95\xa0%; right on 45\xa0% of its test records) and healthy by the "
-        "network (60\xa0%; 50\xa0% of the pieces agree).",
+        "network (60\xa0%; 50\xa0% of the windows agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
         "This rests on 1\xa0piece of 53 or more pinion revolutions at 36.33\xa0Hz, from the tacho.",
     ]
@@ -47,6 +48,8 @@ def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -
     assert "2\xa0pieces" in found[3]
 
 
-def test_the_set_behind_the_models_is_named() -> None:
+def test_the_program_and_the_set_behind_the_models_are_named() -> None:
     facts: Any = SimpleNamespace(set_name="quickstart", identity="42ab")
-    assert model_provenance(facts) == "Models trained on the set quickstart, identity 42ab."
+    assert model_provenance(facts) == (
+        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set quickstart, identity 42ab."
+    )

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,10 +16,14 @@ import pytest
 from pyarrow import parquet
 from scipy.signal import resample_poly
 
+from diagnostics.calibration import fitted_temperature
+from diagnostics.classifier_file import load_classifier
 from diagnostics.cli.app import main
-from diagnostics.feature_table import FeatureMatrix, feature_table
+from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_table
 from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.log_features import healthy_referenced, healthy_references, reference_speed_ratio
+from diagnostics.prediction.release import REFERENCED, release
+from diagnostics.splits import specimen_split
 from diagnostics.training import save_models, train_models
 
 FS_HZ = 12_800
@@ -95,10 +101,17 @@ def measured(make_dataset: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def trained(measured: Any, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+def features_of_measured(measured: Any) -> pa.Table:
+    return feature_table(measured)
+
+
+@pytest.fixture(scope="module")
+def trained(
+    measured: Any, features_of_measured: pa.Table, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, Path]:
     """Return the folder of the models and a Parquet file with records of another seed: rows 0 to 2 are one gearbox."""
     folder = tmp_path_factory.mktemp("referenced")
-    table = feature_table(measured)
+    table = features_of_measured
     save_models(train_models(measured, table, 0, network=NetworkOptions(cnn=False)), table, measured, folder)
     return folder, folder / "other.parquet"
 
@@ -140,6 +153,42 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     code, healthy = predict(monkeypatch, folder, file, tmp_path, "--row", "3", "--reference", f"{file}:0")
     assert code == 0
     assert healthy["state"] == "healthy"
+
+
+def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
+    trained: tuple[Path, Path], measured: Any, features_of_measured: pa.Table
+) -> None:
+    assert measured.table.num_rows == features_of_measured.num_rows
+    matrix = feature_matrix(features_of_measured)
+    differences, kept = healthy_referenced(matrix)
+    split = specimen_split(matrix.labels)
+    held_out = differences.rows(split.validation[kept])
+    saved = load_classifier(trained[0], REFERENCED)
+    plain = replace(saved, temperature=1.0).predict(held_out)
+    assert saved.temperature == pytest.approx(fitted_temperature(plain))
+    assert saved.temperature != pytest.approx(1.0, rel=0.01)
+
+
+def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
+    measured: Any, features_of_measured: pa.Table
+) -> None:
+    labels = feature_matrix(features_of_measured).labels
+    rows = {name: (labels["split"] == name) & (labels["repeat"] == 1) for name in ("validation", "test")}
+    speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
+    position = features_of_measured.schema.get_field_index("speed_hz")
+    table = features_of_measured.set_column(position, "speed_hz", pa.array(speed))
+    training: Any = SimpleNamespace(split=specimen_split(labels))
+    assert release(training, table, measured).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
+
+
+def test_a_long_label_stands_apart_from_its_text(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    assert other.table.num_rows == 6
+    folder, file = trained
+    predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", f"{file}:0")
+    assert "by healthy_referenced: healthy " in capsys.readouterr().out
 
 
 def test_references_at_another_rate_are_brought_to_that_of_the_model(

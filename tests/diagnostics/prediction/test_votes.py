@@ -1,4 +1,4 @@
-"""Several classifiers: the answer is withheld where they name different states, each comes with its accuracy."""
+"""Several classifiers: a contradiction stands beside the answer, each comes with its accuracy."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import diagnostics.prediction.prediction as prediction
 from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.prediction import NETWORK, Prediction, Vote, predict_recording
 from diagnostics.prediction.prediction_facts import prediction_facts, prediction_rows
+from diagnostics.prediction.prediction_sentences import prediction_summary
 from diagnostics.prediction.released_model import ReleasedModel, load_model
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.training import save_models, train_models
@@ -46,27 +47,25 @@ def with_network(monkeypatch: pytest.MonkeyPatch, probability: tuple[float, ...]
     monkeypatch.setattr(prediction, "_network_vote", lambda *_: ((vote,), ()))
 
 
-def test_the_answer_is_withheld_where_the_votes_name_different_states(
+def test_a_contradiction_of_the_votes_stands_beside_the_answer_and_is_no_reason_to_abstain(
     model: ReleasedModel, signals: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with_network(monkeypatch, (0.97, 0.02, 0.01))
     found = predicted(model, signals)
     sure = found.votes[0].probability.max()
-    assert found.state == "abstains"
-    assert found.reasons == (
-        f"the classifiers name different states: indicators severe ({sure:.2f}), network healthy (0.97)",
-    )
-    assert not found.nearness.outside  # a reason apart from the distance, which JSON gives apart as well
-    assert prediction_facts(found, model.facts)["distance"]["outside"] is False
-    text = dict(prediction_rows(found))
-    assert text["by network"].endswith("(not to be taken)")
+    said = f"the classifiers name different states: indicators severe ({sure:.2f}), network healthy (0.97)"
+    assert (found.state, found.reasons, found.contradiction) == ("severe", (), said)
+    assert prediction_facts(found, model.facts)["contradiction"] == said
+    assert dict(prediction_rows(found))["little rests on that"] == said
+    assert said in prediction_summary(found)[0]
 
 
 def test_votes_that_name_one_state_are_an_answer_however_sure_they_are(
     model: ReleasedModel, signals: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with_network(monkeypatch, (0.32, 0.33, 0.35))
-    assert predicted(model, signals).state == "severe"
+    found = predicted(model, signals)
+    assert (found.state, found.contradiction) == ("severe", "")
 
 
 def test_a_vote_comes_with_the_accuracy_that_training_measured(

@@ -1,0 +1,98 @@
+"""Folders of models: files that were not written together are refused by name, a lost network is noted."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from diagnostics.baselines import logistic_pipeline
+from diagnostics.cli.app import main
+from diagnostics.network_training import NetworkOptions
+from diagnostics.prediction.released_model import load_model
+from diagnostics.training import save_models, train_models
+from siggen.errors import UsageError
+
+
+@pytest.fixture(scope="module")
+def trained(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    found = tmp_path_factory.mktemp("models")
+    save_models(train_models(dataset, features, 0, network=NetworkOptions(cnn=False)), features, dataset, found)
+    return found
+
+
+@pytest.fixture
+def folder(trained: Path, tmp_path: Path) -> Path:
+    for file in trained.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    return tmp_path
+
+
+def change(path: Path, **entries: Any) -> None:
+    path.write_text(json.dumps(json.loads(path.read_text()) | entries))
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"identity": "f" * 64}, f"identity of the set {'f' * 12} instead of {'0' * 12}"),
+        ({"classes": ["healthy", "severe", "slight"]}, "states healthy, severe, slight instead of healthy, slight"),
+    ],
+)
+def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str, folder: Path) -> None:
+    change(folder / "feature_names.json", **entry)
+    with pytest.raises(UsageError, match=r"feature_names\.json: does not belong to model\.json") as found:
+        load_model(folder)
+    assert message in str(found.value)
+    assert f"siggen-diagnostics train SET --out {folder}" in str(found.value)
+
+
+def test_features_of_other_channels_are_refused_with_exit_code_2(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = json.loads((folder / "feature_names.json").read_text())["features"]
+    change(folder / "feature_names.json", features=[name.replace("_vertical", "_axial") for name in names])
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), "run.csv", "--teeth", "18,47"])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 2
+    assert "channels bearing_axial, bearing_horizontal instead of" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
+    import skops.io
+
+    pipeline = logistic_pipeline().fit([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]], [0, 1, 2, 3])
+    skops.io.dump(pipeline, folder / "classifier.skops")
+    with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* state 4 of 3"):
+        load_model(folder)
+
+
+def test_a_network_of_another_model_is_refused(folder: Path) -> None:
+    torch = pytest.importorskip("torch")
+    pytest.importorskip("safetensors")
+    from diagnostics.cnn import WideKernelNetwork
+    from diagnostics.cnn_files import NetworkFile, save_network
+    from diagnostics.windows import WindowSettings
+
+    windows, channels = WindowSettings(teeth=18), ("bearing_vertical", "bearing_horizontal")
+    torch.manual_seed(0)
+    network = WideKernelNetwork(2, 3, windows.samples_per_tooth)
+    for identity in ("f" * 64, "0" * 64):
+        facts = NetworkFile(("healthy", "slight", "severe"), channels, windows, (0.0,) * 2, (1.0,) * 2, identity)
+        save_network(network, facts, folder / "cnn.safetensors")
+        if identity[0] == "f":
+            with pytest.raises(UsageError, match=r"cnn\.safetensors: does not belong .*identity"):
+                load_model(folder)
+    assert load_model(folder).network is not None
+
+
+def test_a_lost_network_that_was_scored_is_noted(folder: Path) -> None:
+    assert load_model(folder).note == ""
+    facts = json.loads((folder / "model.json").read_text())
+    facts["scores"]["test"]["network"] = facts["scores"]["test"]["indicators"]
+    (folder / "model.json").write_text(json.dumps(facts))
+    assert load_model(folder).note.startswith("network left out: model.json gives its scores, but cnn.safetensors is")
