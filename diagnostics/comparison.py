@@ -77,7 +77,7 @@ def comparison(
 
 def _detection_difference(first: Predictions, second: Predictions, healthy: str, weights: np.ndarray) -> np.ndarray:
     damaged = first.truth != first.classes.index(healthy)
-    areas = [weighted_auc(damage_score(found, healthy), damaged, weights) for found in (first, second)]
+    areas = [weighted_auc(damage_score(found, healthy), damaged, weights, found.specimen) for found in (first, second)]
     return np.asarray(areas[0] - areas[1])
 
 
@@ -87,5 +87,5 @@ def state_auc(found: Predictions, healthy: int, state: int, seed: int, resamples
     pair = found.probability[chosen][:, [healthy, state]]
     score = pair[:, 1] / np.maximum(pair.sum(axis=1), 1e-300)
     weights = bootstrap_weights(found.specimen, seed, resamples)[:, chosen]
-    areas = weighted_auc(score, found.truth[chosen] == state, weights)
+    areas = weighted_auc(score, found.truth[chosen] == state, weights, found.specimen[chosen])
     return interval(areas, int(np.unique(found.specimen[chosen]).size))

@@ -53,7 +53,7 @@ def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESA
     weights = bootstrap_weights(found.specimen, seed, resamples)
 
     def judged(chosen: np.ndarray) -> Interval:
-        areas = weighted_auc(score[chosen], positive[chosen], weights[:, chosen])
+        areas = weighted_auc(score[chosen], positive[chosen], weights[:, chosen], found.specimen[chosen])
         return interval(areas, int(np.unique(found.specimen[chosen]).size))
 
     present = [k for k in range(len(found.classes)) if k != own and (found.truth == k).any()]

@@ -63,7 +63,9 @@ def _one(matrix: FeatureMatrix, column: int, weights: np.ndarray) -> Separabilit
     auc = {}
     for state in dict.fromkeys(states[~healthy].tolist()):
         chosen = defined & (healthy | (states == state))
-        auc[state] = _interval(weighted_auc(values[chosen], ~healthy[chosen], weights[:, chosen]), labels, chosen)
+        specimen = labels["specimen_id"][chosen]
+        area = weighted_auc(values[chosen], ~healthy[chosen], weights[:, chosen], specimen)
+        auc[state] = _interval(area, labels, chosen)
     area = labels["damaged_area_mm2"]
     correlation = weighted_spearman(values[defined], area[defined], weights[:, defined])
     return Separability(matrix.names[column], auc, _interval(correlation, labels, defined), float(np.mean(defined)))

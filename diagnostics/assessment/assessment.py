@@ -122,7 +122,7 @@ def _other_specimens(records: Records, values: np.ndarray) -> tuple[dict[str, St
     for state in records.states:
         rows = np.flatnonzero(np.isfinite(values) & (healthy | (records.labels["state"] == state)))
         weights, positive = records.weights[:, rows], ~healthy[rows]
-        area = weighted_auc(values[rows], positive, weights)
+        area = weighted_auc(values[rows], positive, weights, specimen[rows])
         effect = cohens_d(values[rows], positive, weights)
         groups = [rows[~positive], rows[positive]]
         p_value = two_sample_p(*(specimen_means(values[group], specimen[group]) for group in groups))

@@ -77,13 +77,20 @@ def detection_curve(
 
 
 def _groups(order: np.ndarray, size: np.ndarray) -> list[np.ndarray]:
-    """Return rows in order of size as groups: one per size where a ladder has few sizes, else of equal count."""
+    """Return rows in order of size as groups: one per size where a ladder has few sizes, else of like count.
+
+    Records of one size stay together: groups within a size would rise by chance, and the last of them would be taken.
+    """
     rises = np.flatnonzero(np.diff(size) > 1e-9 * size[:-1]) + 1
     levels = np.split(order, rises)
     if len(levels) <= GROUPS and min(map(len, levels)) >= RECORDS_PER_GROUP:
         return levels
     groups = min(GROUPS, order.size // RECORDS_PER_GROUP)
-    return np.array_split(order, groups) if groups else []
+    cuts = order.size * np.arange(1, groups) // max(groups, 1)
+    if not rises.size or not cuts.size:
+        return [order] if order.size else []
+    nearest = rises[np.abs(rises[:, None] - cuts).argmin(axis=0)]
+    return np.split(order, np.unique(nearest))
 
 
 def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:

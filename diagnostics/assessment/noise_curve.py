@@ -49,7 +49,7 @@ def noise_curve(
         count = int(positive[rows].sum())
         if min(count, rows.size - count) < RECORDS_PER_CLASS:
             continue
-        samples = weighted_auc(values[rows], positive[rows], weights[:, rows])
+        samples = weighted_auc(values[rows], positive[rows], weights[:, rows], specimen[rows])
         middle.append(float(np.median(snr_db[rows])))
         areas.append(interval(samples, int(np.unique(specimen[rows]).size)))
     return NoiseCurve(tuple(middle), tuple(areas))

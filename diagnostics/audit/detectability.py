@@ -124,7 +124,7 @@ def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, se
         half, fold = dealt(specimen, seed, repeat)
         used = half == positive
         score = held_out_scores(values[used], positive[used], fold[used])
-        areas.append(weighted_auc(score, positive[used], weights[:, used]))
+        areas.append(weighted_auc(score, positive[used], weights[:, used], specimen[used]))
     defined = np.isfinite(areas)
     with np.errstate(invalid="ignore"):
         total = np.where(defined, areas, 0.0).sum(axis=0)

@@ -53,7 +53,7 @@ def _distance(measured: MeasuredSet, quantity: str, channel: int, state: str, se
     positive = ~measured.healthy[chosen]
     if positive.all() or not positive.any() or np.unique(specimen).size < FEWEST_SPECIMENS:
         return 0.5
-    area = weighted_auc(values[chosen], positive, bootstrap_weights(specimen, seed, RESAMPLES))
+    area = weighted_auc(values[chosen], positive, bootstrap_weights(specimen, seed, RESAMPLES), specimen)
     return interval(area if area[0] > 0.5 else 1.0 - area, int(np.unique(specimen).size)).low
 
 

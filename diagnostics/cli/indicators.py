@@ -75,7 +75,7 @@ def indicators(
     records = sum(name in states for name in dataset.labels(columns=["state"]).column("state").to_pylist())
     with terminal_stage("indicators", records) as advance:
         table = indicator_table(
-            dataset, own, settings, workers=workers, leave_out=leave_out, states=states, advance=advance
+            dataset, own, settings, workers=workers, leave_out=leave_out, states=state or (), advance=advance
         )
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)

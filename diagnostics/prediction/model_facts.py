@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.evaluation import Interval
 from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
 from siggen.errors import UsageError
 
@@ -140,9 +142,33 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
             distance_from_facts(referenced) if referenced else None,
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UsageError(
-            f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics train` wrote with this version"
-        ) from error
+        raise _unusable(path, error) from error
+
+
+def read_accuracy(folder: Path) -> dict[str, Interval]:
+    """Read the accuracy of every classifier on the test specimens from `model.json`.
+
+    Raises
+    ------
+    UsageError
+        If it is missing or damaged.
+    """
+    path = folder / FACTS_FILE
+    try:
+        tested = json.loads(path.read_text(encoding="utf-8"))["scores"]["test"]
+        return {name: _interval(score["accuracy"]) for name, score in tested.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def _interval(numbers: dict[str, float | None]) -> Interval:
+    return Interval(**{name: math.nan if value is None else float(value) for name, value in numbers.items()})
+
+
+def _unusable(path: Path, error: Exception) -> UsageError:
+    return UsageError(
+        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics train` wrote with this version"
+    )
 
 
 def _tuples(value: Any) -> Any:

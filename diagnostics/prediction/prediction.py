@@ -1,17 +1,18 @@
 """State of a recording by the saved models, with probabilities, and the reasons for which no answer should be taken.
 
 The answer is withheld where the recording is unlike the training records: by distance, or by what is known of it
-(teeth, rate, speed, length). Source: derived.
+(teeth, rate, speed, length). So it is where the classifiers name different states. Source: derived.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from diagnostics.calibration import tempered
+from diagnostics.evaluation import Interval
 from diagnostics.prediction.known_reasons import known_reasons, reference_reasons
 from diagnostics.prediction.log_features import log_mean, log_values
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
@@ -29,11 +30,28 @@ Reference = tuple[MeasuredRecording, ShaftPulses, RecordPieces]
 
 @dataclass(frozen=True, slots=True)
 class Vote:
-    """Probability of every state by one classifier: mean over pieces, and the share of pieces that agree with it."""
+    """Probability of every state by one classifier.
+
+    Attributes
+    ----------
+    classifier : str
+    probability : (states,) float64
+        Mean over pieces or windows.
+    agreement : float or None
+        Share of the pieces or windows that name the same state; None where there is a single one.
+    accuracy : Interval or None
+        Share of the model's test records that the classifier named rightly; None where the model does not say.
+    """
 
     classifier: str
     probability: np.ndarray
-    agreement: float
+    agreement: float | None
+    accuracy: Interval | None = None
+
+    @property
+    def named(self) -> int:
+        """Which state it names."""
+        return int(self.probability.argmax())
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +108,7 @@ class Prediction:
     @property
     def state(self) -> str:
         """The state of largest probability, or `abstains`."""
-        return "abstains" if self.reasons else self.classes[int(self.votes[0].probability.argmax())]
+        return "abstains" if self.reasons else self.classes[self.votes[0].named]
 
 
 def predict_recording(
@@ -118,10 +136,11 @@ def predict_recording(
     Raises
     ------
     UsageError
-        If pulses cannot be found, or references were given to a model without the variant.
+        If pulses cannot be found, references were given to a model without the variant, or one is the recording itself.
     """
     if references:
         _check_variant(model)
+        _check_references(recording, references)
     facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
@@ -133,17 +152,19 @@ def predict_recording(
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
     network, notes = _network_vote(model, recording, pulses, teeth)
+    votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in (answer, *network))
     undefined = int(np.isnan(pieces.columns(model.classifier.features)).any(axis=0).sum())
     return Prediction(
         recording=recording,
         pulses=pulses,
         teeth=teeth,
         classes=facts.classes,
-        votes=(answer, *network),
+        votes=votes,
         nearness=nearness,
         plain_nearness=plain,
         reasons=(
             *_distance_reasons(plain, nearness),
+            *_vote_reasons(facts.classes, votes),
             *known_reasons(facts, source, pulses, teeth, pieces),
             *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
@@ -165,6 +186,17 @@ def _check_variant(model: ReleasedModel) -> None:
         )
 
 
+def _check_references(recording: MeasuredRecording, references: tuple[MeasuredRecording, ...]) -> None:
+    """Refuse the recording as its own reference; one channel suffices, since noise does not repeat."""
+    for reference in references:
+        if any(np.array_equal(signal, reference.channels[name]) for name, signal in recording.channels.items()):
+            raise UsageError(
+                f"{reference.path}: has the same samples as the recording {recording.path}; a difference to "
+                "itself hides damage. Give another recording of the same machine in healthy state (another file, another "
+                "row in --reference FILE:ROW), or leave --reference out"
+            )
+
+
 def _reference(
     model: ReleasedModel,
     reference: MeasuredRecording,
@@ -178,7 +210,8 @@ def _reference(
 
 def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
     mean = tempered(probability.mean(axis=0, keepdims=True), temperature)[0]
-    return Vote(name, mean, float(np.mean(probability.argmax(axis=1) == mean.argmax())))
+    agreement = float(np.mean(probability.argmax(axis=1) == mean.argmax())) if len(probability) > 1 else None
+    return Vote(name, mean, agreement)
 
 
 def _pipeline_vote(name: str, classifier: Any, values: np.ndarray) -> Vote:
@@ -229,6 +262,14 @@ def _network_vote(
         return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
     found = network_probabilities(*model.network, recording, pulses)
     return (_vote(NETWORK, found, facts.temperature),), ()
+
+
+def _vote_reasons(classes: tuple[str, ...], votes: tuple[Vote, ...]) -> list[str]:
+    """Return how the classifiers contradict each other; nothing where they name one state, or there is one only."""
+    if len({vote.named for vote in votes}) < 2:
+        return []
+    said = ", ".join(f"{vote.classifier} {classes[vote.named]} ({vote.probability.max():.2f})" for vote in votes)
+    return [f"the classifiers name different states: {said}"]
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.prediction.model_facts import ModelFacts
-from diagnostics.prediction.prediction import Nearness, Prediction
+from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.report.wording import counted
 
 MEANING = (
@@ -28,6 +28,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
             vote.classifier: {
                 **dict(zip(found.classes, vote.probability.tolist(), strict=True)),
                 "share_of_pieces_that_agree": vote.agreement,
+                "test_accuracy": vote.accuracy.numbers() if vote.accuracy else None,
             }
             for vote in found.votes
         },
@@ -78,9 +79,7 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
         ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),
     ]
     for vote in found.votes:
-        shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
-        withheld = " (not to be taken)" if found.reasons else ""
-        rows.append((f"by {vote.classifier}", f"{shares}; {vote.agreement:.0%} of pieces agree{withheld}"))
+        rows.append((f"by {vote.classifier}", _vote_text(found, vote)))
     near = found.nearness
     rows.append(("distance to training", f"{near.distance:.2f}, threshold {near.threshold:.2f}"))
     if found.plain_nearness is not found.nearness:
@@ -88,3 +87,10 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
         rows.append(("without reference", f"{plain.distance:.2f}, threshold {plain.threshold:.2f}"))
     rows += [("abstains because", reason) for reason in found.reasons]
     return [*rows, *(("note", note) for note in found.notes)]
+
+
+def _vote_text(found: Prediction, vote: Vote) -> str:
+    shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
+    agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of pieces agree"
+    right = "" if vote.accuracy is None else f"; right on {vote.accuracy.value:.0%} of its test records"
+    return f"{shares}{agree}{right}{' (not to be taken)' if found.reasons else ''}"

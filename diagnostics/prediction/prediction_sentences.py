@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from diagnostics.prediction.model_facts import ModelFacts
-from diagnostics.prediction.prediction import Prediction
+from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.report.wording import counted, joined, percent
 
 TITLES = {"healthy_referenced": "differences from the healthy reference", "network": "the network"}
@@ -14,8 +12,7 @@ TITLES = {"healthy_referenced": "differences from the healthy reference", "netwo
 def prediction_summary(found: Prediction) -> list[str]:
     """Return the answer or why there is none, the votes, the distance, and what they rest on."""
     votes = [
-        f"{found.classes[int(np.argmax(vote.probability))]} by {TITLES.get(vote.classifier, vote.classifier)} "
-        f"({percent(float(vote.probability.max()))}; {percent(vote.agreement)} of the pieces agree)"
+        f"{found.classes[vote.named]} by {TITLES.get(vote.classifier, vote.classifier)} ({_weight(vote)})"
         for vote in found.votes
     ]
     near = found.nearness
@@ -35,6 +32,13 @@ def prediction_summary(found: Prediction) -> list[str]:
         f"This rests on {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
         f"revolutions at {speed}, from {source}.",
     ]
+
+
+def _weight(vote: Vote) -> str:
+    """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
+    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the pieces agree"]
+    right = [] if vote.accuracy is None else [f"right on {percent(vote.accuracy.value)} of its test records"]
+    return "; ".join([percent(float(vote.probability.max())), *agree, *right])
 
 
 def model_provenance(facts: ModelFacts) -> str:

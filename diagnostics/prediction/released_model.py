@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diagnostics.baselines import FeatureClassifier
 from diagnostics.classifier_file import load_classifier, load_settings
+from diagnostics.evaluation import Interval
 from diagnostics.extras import missing_packages
 from diagnostics.features import FeatureSettings
-from diagnostics.prediction.model_facts import FACTS_FILE, ModelFacts, read_facts
+from diagnostics.prediction.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
 from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
 from siggen.errors import UsageError
@@ -38,6 +40,8 @@ class ReleasedModel:
         On features minus the machine's own healthy ones; None where the set did not allow the variant.
     network : tuple or None
         Network and what its file says; None where it was not trained or torch is missing.
+    accuracy : mapping of str to Interval
+        Accuracy on the test specimens by classifier.
     note : str
         What was left out, or empty.
     """
@@ -50,6 +54,7 @@ class ReleasedModel:
     referenced_classifier: FeatureClassifier | None
     referenced_distance: TrainingDistance | None
     network: tuple[WideKernelNetwork, NetworkFile] | None
+    accuracy: Mapping[str, Interval]
     note: str
 
 
@@ -83,6 +88,7 @@ def load_model(folder: Path) -> ReleasedModel:
         referenced_classifier=load_classifier(folder, REFERENCED) if referenced else None,
         referenced_distance=referenced,
         network=network,
+        accuracy=read_accuracy(folder),
         note=note,
     )
 

@@ -65,7 +65,7 @@ def test_detection_is_compared_by_the_probability_of_healthy_alone() -> None:
     from sklearn.metrics import roc_auc_score
 
     rng = np.random.default_rng(2)
-    truth, specimen = rng.integers(0, 3, 60), np.repeat(np.arange(20), 3)
+    truth, specimen = rng.integers(0, 3, 60), np.arange(60)  # no two records of a specimen: all pairs count
     first, second = (
         Predictions(("healthy", "a", "b"), truth, rng.dirichlet(np.ones(3), 60), specimen) for _ in range(2)
     )

@@ -160,6 +160,20 @@ def test_a_ladder_of_few_sizes_has_one_group_per_size() -> None:
     assert size_at(curve, 0.9)[0] == pytest.approx(2.0**1.8)
 
 
+def test_records_of_one_size_stay_in_one_group() -> None:
+    # two sizes of 45 and one of 3, too few for a group: 80 % of alarms at either large size, in any order of records
+    rng = np.random.default_rng(3)
+    alarms = np.concatenate([np.full(3, -2.0), np.tile([1.0, 1.0, 1.0, 1.0, -2.0], 18)])
+    size = np.concatenate([np.full(3, 0.5), np.full(45, 1.0), np.full(45, 3.0)])
+    for _ in range(20):
+        order = np.concatenate([np.arange(3), 3 + rng.permutation(45), 48 + rng.permutation(45)])
+        values = np.concatenate([np.linspace(-1.0, 0.0, 100), alarms[order]])
+        sizes = np.concatenate([np.zeros(100), size])
+        curve = detection_curve(values, np.arange(193) < 100, sizes, np.ones((1, 193)), 0.01)
+        assert curve is not None
+        assert np.isinf(size_at(curve, 0.9)[0])
+
+
 def test_too_few_damaged_records_give_no_curve() -> None:
     healthy = np.arange(20) < 12
     assert detection_curve(np.arange(20.0), healthy, np.where(healthy, 0, 1.0), np.ones((1, 20)), 0.05) is None

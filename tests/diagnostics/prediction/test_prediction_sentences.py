@@ -7,12 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.evaluation import Interval
 from diagnostics.prediction.prediction import Nearness, Vote
 from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
 
 
 def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) -> Any:
-    votes = (Vote("indicators", np.array([0.05, 0.95]), 1.0), Vote("network", np.array([0.6, 0.4]), 0.5))
+    votes = (
+        Vote("indicators", np.array([0.05, 0.95]), None if pieces == 1 else 1.0, Interval(0.45, 0.3, 0.6)),
+        Vote("network", np.array([0.6, 0.4]), 0.5),
+    )
     return SimpleNamespace(
         classes=("healthy", "severe"),
         votes=votes,
@@ -27,8 +31,8 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
 def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
     assert prediction_summary(prediction(0.83)) == [
         "The recording is most like the state severe.",
-        "Most probable is severe by indicators (95\xa0%; 100\xa0% of the pieces agree) and healthy by the network "
-        "(60\xa0%; 50\xa0% of the pieces agree).",
+        "Most probable is severe by indicators (95\xa0%; right on 45\xa0% of its test records) and healthy by the "
+        "network (60\xa0%; 50\xa0% of the pieces agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
         "This rests on 1\xa0piece of 53 or more pinion revolutions at 36.33\xa0Hz, from the tacho.",
     ]
@@ -38,6 +42,7 @@ def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -
     found = prediction_summary(prediction(3.0, ("too far from training.", "other teeth"), pieces=2))
     assert found[0] == "No answer should be taken: too far from training; other teeth."
     assert found[1].endswith(", which is not to be taken.")
+    assert "(95\xa0%; 100\xa0% of the pieces agree; right on 45\xa0% of its test records)" in found[1]
     assert "3.00, beyond the threshold" in found[2]
     assert "2\xa0pieces" in found[3]
 

@@ -173,6 +173,20 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     assert any("reference hurried.npz: pinion speed of 36" in text for text in found["reasons_to_abstain"])
 
 
+def test_the_recording_is_no_reference_to_itself(
+    trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    folder, file = trained
+    np.savez(tmp_path / "copy.npz", **channels(other, 2))  # the same samples under another name and format
+    for said in (f"{file}:0,2", str(tmp_path / "copy.npz")):
+        assert predict(monkeypatch, folder, file, tmp_path / "out", "--row", "2", "--reference", said)[0] == 2
+        message = " ".join(capsys.readouterr().err.split())
+        assert "has the same samples as the recording" in message
+        assert "Give another recording of the same machine in healthy state" in message
+        assert not (tmp_path / "out").exists()
+
+
 def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
