@@ -154,9 +154,9 @@ def control_sentence(training: Training) -> str:
         if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
-        f"that is off chance (0.5) for {joined(suspicious)}, so the scores above are not to be trusted"
+        f"that is off chance (0.5) for {joined(suspicious)}, so the scoring is biased and the scores above are not to be trusted"
         if suspicious
-        else "chance is 0.5, so the evaluation itself adds nothing to the scores"
+        else "chance is 0.5, so the scoring itself has no bias; against leakage no gearbox is in two splits"
     )
     return f"Trained on permuted labels the macro-AUROC is {joined([_control(judged) for judged in shown])}; {verdict}."
 
