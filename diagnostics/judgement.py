@@ -36,7 +36,7 @@ class Judged:
     details : dict
         How it was chosen: C, epochs, notes.
     calibration : Calibration
-        Expected calibration error on test specimens, and the temperature from validation specimens.
+        Calibration error and Brier score on test specimens, and the temperature from validation specimens.
     predictions : Predictions
         Calibrated, of the test records in their order.
     detection : Detection or None
@@ -91,5 +91,8 @@ def judged_metrics(found: Judged) -> dict[str, Any]:
         "temperature": found.calibration.temperature,
         "expected_calibration_error": found.calibration.after.numbers(),
         "expected_calibration_error_uncalibrated": found.calibration.before.numbers(),
+        "expected_calibration_error_if_true": found.calibration.honest,
+        "brier_score": found.calibration.brier.numbers(),
+        "brier_score_uncalibrated": found.calibration.brier_before.numbers(),
         **{key: value for key, value in found.details.items() if value != ""},
     }
