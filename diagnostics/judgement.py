@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from diagnostics.calibration import Calibration, calibrated, calibration
 from diagnostics.detection import Detection, detection, detection_metrics
-from diagnostics.evaluation import Predictions, Scores, scores
+from diagnostics.evaluation import Predictions, Scores, macro_auroc, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
 TITLES = {
@@ -19,6 +20,8 @@ TITLES = {
     NETWORK: "1-D network",
     PLAIN_NETWORK: "1-D network without augmentation",
 }
+
+VALIDATION_AUROC = "validation_macro_auroc"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +37,7 @@ class Judged:
     permuted_auroc : (repeats,) float64
         Macro-AUROC of the same classifier trained on permuted labels; empty where not run.
     details : dict
-        How it was chosen: C, epochs, notes.
+        How it was chosen: C, epochs, notes, macro-AUROC on validation specimens where that is defined.
     calibration : Calibration
         Calibration error and Brier score on test specimens, and the temperature from validation specimens.
     predictions : Predictions
@@ -72,6 +75,14 @@ def judged(
         found,
         detection(found, healthy, seed) if healthy else None,
     )
+
+
+def validation_score(validation: Predictions) -> dict[str, float]:
+    """Return the macro-AUROC on validation records as an entry of the details; none where it is undefined."""
+    if not validation.truth.size:
+        return {}
+    area = float(macro_auroc(validation, np.ones((1, validation.truth.size)))[0])
+    return {VALIDATION_AUROC: area} if math.isfinite(area) else {}
 
 
 def judged_metrics(found: Judged) -> dict[str, Any]:

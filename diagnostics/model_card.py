@@ -126,8 +126,8 @@ def _probabilities(training: Training) -> str:
     lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
     return "\n".join(lines) + (
         "\n\nThe saved models give probabilities with T, which comes from validation specimens and is 1 where it does "
-        "not help those left out of its fit. Chance alone makes the calibration error positive: the last column is what "
-        "it would be on these records, were the probabilities (with T) true."
+        "not help those left out of its fit. Chance alone makes the calibration error positive: the last column is "
+        "what it would be on these records, were the probabilities (with T) true."
     )
 
 

@@ -65,6 +65,8 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     metrics = json.loads((folder / "metrics.json").read_text())
     assert metrics["training"]["specimens"] == {"train": 12, "validation": 4, "test": 8}
     assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
+    validated = {name: found["validation_macro_auroc"] for name, found in metrics["training"]["classifiers"].items()}
+    assert validated["rms"] < min(validated["indicators"], validated["boosting"]) <= 1.0
     assert len(metrics["separability"]["features"]) == 312
 
 
