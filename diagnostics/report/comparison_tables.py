@@ -102,7 +102,10 @@ def curve_table(points: tuple[CurvePoint, ...]) -> str:
         for point in points
     ]
     head = ["Training specimens", "Macro-AUROC, indicators", "Macro-AUROC, RMS"]
-    caption = "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws."
+    caption = (
+        "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws; C is chosen on "
+        "validation specimens, so that the last point is the classifier above."
+    )
     return table(head, rows, caption=caption, sortable=True)
 
 
