@@ -151,7 +151,8 @@ def permutation_control(
 ) -> np.ndarray:
     """Return macro-AUROC on the test specimens, (repeats,), of classifiers trained on permuted labels.
 
-    They must scatter around 0.5; if they do not, something other than the labels leaks from training to test.
+    They must scatter around 0.5; if they do not, the scoring itself is biased. They say nothing about leakage: test
+    records among the training ones would give 0.5 as well. Against that, specimens are split (`specimen_split`).
     """
     truth, test = state_index(matrix, split.classes), matrix.rows(split.test)
     areas = np.empty(repeats)

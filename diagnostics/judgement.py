@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from diagnostics.calibration import Calibration, calibrated, calibration
 from diagnostics.detection import Detection, detection, detection_metrics
-from diagnostics.evaluation import Predictions, Scores, scores
+from diagnostics.evaluation import Predictions, Scores, macro_auroc, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
 TITLES = {
@@ -19,6 +20,8 @@ TITLES = {
     NETWORK: "1-D network",
     PLAIN_NETWORK: "1-D network without augmentation",
 }
+
+VALIDATION_AUROC = "validation_macro_auroc"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +37,9 @@ class Judged:
     permuted_auroc : (repeats,) float64
         Macro-AUROC of the same classifier trained on permuted labels; empty where not run.
     details : dict
-        How it was chosen: C, epochs, notes.
+        How it was chosen: C, epochs, notes, macro-AUROC on validation specimens where that is defined.
     calibration : Calibration
-        Expected calibration error on test specimens, and the temperature from validation specimens.
+        Calibration error and Brier score on test specimens, and the temperature from validation specimens.
     predictions : Predictions
         Calibrated, of the test records in their order.
     detection : Detection or None
@@ -74,6 +77,14 @@ def judged(
     )
 
 
+def validation_score(validation: Predictions) -> dict[str, float]:
+    """Return the macro-AUROC on validation records as an entry of the details; none where it is undefined."""
+    if not validation.truth.size:
+        return {}
+    area = float(macro_auroc(validation, np.ones((1, validation.truth.size)))[0])
+    return {VALIDATION_AUROC: area} if math.isfinite(area) else {}
+
+
 def judged_metrics(found: Judged) -> dict[str, Any]:
     """Return what `metrics.json` says about one classifier."""
     return {
@@ -91,5 +102,8 @@ def judged_metrics(found: Judged) -> dict[str, Any]:
         "temperature": found.calibration.temperature,
         "expected_calibration_error": found.calibration.after.numbers(),
         "expected_calibration_error_uncalibrated": found.calibration.before.numbers(),
+        "expected_calibration_error_if_true": found.calibration.honest,
+        "brier_score": found.calibration.brier.numbers(),
+        "brier_score_uncalibrated": found.calibration.brier_before.numbers(),
         **{key: value for key, value in found.details.items() if value != ""},
     }

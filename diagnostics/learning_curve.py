@@ -1,14 +1,17 @@
-"""Score on the test specimens by number of training specimens, not windows: what more gearboxes would bring."""
+"""Score on the test specimens by number of training specimens, not windows: what more gearboxes would bring.
+
+Each point trains as the classifier does, its C chosen on all validation specimens; the last point is that classifier.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.baselines import logistic_pipeline, rms_features, state_index
-from diagnostics.evaluation import Predictions, macro_auroc
+from diagnostics.baselines import rms_features, state_index, train_classifier
+from diagnostics.evaluation import macro_auroc
 from diagnostics.feature_table import FeatureMatrix
 from diagnostics.seeding import Purpose, generator
 from diagnostics.splits import SpecimenSplit
@@ -64,8 +67,5 @@ def _area(matrix: FeatureMatrix, split: SpecimenSplit, mask: np.ndarray) -> floa
     truth = state_index(matrix, split.classes)
     if np.unique(truth[mask]).size < 2:
         return float("nan")
-    model = logistic_pipeline().fit(matrix.values[mask], truth[mask])
-    probability = np.zeros((int(split.test.sum()), len(split.classes)))
-    probability[:, model.classes_] = model.predict_proba(matrix.values[split.test])
-    test = Predictions(split.classes, truth[split.test], probability, matrix.labels["specimen_id"][split.test])
+    test = train_classifier(matrix, replace(split, train=mask)).predict(matrix.rows(split.test))
     return float(macro_auroc(test, np.ones((1, test.truth.size)))[0])

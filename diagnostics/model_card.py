@@ -32,6 +32,7 @@ def model_card(training: Training, dataset: Any) -> str:
         _files(training),
         "## Scores on test specimens",
         _scores(training),
+        _probabilities(training),
         "## Limits",
         "Trained on simulated records only. Do not use the scores as an estimate of performance on measured records.",
     ]
@@ -86,7 +87,7 @@ def _files(training: Training) -> str:
 def _scores(training: Training) -> str:
     titles = (
         *("classifier", "accuracy", "balanced accuracy", "macro-AUROC", "detection AUROC"),
-        *("macro-AUROC with permuted labels", "calibration error"),
+        "macro-AUROC with permuted labels",
     )
     head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
     first = training.judged[0].scores
@@ -101,8 +102,33 @@ def _row(found: Judged) -> str:
     permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
     scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
     detected = interval_text(found.detection.every) if found.detection else "-"
-    cells = (found.name, *map(interval_text, scores), detected, permuted, interval_text(found.calibration.after))
+    cells = (found.name, *map(interval_text, scores), detected, permuted)
     return f"| {' | '.join(cells)} |"
+
+
+def _probabilities(training: Training) -> str:
+    titles = (
+        *("classifier", "T", "Brier score without T", "Brier score with T"),
+        *("calibration error without T", "calibration error with T", "calibration error if true"),
+    )
+    rows = [
+        " | ".join(
+            [
+                judged.name,
+                f"{found.temperature:.2f}",
+                *map(interval_text, (found.brier_before, found.brier, found.before, found.after)),
+                f"{found.honest:.2f}",
+            ]
+        )
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
+    return "\n".join(lines) + (
+        "\n\nThe saved models give probabilities with T, which comes from validation specimens and is 1 where it does "
+        "not help those left out of its fit. Chance alone makes the calibration error positive: the last column is "
+        "what it would be on these records, were the probabilities (with T) true."
+    )
 
 
 def interval_text(found: Interval) -> str:

@@ -11,7 +11,7 @@ from diagnostics.baselines import permuted_target, state_index
 from diagnostics.calibration import fitted_temperature
 from diagnostics.evaluation import Predictions, macro_auroc
 from diagnostics.feature_table import FeatureMatrix
-from diagnostics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged
+from diagnostics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score
 from diagnostics.progress import Stage
 from diagnostics.splits import SpecimenSplit
 from siggen.errors import UsageError
@@ -122,6 +122,7 @@ def _judge(
         "augmented": settings.augmentation is not None,
         "device": settings.device,
         "note": trained.note,
+        **validation_score(validation),
     }
     return replace(trained, temperature=temperature), judged(
         name, found, temperature, np.empty(0), details, seed, split.healthy

@@ -18,6 +18,7 @@ class Purpose(IntEnum):
     AUGMENTATION = 6
     FOLDS = 7
     LEARNING_CURVE = 8
+    CALIBRATION = 9
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

@@ -31,6 +31,7 @@ from diagnostics.judgement import (
     Judged,
     judged,
     judged_metrics,
+    validation_score,
 )
 from diagnostics.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
 from diagnostics.other_set import classifier_predictions, network_predictions_of
@@ -188,6 +189,8 @@ def _judge(
 ) -> Judged:
     found = classifier_predictions(model, matrix.rows(split.test))
     details = {"features": len(model.features), "strength": model.strength, "note": model.note}
+    if split.validation.any():
+        details |= validation_score(model.predict(matrix.rows(split.validation)))
     permuted = control if name == INDICATORS else np.empty(0)
     return judged(name, found, model.temperature, permuted, details, seed, split.healthy)
 

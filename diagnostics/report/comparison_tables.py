@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from diagnostics.evaluation import Interval
 from diagnostics.judgement import TITLES, Judged
 from diagnostics.learning_curve import CurvePoint
 from diagnostics.report.html import Cell, paragraph, table
@@ -15,29 +16,36 @@ from diagnostics.split_study import SplitScore
 from diagnostics.studies import Studies
 from diagnostics.training import Training
 
+FEWEST_SPECIMENS = 6
+"""Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""
+
 
 def comparison_table(training: Training) -> str:
-    """Return the paired differences of classifiers; one whose interval holds zero is no difference."""
+    """Return the paired differences of classifiers, and whether the interval of each, by itself, excludes zero."""
+    specimens = training.judged[0].scores.specimens
     rows = [
         [
             Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
             interval_cell(pair.macro_auroc, sign=True),
             interval_cell(pair.accuracy, sign=True),
-            Cell("yes" if differs(pair.macro_auroc.low, pair.macro_auroc.high) else "no"),
+            Cell(verdict(pair.macro_auroc, specimens)),
         ]
         for pair in training.comparisons
     ]
-    head = ["Paired difference", "Macro-AUROC", "Accuracy", "Macro-AUROC differs"]
+    head = ["Paired difference", "Macro-AUROC", "Accuracy", "Interval excludes 0"]
     caption = (
         "Paired differences on the same resampled specimens, with 95 % limits; where the limits of macro-AUROC hold 0, "
-        "the set does not tell which classifier is better."
+        "the set does not tell which classifier is better. Every interval stands for itself: of many pairs without any "
+        f"difference about one in twenty excludes 0. Below {FEWEST_SPECIMENS} test gearboxes that is not told."
     )
     return table(head, rows, caption=caption, sortable=True)
 
 
-def differs(low: float, high: float) -> bool:
-    """Return whether an interval is defined and does not hold zero."""
-    return math.isfinite(low) and (low > 0.0 or high < 0.0)
+def verdict(difference: Interval, specimens: int) -> str:
+    """Return whether a paired interval excludes zero; resampling a few specimens makes intervals too narrow to say."""
+    if specimens < FEWEST_SPECIMENS or not math.isfinite(difference.low):
+        return "too few gearboxes"
+    return "yes" if difference.low > 0.0 or difference.high < 0.0 else "no"
 
 
 def severity_table(training: Training) -> str:
@@ -94,7 +102,10 @@ def curve_table(points: tuple[CurvePoint, ...]) -> str:
         for point in points
     ]
     head = ["Training specimens", "Macro-AUROC, indicators", "Macro-AUROC, RMS"]
-    caption = "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws."
+    caption = (
+        "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws; C is chosen on "
+        "validation specimens, so that the last point is the classifier above."
+    )
     return table(head, rows, caption=caption, sortable=True)
 
 

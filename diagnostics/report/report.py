@@ -236,7 +236,12 @@ def _write_page(
 def _section_tables(section: str, training: Training | None, found: list[Separability]) -> list[str]:
     if section == "scores":
         return (
-            [tables.score_table(training), *detection_blocks(training), *score_blocks(training)]
+            [
+                tables.score_table(training),
+                tables.calibration_table(training),
+                *detection_blocks(training),
+                *score_blocks(training),
+            ]
             if training
             else [html.paragraph("No classifier was trained, see the notes.")]
         )

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnostics.comparison import SATURATED, Comparison
 from diagnostics.evaluation import Interval, error_share_limit
-from diagnostics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, Judged
+from diagnostics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
 from diagnostics.realism import meaning_of_scores
 from diagnostics.report.wording import counted, decimal, joined, limits, percent, percent_limits, signed, signed_limits
 from diagnostics.separability import Separability
@@ -63,7 +63,10 @@ def _told_apart(training: Training) -> str:
 
 
 def comparison_sentence(training: Training) -> str:
-    """Say which classifier is ahead of RMS alone and by how much, and whether the level alone already finds damage."""
+    """Say what the classifier that validation specimens choose gains over RMS alone, and what the level alone finds.
+
+    Choosing it by its test score would make that score optimistic; without validation scores all gains are told.
+    """
     gains = {
         pair.first: pair.macro_auroc
         for pair in training.comparisons
@@ -71,8 +74,13 @@ def comparison_sentence(training: Training) -> str:
     }
     if not gains:
         return "Whether anything beats RMS alone is not known, since macro-AUROC is undefined on these test specimens."
-    best = max(gains, key=lambda name: gains[name].value)
-    text = f"{_gain(TITLES[best], gains[best])}{_between(training, best, gains)}"
+    validated = {judged.name: judged.details.get(VALIDATION_AUROC, math.nan) for judged in training.judged}
+    if all(math.isfinite(validated[name]) for name in gains):
+        best = max(gains, key=lambda name: validated[name])
+        text = f"{_gain(TITLES[best], gains[best], len(gains))}{_between(training, best, gains, validated)}"
+    else:
+        told = [f"{TITLES[name]} {signed(gain.value)} ({signed_limits(gain)})" for name, gain in gains.items()]
+        text = f"Differences of macro-AUROC from RMS alone, paired: {joined(told)}"
     severe = training.rms_severe
     if severe is None or math.isnan(severe.value):
         return f"{text}."
@@ -85,20 +93,22 @@ def comparison_sentence(training: Training) -> str:
     return f"{text}; RMS alone tells the most severe state from healthy with an AUC of {severe.value:.2f}{only}."
 
 
-def _gain(title: str, gain: Interval) -> str:
+def _gain(title: str, gain: Interval, count: int) -> str:
     spread = signed_limits(gain) if math.isnan(gain.low) else f"{signed_limits(gain)}, paired"
+    chosen = ", the best on validation specimens" if count > 1 else ""
     if gain.value <= 0.0:
-        return f"Nothing beats RMS alone: the best of the others, {title}, is at {signed(gain.value)} ({spread})"
+        return f"RMS alone is not beaten by {title}{chosen}: {signed(gain.value)} of macro-AUROC ({spread})"
     doubt = ", not told apart from none" if gain.low <= 0.0 else ""
-    return f"Over RMS alone, {title} gains {signed(gain.value)} of macro-AUROC ({spread}{doubt})"
+    chosen = f"{chosen}," if chosen else ""
+    return f"Over RMS alone, {title}{chosen} gains {signed(gain.value)} of macro-AUROC ({spread}{doubt})"
 
 
-def _between(training: Training, best: str, gains: dict[str, Interval]) -> str:
+def _between(training: Training, best: str, gains: dict[str, Interval], validated: dict[str, float]) -> str:
     """Say whether the network and the best classifier on indicators differ, where there are both."""
     if NETWORK not in gains or len(gains) == 1:
         return ""
     others = {name: gain for name, gain in gains.items() if name != NETWORK}
-    rival = max(others, key=lambda name: others[name].value) if best == NETWORK else NETWORK
+    rival = max(others, key=lambda name: validated[name]) if best == NETWORK else NETWORK
     pair = next((p for p in training.comparisons if {p.first, p.second} == {best, rival}), None)
     if pair is None or math.isnan(pair.macro_auroc.low):
         return ""
@@ -154,9 +164,9 @@ def control_sentence(training: Training) -> str:
         if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
-        f"that is off chance (0.5) for {joined(suspicious)}, so the scores above are not to be trusted"
+        f"that is off chance (0.5) for {joined(suspicious)}, so the scoring is biased and its scores not to be trusted"
         if suspicious
-        else "chance is 0.5, so the evaluation itself adds nothing to the scores"
+        else "chance is 0.5, so the scoring itself has no bias; against leakage no gearbox is in two splits"
     )
     return f"Trained on permuted labels the macro-AUROC is {joined([_control(judged) for judged in shown])}; {verdict}."
 

@@ -41,15 +41,41 @@ def score_table(training: Training) -> str:
                 interval_cell(judged.scores.accuracy),
                 interval_cell(judged.scores.macro_auroc),
                 Cell(f"{permuted:.2f}" if math.isfinite(permuted) else "–", value=permuted),
-                interval_cell(judged.calibration.after),
             ]
         )
     specimens = counted(training.judged[0].scores.specimens, "test specimen")
     caption = (
         f"Scores on {specimens} with 95 % limits from resampled specimens; macro-AUROC after training on permuted "
-        "labels (mean); expected calibration error [-]."
+        "labels (mean)."
     )
-    head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]", "Calibration error [-]"]
+    head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def calibration_table(training: Training) -> str:
+    """Return what the probabilities of every classifier are worth without and with its temperature."""
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            Cell(f"{found.temperature:.2f}", value=found.temperature),
+            *(interval_cell(each) for each in (found.brier_before, found.brier, found.before, found.after)),
+            Cell(f"{found.honest:.2f}", value=found.honest),
+        ]
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    scores, classes = ("Brier score", "Calibration error"), len(training.judged[0].scores.classes)
+    head = [
+        *("Classifier", "T [-]"),
+        *(f"{score}, {which} T [-]" for score in scores for which in ("without", "with")),
+        "Calibration error if true [-]",
+    ]
+    caption = (
+        "Probabilities on test specimens without and with the temperature T from validation specimens (1 where it does "
+        "not help validation specimens left out of its fit), 95 % limits. Brier score: 0 is best, "
+        f"{1.0 - 1.0 / classes:.2f} is naming all classes equally probable. Expected calibration error: chance alone "
+        "makes it positive, the last column says how much for these probabilities (with T), were they true."
+    )
     return table(head, rows, caption=caption, sortable=True)
 
 

@@ -58,6 +58,14 @@ def test_permuted_labels_give_chance(matrix: FeatureMatrix, split: SpecimenSplit
     assert permutation_control(matrix, split, seed=1, repeats=10).mean() == pytest.approx(0.5, abs=0.12)
 
 
+def test_the_control_cannot_see_leakage(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    leaky = replace(split, train=split.train | split.test)
+    # the tolerance of the test above: test records in training give chance too, so the page may not call it a guard
+    assert permutation_control(matrix, leaky, seed=1, repeats=10).mean() == pytest.approx(0.5, abs=0.12)
+    known = scores(train_classifier(matrix, leaky).predict(matrix.rows(split.test)), seed=0).macro_auroc.value
+    assert known > 0.99
+
+
 def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(
     matrix: FeatureMatrix, split: SpecimenSplit
 ) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.evaluation import Predictions, macro_auroc
+from diagnostics.baselines import rms_features, train_classifier
+from diagnostics.evaluation import Predictions, macro_auroc, scores
 from diagnostics.feature_table import FeatureMatrix, feature_matrix
 from diagnostics.learning_curve import learning_curve
 from diagnostics.recording import recordings
@@ -110,3 +111,13 @@ def test_more_training_specimens_raise_the_score(features: pa.Table) -> None:
     assert [point.specimens for point in curve] == [1, 2, 3, 5, 8, 12]
     assert curve[0].indicators.mean() < curve[-1].indicators.mean()
     assert curve[-1].indicators[0] > 0.9
+
+
+def test_the_end_of_the_curve_is_the_score_of_the_classifiers(features: pa.Table) -> None:
+    matrix = feature_matrix(features)
+    split = specimen_split(matrix.labels)
+    last = learning_curve(matrix, split, seed=0)[-1]
+    alone = matrix.columns(rms_features(matrix.names))
+    for part, found in ((matrix, last.indicators), (alone, last.rms)):
+        test = train_classifier(part, split).predict(part.rows(split.test))
+        assert found.tolist() == [scores(test, seed=0, resamples=10).macro_auroc.value]

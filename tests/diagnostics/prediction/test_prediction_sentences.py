@@ -19,6 +19,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
         Vote("network", np.array([0.6, 0.4]), 0.5),
     )
     return SimpleNamespace(
+        contradiction="",
         classes=("healthy", "severe"),
         votes=votes,
         nearness=Nearness(distance, 2.0, ()),

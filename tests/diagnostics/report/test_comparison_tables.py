@@ -11,7 +11,7 @@ import pytest
 
 from diagnostics.evaluation import Interval
 from diagnostics.learning_curve import CurvePoint
-from diagnostics.report.comparison_tables import curve_table, split_sentence, split_table, study_blocks
+from diagnostics.report.comparison_tables import curve_table, split_sentence, split_table, study_blocks, verdict
 from diagnostics.report.score_figures import learning_curve_figure
 from diagnostics.report.style import png_bytes, styled
 from diagnostics.studies import Studies
@@ -66,3 +66,18 @@ def test_studies_that_were_not_run_say_how_to_have_them() -> None:
     (text,) = study_blocks(None)
     assert "<code>siggen-diagnostics report DIR --studies</code>" in text
     assert len(study_blocks(Studies((row("specimens", 0.8),), POINTS))) == 3
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "specimens", "text"),
+    [
+        (0.1, 0.3, 6, "yes"),
+        (-0.3, -0.1, 6, "yes"),
+        (-0.1, 0.3, 6, "no"),
+        (0.0, 0.0, 6, "no"),
+        (0.1, 0.3, 5, "too few gearboxes"),
+        (math.nan, math.nan, 6, "too few gearboxes"),
+    ],
+)
+def test_an_interval_of_few_gearboxes_decides_nothing(low: float, high: float, specimens: int, text: str) -> None:
+    assert verdict(Interval(0.5 * (low + high), low, high), specimens) == text

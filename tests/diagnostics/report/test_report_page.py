@@ -65,7 +65,22 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     metrics = json.loads((folder / "metrics.json").read_text())
     assert metrics["training"]["specimens"] == {"train": 12, "validation": 4, "test": 8}
     assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
+    validated = {name: found["validation_macro_auroc"] for name, found in metrics["training"]["classifiers"].items()}
+    assert validated["rms"] < min(validated["indicators"], validated["boosting"]) <= 1.0
     assert len(metrics["separability"]["features"]) == 312
+
+
+def test_page_card_and_metrics_tell_calibration_without_and_with_temperature(folder: Path) -> None:
+    found = json.loads((folder / "metrics.json").read_text())["training"]["classifiers"]["rms"]
+    names = ("brier_score", "expected_calibration_error")
+    values = [found[f"{name}{end}"]["value"] for name in names for end in ("_uncalibrated", "")]
+    texts = [f"{value:.2f}" for value in (found["temperature"], *values, found["expected_calibration_error_if_true"])]
+    card = (folder / "models" / "model_card.md").read_text()
+    row = next(line for line in card.splitlines() if line.startswith("| rms |") and line.count("|") == 8)
+    assert [cell.split()[0] for cell in row.strip("| ").split(" | ")[1:]] == texts
+    page = (folder / "report.html").read_text().replace("<wbr>", "")
+    (table,) = (text for text in page.split("<table")[1:] if "Calibration error if true" in text)
+    assert re.findall(r"<td[^>]*>([\d.]+)", table.split("RMS alone")[1])[: len(texts)] == texts
 
 
 def test_a_page_names_what_to_cite_and_no_place_on_the_machine_that_made_it(folder: Path, dataset: Any) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from diagnostics.comparison import Comparison
 from diagnostics.evaluation import Interval
+from diagnostics.judgement import VALIDATION_AUROC
 from diagnostics.report.sentences import (
     area_sentence,
     certainty_sentence,
@@ -61,7 +62,9 @@ def test_without_healthy_or_damaged_records_that_is_said(found: list[Separabilit
     assert "lacks healthy or damaged records" in sentence
 
 
-def classifier(name: str, accuracy: Interval, area: float, specimens: int, permuted: list[float]) -> Any:
+def classifier(
+    name: str, accuracy: Interval, area: float, specimens: int, permuted: list[float], validated: float
+) -> Any:
     scores = SimpleNamespace(
         accuracy=accuracy,
         macro_auroc=Interval(area, NAN, NAN),
@@ -70,7 +73,8 @@ def classifier(name: str, accuracy: Interval, area: float, specimens: int, permu
         classes=("h", "s"),
         guess=0.5,
     )
-    return SimpleNamespace(name=name, scores=scores, permuted_auroc=np.array(permuted))
+    details = {VALIDATION_AUROC: validated} if math.isfinite(validated) else {}
+    return SimpleNamespace(name=name, scores=scores, permuted_auroc=np.array(permuted), details=details)
 
 
 def training(
@@ -79,6 +83,7 @@ def training(
     gains: tuple[float, float] = (0.3, 0.2),
     specimens: int = 5,
     share: float = 0.6,
+    validated: tuple[float, float] = (0.8, 0.7),
 ) -> Any:
     """A training in which boosting and the network gain over RMS as given, and boosting differs from the network."""
 
@@ -93,7 +98,9 @@ def training(
     if network:
         pairs += [pair("boosting", "network", *network), pair("network", "rms", *around(gains[1]))]
     names = ("boosting", "rms", *(("network",) if network else ()))
-    judged = [classifier(name, limits, 0.8, specimens, [0.49, 0.52] if name == "boosting" else []) for name in names]
+    areas = {"boosting": validated[0], "network": validated[1], "rms": 0.5}
+    control = {"boosting": [0.49, 0.52]}
+    judged = [classifier(name, limits, 0.8, specimens, control.get(name, []), areas[name]) for name in names]
     split = SimpleNamespace(members={"h": ("h",), "s": ("s",)})
     return SimpleNamespace(comparisons=pairs, rms_severe=Interval(severe, severe, severe), judged=judged, split=split)
 
@@ -104,7 +111,8 @@ def training(
 def test_a_level_that_finds_severe_damage_by_itself_is_said(severe: float, text: str) -> None:
     sentence = comparison_sentence(training(severe))
     assert text in sentence
-    assert "gradient boosting on indicators gains +0.30 of macro-AUROC (+0.20 to +0.40, paired)" in sentence
+    name = "gradient boosting on indicators, the best on validation specimens,"
+    assert f"{name} gains +0.30 of macro-AUROC (+0.20 to +0.40, paired)" in sentence
 
 
 def test_the_network_is_ahead_or_behind_only_where_the_paired_interval_says_so() -> None:
@@ -114,11 +122,11 @@ def test_the_network_is_ahead_or_behind_only_where_the_paired_interval_says_so()
 
 
 def test_a_network_that_is_best_is_compared_with_the_best_of_the_others() -> None:
-    ahead = training(network=(-0.1, -0.15, -0.05), gains=(0.2, 0.3))
+    ahead = training(network=(-0.1, -0.15, -0.05), gains=(0.2, 0.3), validated=(0.7, 0.8))
     sentence = comparison_sentence(ahead).replace("\N{MINUS SIGN}", "-")
-    assert "Over RMS alone, 1-D network gains +0.30" in sentence
+    assert "Over RMS alone, 1-D network, the best on validation specimens, gains +0.30" in sentence
     assert "best of the others, gradient boosting on indicators, being -0.10 from it (-0.15 to -0.05)" in sentence
-    alike = comparison_sentence(training(network=(-0.1, -0.15, 0.05), gains=(0.2, 0.3)))
+    alike = comparison_sentence(training(network=(-0.1, -0.15, 0.05), gains=(0.2, 0.3), validated=(0.7, 0.8)))
     assert "from which the best of the others, gradient boosting on indicators, cannot be told apart" in alike
 
 
@@ -127,7 +135,20 @@ def test_a_gain_that_may_be_none_is_not_sold_as_one() -> None:
         "+0.05 of macro-AUROC (\N{MINUS SIGN}0.05 to +0.15, paired, not told apart from none)"
         in comparison_sentence(training(gains=(0.05, 0.0)))
     )
-    assert comparison_sentence(training(gains=(-0.05, -0.1))).startswith("Nothing beats RMS alone")
+    behind = comparison_sentence(training(gains=(-0.05, -0.1))).replace("\N{MINUS SIGN}", "-")
+    name = "gradient boosting on indicators, the best on validation specimens"
+    assert behind.startswith(f"RMS alone is not beaten by {name}: -0.05 of macro-AUROC")
+
+
+def test_the_classifier_that_is_compared_is_the_best_on_validation_not_on_test() -> None:
+    sentence = comparison_sentence(training(gains=(0.2, 0.4), validated=(0.8, 0.7)))
+    assert "gradient boosting on indicators, the best on validation specimens, gains +0.20" in sentence
+
+
+def test_without_validation_scores_no_classifier_is_called_the_best() -> None:
+    sentence = comparison_sentence(training(validated=(NAN, NAN)))
+    assert "gradient boosting on indicators +0.30 (+0.20 to +0.40) and 1-D network +0.20" in sentence
+    assert "best" not in sentence
 
 
 def test_a_set_without_network_has_no_word_about_it() -> None:
@@ -169,6 +190,7 @@ def test_few_specimens_give_rough_intervals(specimens: int, verdict: str) -> Non
 
 def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> None:
     off = training()
+    assert "the scoring itself has no bias; against leakage no gearbox is in two splits" in control_sentence(off)
     off.judged[0].permuted_auroc = np.array([0.7, 0.75, NAN])
     assert "off chance (0.5) for gradient boosting on indicators" in control_sentence(off)
     assert "2 runs" in control_sentence(off)
