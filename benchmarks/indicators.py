@@ -13,13 +13,13 @@ import numpy as np
 
 from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.timing import Candidate, medians
-from diagnostics.channel_indicators import CEPSTRUM_BAND, IndicatorSettings, shaft_indicators
-from diagnostics.indicator_table import CHUNK_RECORDS, RecordIndicators, chunk_indicators, record_indicators
 from diagnostics.indicators.cepstral_peak import shaft_log_spectrum
-from diagnostics.record_problems import record_problems
-from diagnostics.recording import Recording
-from diagnostics.shaft_signals import record_shafts
+from diagnostics.indicators.channel_indicators import CEPSTRUM_BAND, IndicatorSettings, shaft_indicators
+from diagnostics.indicators.indicator_table import CHUNK_RECORDS, RecordIndicators, chunk_indicators, record_indicators
+from diagnostics.records.record_problems import record_problems
+from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.shaft_signals import record_shafts
 from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
 from diagnostics.signal.synchronous_average import synchronous_average
 

@@ -13,9 +13,9 @@ import siggen
 from benchmarks.row import Row
 from benchmarks.shipped import QUICKSTART
 from benchmarks.timing import Candidate, medians
-from diagnostics.loader import WindowLoader, WindowStream
-from diagnostics.window_index import StreamSettings
-from siggen.dataset.record import signal_matrix
+from diagnostics.loader.window_index import StreamSettings
+from diagnostics.loader.window_stream import WindowLoader, WindowStream
+from siggen.columns.record import signal_matrix
 
 GOAL = 0.8
 HALF_A_RECORD = StreamSettings(revolutions=8, hop_revolutions=8, samples_per_revolution=None)

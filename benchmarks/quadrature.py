@@ -1,8 +1,8 @@
 """Alternative: the potential-energy integrals by `scipy.integrate.quad`, one contact and one integral at a time.
 
-Same equations as `siggen.gears.compliance` (paper A, section 2.2) with the rack-cut fillet and the Sainsot foundation,
-written as the formulas stand. Tooth profile and section of the pitted tooth are siggen's compiled functions, so what is
-compared is the way of integrating.
+Same equations as `siggen.gears.stiffness.compliance` (paper A, section 2.2) with the rack-cut fillet and the Sainsot
+foundation, written as the formulas stand. Tooth profile and section of the pitted tooth are siggen's compiled
+functions, so what is compared is the way of integrating.
 """
 
 from __future__ import annotations
@@ -13,28 +13,26 @@ from math import cos, pi, sin
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 from scipy.integrate import IntegrationWarning, quad
 
-from siggen.gears import involute, trochoid
-from siggen.gears.compliance import SHEAR_FACTOR
-from siggen.gears.damage import Damage, pit_rows, pits_of
-from siggen.gears.foundation import foundation_compliance
-from siggen.gears.geometry import GearPair
-from siggen.gears.pitted_beams import section_losses
-from siggen.gears.spur_gear import SpurGear
-from siggen.gears.stiffness import pairs_in_contact
-from siggen.gears.tables import pair_kinds
-from siggen.gears.union import active_pits, add_intervals, depth_moments, lengths_covered, stretch_room
-
-FloatArray = NDArray[np.float64]
+from siggen.arrays import FloatArray
+from siggen.gears.damage.flank_damage import Damage, pit_rows, pits_of
+from siggen.gears.damage.union import active_pits, add_intervals, depth_moments, lengths_covered, stretch_room
+from siggen.gears.geometry import involute, trochoid
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.compliance import SHEAR_FACTOR
+from siggen.gears.stiffness.foundation import foundation_compliance
+from siggen.gears.stiffness.mesh_stiffness import pairs_in_contact
+from siggen.gears.stiffness.mesh_tables import pair_kinds
+from siggen.gears.stiffness.pitted_beams import section_losses
 
 RELATIVE_TOLERANCE = 1e-8
 """The only one: quad's own absolute tolerance, 1.5e-8, exceeds a compliance in m/N, and quad would stop at once."""
 
 
 def mesh_stiffness_by_quad(pair: GearPair, angle_rad: float, damage: Damage = ()) -> float:
-    """Return the mesh stiffness [N/m] at one pinion angle; as `siggen.gears.stiffness.mesh_stiffness`."""
+    """Return the mesh stiffness [N/m] at one pinion angle; as the function of that name."""
     _, count, position = pairs_in_contact(pair, np.array([angle_rad]))
     total = 0.0
     for n, s in zip(count.tolist(), position.tolist(), strict=True):

@@ -10,15 +10,15 @@ from typing import TypeVar
 
 from benchmarks.row import Row, cost_row
 from benchmarks.shipped import PAPER_A, QUICKSTART, shipped
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record
 from siggen.config import Config, read_yaml
 from siggen.dataset.chunk import Chunk, ChunkSimulation
-from siggen.dataset.plan import planned_record, record_ids_of
-from siggen.dataset.record import Record
-from siggen.dataset.specimen import draw_operating_point, draw_specimen
-from siggen.loading import load_config
-from siggen.record_labels import damage_labels
-from siggen.sensor_channels import measured_channels
-from siggen.simulation import record_response, simulate_specimen, specimen_state
+from siggen.planning.plan import planned_record, record_ids_of
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.channels import measured_channels
+from siggen.record.labels import damage_labels
+from siggen.record.simulation import record_response, simulate_specimen, specimen_state
 
 SERIES_RECORDS = 64
 

@@ -12,8 +12,8 @@ import numpy as np
 from ross.gear_element import GearElementTVMS, Mesh  # type: ignore[import-not-found, unused-ignore]
 from ross.materials import Material  # type: ignore[import-not-found, unused-ignore]
 
-from siggen.gears.geometry import GearPair
-from siggen.gears.spur_gear import SpurGear
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
 
 
 def healthy_curve(pair: GearPair, points: int) -> Callable[[], np.ndarray]:

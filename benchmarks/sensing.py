@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from statistics import median
 
 from benchmarks.row import Row, cost_row
-from siggen.dataset.plan import planned_record
-from siggen.dataset.specimen import draw_specimen
-from siggen.loading import load_config
-from siggen.sensor_channels import measured_channels
-from siggen.simulation import record_response, specimen_state
-from siggen.specimen_instrument import specimen_instrument
+from siggen.checks.loading import load_config
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.record.channels import measured_channels
+from siggen.record.simulation import record_response, specimen_state
+from siggen.specimen.instrument import specimen_instrument
 
 CONFIG = "configs/transfer_path.yaml"
 GOAL_S = 5e-3

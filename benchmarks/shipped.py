@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.loading import load_config
 
 ROOT = Path(__file__).resolve().parents[1]
 QUICKSTART = ROOT / "configs" / "linear_pits.yaml"

@@ -9,13 +9,11 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import integrate
 
-from siggen.dynamics.equations import Equations, state_rate
-from siggen.dynamics.mesh_force import MeshLaw
-
-FloatArray = NDArray[np.float64]
+from siggen.arrays import FloatArray
+from siggen.dynamics.mesh.mesh_force import MeshLaw
+from siggen.dynamics.time.equations import Equations, state_rate
 
 Method = Literal["RK45", "DOP853", "LSODA"]
 
@@ -53,7 +51,7 @@ class SolveIvp:
 
 
 def solve_ivp_integrators(*methods: Method) -> Mapping[str, Callable[[Equations, MeshLaw, float], SolveIvp]]:
-    """Return integrators by the name of scipy's method, as in `siggen.dynamics.linear_motion.INTEGRATORS`."""
+    """Return integrators by the name of scipy's method, as in `siggen.dynamics.time.linear_motion.INTEGRATORS`."""
 
     def maker(method: Method) -> Callable[[Equations, MeshLaw, float], SolveIvp]:
         return lambda equations, law, step_s: SolveIvp(method, equations, law, step_s)

@@ -18,13 +18,13 @@ from benchmarks.row import Row, cost_row
 from benchmarks.shipped import QUICKSTART, shipped
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config
-from siggen.dataset.specimen import draw_specimen
-from siggen.gears.damage import Damage
-from siggen.gears.geometry import GearPair
-from siggen.gears.stiffness import StiffnessOptions, mesh_stiffness
-from siggen.gears.tables import mesh_tables
-from siggen.specimen_physics import gear_pair
-from siggen.state_damage import state_damage
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, mesh_stiffness
+from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.planning.specimen import draw_specimen
+from siggen.specimen.damage import state_damage
+from siggen.specimen.gears import gear_pair
 
 OPTIONS = StiffnessOptions("rack_trochoid", "sainsot")
 POINTS = 1000

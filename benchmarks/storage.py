@@ -15,12 +15,12 @@ import pyarrow.parquet as pq
 from benchmarks.row import Row
 from benchmarks.shipped import QUICKSTART, shipped
 from benchmarks.timing import Candidate, medians
+from siggen.columns.record import Record, channels, record_batch, signal_matrix
 from siggen.config import Config
-from siggen.dataset.plan import record_ids_of, rows_per_group
-from siggen.dataset.record import Record, channels, record_batch, signal_matrix
 from siggen.dataset.shard import write_table
 from siggen.dataset.storage import LocalFolder
-from siggen.simulation import simulate_specimen
+from siggen.planning.plan import record_ids_of, rows_per_group
+from siggen.record.simulation import simulate_specimen
 
 OWN, DEFAULT = "own.parquet", "default.parquet"
 

@@ -31,7 +31,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
         yield Row(
             f"peak memory of a worker, records of {duration_s} s",
             f"{used / 1e6:.0f} MB",
-            f"importing siggen.simulation: {bare / 1e6:.0f} MB",
+            f"importing siggen.record.simulation: {bare / 1e6:.0f} MB",
             used / bare,
             f"<= {MEMORY_GOAL_BYTES / 1e6:.0f} MB",
             used <= MEMORY_GOAL_BYTES,
@@ -94,7 +94,7 @@ def _import_memory_bytes() -> int:
     """
     code = (
         "import subprocess, sys; from siggen.dataset.environment import peak_memory_bytes;"
-        "subprocess.run([sys.executable, '-c', 'import siggen.simulation'], check=True);"
+        "subprocess.run([sys.executable, '-c', 'import siggen.record.simulation'], check=True);"
         "print(peak_memory_bytes()['largest_worker'])"
     )
     return int(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)

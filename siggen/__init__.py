@@ -10,23 +10,23 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from siggen.checks.loading import load_config
     from siggen.dataset.card_section import write_card_section
-    from siggen.dataset.plan import plan
     from siggen.dataset.reading import open
-    from siggen.generation import generate
-    from siggen.loading import load_config
-    from siggen.simulation import simulate
-    from siggen.stiffness_curves import mesh_stiffness_curves
+    from siggen.planning.plan import plan
+    from siggen.record.simulation import simulate
+    from siggen.sets.generation import generate
+    from siggen.views.stiffness_curves import mesh_stiffness_curves
 
 __all__ = ["generate", "load_config", "mesh_stiffness_curves", "open", "plan", "simulate", "write_card_section"]
 
 _HOMES = {
-    "generate": ("siggen.generation", "generate"),
-    "load_config": ("siggen.loading", "load_config"),
-    "mesh_stiffness_curves": ("siggen.stiffness_curves", "mesh_stiffness_curves"),
+    "generate": ("siggen.sets.generation", "generate"),
+    "load_config": ("siggen.checks.loading", "load_config"),
+    "mesh_stiffness_curves": ("siggen.views.stiffness_curves", "mesh_stiffness_curves"),
     "open": ("siggen.dataset.reading", "open"),
-    "plan": ("siggen.dataset.plan", "plan"),
-    "simulate": ("siggen.simulation", "simulate"),
+    "plan": ("siggen.planning.plan", "plan"),
+    "simulate": ("siggen.record.simulation", "simulate"),
     "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
 }
 

@@ -16,13 +16,13 @@ from numpy.polynomial import chebyshev
 
 from benchmarks.finite_elements.model_compliance import CALIBRATED_MODEL, MODELS, model_compliance
 from benchmarks.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
-from siggen.gears.calibration import (
+from siggen.gears.geometry.gear_pair import SpurGear
+from siggen.gears.stiffness.calibration import (
     RADIUS_RATIO_RANGE,
     TEETH_RANGE,
     angle_step,
     unit_coordinates,
 )
-from siggen.gears.geometry import SpurGear
 
 MAIN_DEGREES = (4, 4, 4)
 CORRECTION_DEGREES = (3, 2, 2)

@@ -19,7 +19,7 @@ from benchmarks.finite_elements.calibration import (
 )
 
 COMMAND = "python -m benchmarks.finite_elements calibrate"
-TARGET = Path(__file__).resolve().parents[2] / "siggen" / "gears" / "calibration_table.py"
+TARGET = Path(__file__).resolve().parents[2] / "siggen" / "gears" / "stiffness" / "calibration_table.py"
 HELD_OUT_GEARS = 20
 HELD_OUT_PLACES = np.linspace(0.002, 0.998, 15)
 NAMES = ("MAIN_COEFFICIENTS", "SHIFT_COEFFICIENTS", "SHIFT_SQUARED_COEFFICIENTS", "ANGLE_COEFFICIENTS")

@@ -11,8 +11,8 @@ import numpy as np
 from benchmarks.finite_elements.calibration import ToothShape, compliance_ratio, held_out_shapes
 from benchmarks.finite_elements.model_compliance import CALIBRATED_MODEL, MODELS, model_compliance
 from benchmarks.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
-from siggen.gears.calibration import calibration_factor
-from siggen.gears.geometry import GearPair, SpurGear
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness.calibration import calibration_factor
 
 SIZE = 0.03
 POINTS = 13

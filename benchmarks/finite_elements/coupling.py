@@ -10,10 +10,10 @@ import numpy as np
 from benchmarks.finite_elements.calibration import ToothShape, held_out_shapes
 from benchmarks.finite_elements.comparison import SIZE, paper_a_pair
 from benchmarks.finite_elements.neighbour_compliance import coupled_compliance
-from siggen.gears.body_coupling import ring_torsion
-from siggen.gears.geometry import GearPair, SpurGear
-from siggen.gears.stiffness import mesh_stiffness
-from siggen.gears.stiffness_options import StiffnessOptions
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness.body_coupling import ring_torsion
+from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 SHARES = np.array([0.01, 0.5, 0.99])
 HELD_OUT_SHARES = np.array([0.01, 0.25, 0.5, 0.75, 0.99])

@@ -12,12 +12,12 @@ from numpy.polynomial import chebyshev
 
 from benchmarks.finite_elements.calibration import ToothShape, chebyshev_nodes
 from benchmarks.finite_elements.neighbour_compliance import coupled_compliance
-from siggen.gears.body_coupling import TERMS, load_terms, ring_torsion
-from siggen.gears.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
-from siggen.gears.geometry import SpurGear
+from siggen.gears.geometry.gear_pair import SpurGear
+from siggen.gears.stiffness.body_coupling import TERMS, load_terms, ring_torsion
+from siggen.gears.stiffness.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
 
 COMMAND = "python -m benchmarks.finite_elements couple"
-TARGET = Path(__file__).resolve().parents[2] / "siggen" / "gears" / "coupling_table.py"
+TARGET = Path(__file__).resolve().parents[2] / "siggen" / "gears" / "stiffness" / "coupling_table.py"
 NODES = (6, 6)
 DEGREES = (3, 3)
 APART = 2

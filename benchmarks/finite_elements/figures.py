@@ -11,7 +11,7 @@ from benchmarks.finite_elements.calibration import ToothShape
 from benchmarks.finite_elements.comparison import SIZE, active_rolls, model_ratios, paper_a_pair
 from benchmarks.finite_elements.tooth_compliance_fem import tooth_compliance
 from benchmarks.finite_elements.tooth_mesh import tooth_mesh
-from siggen.gears.calibration import calibration_factor
+from siggen.gears.stiffness.calibration import calibration_factor
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "figures"
 STYLES = {

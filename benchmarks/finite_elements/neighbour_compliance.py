@@ -12,7 +12,7 @@ from benchmarks.finite_elements.tooth_compliance_fem import (
     nodal_functionals,
 )
 from benchmarks.finite_elements.tooth_mesh import tooth_mesh
-from siggen.gears.geometry import SpurGear
+from siggen.gears.geometry.gear_pair import SpurGear
 
 
 def coupled_compliance(gear: SpurGear, load_roll: np.ndarray, size: float) -> np.ndarray:

@@ -5,61 +5,25 @@ from __future__ import annotations
 import json
 import math
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from diagnostics.audit import figures, page
+from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, Realism, realism
-from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.separability_findings import separability_findings, verdict
-from diagnostics.extras import require_packages
-from diagnostics.progress import Stage, silent_stage
-from diagnostics.report.style import png_bytes, styled
+from diagnostics.base.extras import require_packages
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.page.style import png_bytes, styled
 
 CACHE = "measured.parquet"
 UNPAIRED, PAIRED, CHANGE = "indicators", "indicators minus own healthy record", "change of the averaged waveform"
-
-
-@dataclass(frozen=True, slots=True)
-class Audit:
-    """What the audit found.
-
-    Attributes
-    ----------
-    findings : tuple of Finding
-        Traps; empty for a set without any.
-    verdict : str
-        What they mean, in a sentence.
-    realism : Realism, optional
-        Where it was asked for and healthy records exist.
-    detections : dict of str to list of Detection
-        By variant.
-    notes : tuple of str
-        What could not be judged and why.
-    seconds_per_record : float
-        For measuring; small where the cache was read.
-    records, specimens, channels : int
-        How many were judged on.
-    seed : int
-        Of permutations, folds and bootstrap.
-    """
-
-    findings: tuple[Finding, ...]
-    verdict: str
-    realism: Realism | None
-    detections: dict[str, list[Detection]]
-    notes: tuple[str, ...]
-    seconds_per_record: float
-    records: int
-    specimens: int
-    channels: int
-    seed: int
 
 
 def audit_set(

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
+from diagnostics.audit.audit import Audit
 from diagnostics.audit.card_section import CHANCE_AUC
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
-from diagnostics.report.wording import counted, decimal, joined, limits, percent
-
-if TYPE_CHECKING:
-    from diagnostics.audit.audit_report import Audit
+from diagnostics.page.wording import counted, decimal, joined, limits, percent
 
 
 def audit_summary(audit: Audit) -> list[str]:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from diagnostics.audit.audit_report import Audit
+from diagnostics.audit.audit import Audit
 
 TEACHABLE_AUC, CHANCE_AUC = 0.75, 0.6
 """From the first on a state counts as found; below the second as lost in the spread between gearboxes."""

@@ -17,9 +17,9 @@ import numpy as np
 
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import reference_records
-from diagnostics.damage_kind import damage_kind
-from diagnostics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
-from diagnostics.seeding import Purpose, generator
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.records.damage_kind import damage_kind
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
 
 LEVELS, PLAIN = ("rms", "sideband_index"), ("kurtosis", "fm4")
 ADDED = ("energy_ratio", "sideband_energy_ratio")

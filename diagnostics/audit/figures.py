@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnostics.audit.detectability import SIZES, TARGETS, Detection, differ_in_length
 from diagnostics.audit.envelope import QuantityShare, Realism
-from diagnostics.report.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
+from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

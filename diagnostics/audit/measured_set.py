@@ -17,9 +17,9 @@ import pyarrow.parquet as pq
 
 from diagnostics.audit.channel_quantities import channel_quantities
 from diagnostics.audit.speed_variation import speed_variation_percent
-from diagnostics.recording import TACHO_NAME, Recording
+from diagnostics.records.recording import TACHO_NAME, Recording
+from diagnostics.records.usable_records import RecordCheck
 from diagnostics.signal.order_domain import angle_grid
-from diagnostics.usable_records import RecordCheck
 from siggen.errors import DatasetError
 
 VERSION = "1"

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, length_at
 from diagnostics.audit.envelope import Realism
-from diagnostics.report import html
-from diagnostics.report.html import Cell
-from diagnostics.report.provenance import provenance
-from diagnostics.report.tables import interval_cell
-from diagnostics.report.wording import counted, percent
-
-if TYPE_CHECKING:
-    from diagnostics.audit.audit_report import Audit
+from diagnostics.page import html
+from diagnostics.page.html import Cell
+from diagnostics.page.provenance import provenance
+from diagnostics.page.tables import interval_cell
+from diagnostics.page.wording import counted, percent
 
 HOW = (
     "Logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels; cross-validated "

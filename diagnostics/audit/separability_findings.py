@@ -15,7 +15,7 @@ from diagnostics.audit.shared_specimens import shared_specimens
 from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.solver_settings import solver_settings
 from diagnostics.audit.state_ties import state_ties
-from diagnostics.report.wording import counted
+from diagnostics.page.wording import counted
 
 TRIVIAL = ("healthy_without_sidebands", "slight_separable_by", "state_tied_to", "constant_damage_phase")
 

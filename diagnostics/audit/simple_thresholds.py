@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.evaluation import bootstrap_weights, interval, weighted_auc
+from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
 
 QUANTITIES = ("rms", "kurtosis")
 LARGEST_AUC = 0.9

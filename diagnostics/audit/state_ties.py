@@ -14,7 +14,7 @@ import numpy as np
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.record_groups import ColumnGroup, column_group
-from diagnostics.seeding import Purpose, generator
+from diagnostics.base.seeding import Purpose, generator
 
 BINS = 8
 PERMUTATIONS = 200

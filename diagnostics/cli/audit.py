@@ -45,7 +45,7 @@ def audit(
     from diagnostics.audit.audit_sentences import basis_sentence
     from diagnostics.audit.card_section import card_section
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.report.wording import counted
+    from diagnostics.page.wording import counted
     from siggen.dataset.reading import open as open_set
     from siggen.errors import VerificationError
 

@@ -19,8 +19,8 @@ def features(
     Example: siggen-diagnostics features data/quickstart --out features.parquet
     """
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.feature_table import check_suffix, feature_table, with_notes, write_table
-    from diagnostics.usable_records import check_records
+    from diagnostics.indicators.feature_table import check_suffix, feature_table, with_notes, write_table
+    from diagnostics.records.usable_records import check_records
     from siggen.dataset.reading import open as open_set
 
     check_suffix(out)

@@ -52,16 +52,16 @@ def indicators(
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
     """
-    from diagnostics.assessment.assessment import AssessmentSettings
-    from diagnostics.channel_indicators import IndicatorSettings
-    from diagnostics.chosen_states import chosen_states
+    from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.extras import require_packages
-    from diagnostics.indicator_table import indicator_table
+    from diagnostics.indicators.channel_indicators import IndicatorSettings
+    from diagnostics.indicators.indicator_table import indicator_table
     from diagnostics.indicators.own_indicator import load_indicator
+    from diagnostics.records.chosen_states import chosen_states
+    from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
     from diagnostics.signal.tacholess_angle import check_speed_range
-    from diagnostics.usable_records import check_states
+    from diagnostics.statistics.assessment import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")

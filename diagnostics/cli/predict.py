@@ -57,7 +57,7 @@ def predict(
 
     Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
-    from diagnostics.extras import require_packages
+    from diagnostics.base.extras import require_packages
     from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 
     require_packages("prediction", "sklearn", "skops")

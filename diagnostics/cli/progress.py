@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from diagnostics.progress import Advance
+from diagnostics.base.progress import Advance
 
 
 @contextmanager

@@ -30,11 +30,11 @@ def report(
 
     Example: siggen-diagnostics report data/quickstart --studies
     """
+    from diagnostics.base.extras import missing_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.extras import missing_packages
-    from diagnostics.network_training import NetworkOptions, check_device
     from diagnostics.report.report import write_report
-    from diagnostics.training_sets import open_sets
+    from diagnostics.training.network_training import NetworkOptions, check_device
+    from diagnostics.training.training_sets import open_sets
 
     if cnn and not missing_packages("torch"):
         check_device(device)

@@ -28,15 +28,16 @@ def train(
 
     Example: siggen-diagnostics train data/quickstart --out models --test data/other_gears
     """
+    from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.extras import require_packages
-    from diagnostics.feature_table import feature_matrix
+    from diagnostics.indicators.feature_table import feature_matrix
 
     require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if cnn else ()))
-    from diagnostics.network_training import NetworkOptions, check_device
-    from diagnostics.studies import run_studies, studies_metrics
-    from diagnostics.training import save_models, train_models, training_metrics
-    from diagnostics.training_sets import open_sets, other_table, set_table
+    from diagnostics.release.saved_models import save_models
+    from diagnostics.training.network_training import NetworkOptions, check_device
+    from diagnostics.training.studies import run_studies, studies_metrics
+    from diagnostics.training.training import train_models, training_metrics
+    from diagnostics.training.training_sets import open_sets, other_table, set_table
     from siggen.errors import DatasetError
 
     if cnn:

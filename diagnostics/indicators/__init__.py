@@ -1,1 +1,1 @@
-"""Condition indicators, one definition per file; each says on which signal it is defined."""
+"""Gear indicators of records, and the tables that hold them."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnostics.baselines import FeatureClassifier
-from diagnostics.prediction.model_facts import FACTS_FILE, ModelFacts
+from diagnostics.release.model_facts import FACTS_FILE, ModelFacts
+from diagnostics.training.baselines import FeatureClassifier
 from siggen.errors import UsageError
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from diagnostics.cnn import WideKernelNetwork
-from diagnostics.cnn_files import NetworkFile
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.training.cnn import WideKernelNetwork
+from diagnostics.training.cnn_files import NetworkFile
 
 
 def network_probabilities(

@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.calibration import tempered
-from diagnostics.evaluation import Interval
 from diagnostics.prediction.known_reasons import known_reasons, reference_reasons
-from diagnostics.prediction.log_features import log_mean, log_values
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
-from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.release.log_features import log_mean, log_values
+from diagnostics.release.training_distance import TrainingDistance
+from diagnostics.statistics.calibration import tempered
+from diagnostics.statistics.evaluation import Interval
 from siggen.errors import UsageError
 
 INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.prediction.model_facts import ModelFacts
+from diagnostics.page.wording import counted
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
-from diagnostics.report.wording import counted
+from diagnostics.release.model_facts import ModelFacts
 
 MEANING = (
     "The models were trained on simulated records only; no measured pitting was used. A probability says how like the "

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from diagnostics.prediction.model_facts import ModelFacts
+from diagnostics.page.wording import counted, joined, percent
 from diagnostics.prediction.prediction import Prediction, Vote
-from diagnostics.report.wording import counted, joined, percent
+from diagnostics.release.model_facts import ModelFacts
 
 TITLES = {"healthy_referenced": "differences from the healthy reference", "network": "the network"}
 

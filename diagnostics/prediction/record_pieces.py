@@ -11,10 +11,10 @@ from fractions import Fraction
 
 import numpy as np
 
-from diagnostics.features import FeatureSettings, record_features
-from diagnostics.prediction.floor_roughness import floor_features
+from diagnostics.indicators.features import FeatureSettings, record_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.release.floor_roughness import floor_features
 
 LARGEST_DENOMINATOR = 1000
 

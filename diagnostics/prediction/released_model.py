@@ -7,27 +7,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from diagnostics.baselines import FeatureClassifier
-from diagnostics.classifier_file import (
+from diagnostics.base.extras import missing_packages
+from diagnostics.indicators.features import FeatureSettings
+from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
+from diagnostics.release.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
+from diagnostics.release.release import REFERENCED
+from diagnostics.release.training_distance import TrainingDistance
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import NETWORK
+from diagnostics.training.baselines import FeatureClassifier
+from diagnostics.training.classifier_file import (
     CLASSIFIER_FILE,
     NAMES_FILE,
     classifier_identity,
     load_classifier,
     load_settings,
 )
-from diagnostics.evaluation import Interval
-from diagnostics.extras import missing_packages
-from diagnostics.features import FeatureSettings
-from diagnostics.judgement import NETWORK
-from diagnostics.prediction.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
-from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
-from diagnostics.prediction.release import REFERENCED
-from diagnostics.prediction.training_distance import TrainingDistance
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.cnn import WideKernelNetwork
-    from diagnostics.cnn_files import NetworkFile
+    from diagnostics.training.cnn import WideKernelNetwork
+    from diagnostics.training.cnn_files import NetworkFile
 
 NETWORK_FILE = "cnn.safetensors"
 
@@ -128,6 +128,6 @@ def _network(folder: Path, scored: bool) -> tuple[tuple[WideKernelNetwork, Netwo
         return None, missing_note if scored else ""
     if missing := missing_packages("torch", "safetensors"):
         return None, f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
-    from diagnostics.cnn_files import load_network
+    from diagnostics.training.cnn_files import load_network
 
     return load_network(path), ""

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, new_figure
 from diagnostics.prediction.prediction import Prediction
-from diagnostics.report.examples import OrderSpectrum, order_spectrum
-from diagnostics.report.style import GEAR_COLOUR, PINION_COLOUR, new_figure
+from diagnostics.signal.order_spectrum import OrderSpectrum, order_spectrum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,33 +1,17 @@
-"""The columns of a recorded file by name, whatever its format; nothing in a file is ever executed."""
+"""The columns of a recorded file by its suffix; nothing in a file is ever executed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-
+from diagnostics.recordings.csv_file import read_csv
+from diagnostics.recordings.mat_file import read_mat
+from diagnostics.recordings.numpy_file import read_numpy
+from diagnostics.recordings.parquet_file import read_parquet
+from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.wav_file import read_wav
 from siggen.errors import UsageError
-
-
-@dataclass(frozen=True, slots=True)
-class Columns:
-    """What a file holds.
-
-    Attributes
-    ----------
-    values : mapping of str to (n,) float64
-        Column by name; columns without a name are called by their position, from "1" on.
-    fs_hz : float or None
-        Sampling frequency where the file states it.
-    full_scale : bool
-        Whether values are shares of the recorder's full scale, as integer WAV files hold them.
-    """
-
-    values: Mapping[str, np.ndarray]
-    fs_hz: float | None = None
-    full_scale: bool = False
 
 
 def read_columns(path: Path, row: int | None = None) -> Columns:
@@ -45,12 +29,6 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     UsageError
         If it does not exist, has another suffix, cannot be read, or holds no column of numbers.
     """
-    from diagnostics.recordings.csv_file import read_csv
-    from diagnostics.recordings.mat_file import read_mat
-    from diagnostics.recordings.numpy_file import read_numpy
-    from diagnostics.recordings.parquet_file import read_parquet
-    from diagnostics.recordings.wav_file import read_wav
-
     readers: dict[str, Callable[[Path], Columns]] = {
         ".csv": read_csv,
         ".txt": read_csv,
@@ -70,21 +48,3 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     if not found.values:
         raise UsageError(f"{path}: holds no column of numbers")
     return found
-
-
-def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:
-    """Return the columns of an array by position from 1 on: the longer axis is time; one alone has the prefix's name.
-
-    Raises
-    ------
-    ValueError
-        If the array is not one- or two-dimensional and real.
-    """
-    if array.dtype.kind not in "biuf" or array.ndim not in (1, 2):
-        raise ValueError(f"received {array.ndim} dimensions of {array.dtype}; allowed are one or two of real numbers")
-    rows = np.atleast_2d(array.astype(np.float64))
-    if array.ndim == 2 and rows.shape[0] > rows.shape[1]:
-        rows = rows.T
-    if len(rows) == 1:
-        return {prefix or "1": rows[0]}
-    return {f"{prefix}:{k}" if prefix else str(k): row for k, row in enumerate(rows, start=1)}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.columns import Columns
+from diagnostics.recordings.recorded_columns import Columns
 from siggen.errors import UsageError
 
 SEPARATORS = ("\t", ";", ",")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.columns import Columns, numbered
+from diagnostics.recordings.recorded_columns import Columns, numbered
 from siggen.errors import UsageError
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.recordings.columns import Columns
+from diagnostics.recordings.recorded_columns import Columns
 from siggen.errors import UsageError
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.report.examples import order_spectrum
+from diagnostics.signal.order_spectrum import order_spectrum
 
 SMALLEST = 1e-12
 """Of the largest amplitude: keeps the logarithm of an empty spectrum finite."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_contrast import shaft_contrast
-from diagnostics.report.examples import order_spectrum
+from diagnostics.signal.order_spectrum import order_spectrum
 from diagnostics.signal.tacholess_angle import LEAST_CLARITY, MeshRidge, mesh_ridge, tacholess_pulses
 from siggen.errors import UsageError
 

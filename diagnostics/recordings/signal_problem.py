@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
+from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
 
 
 def signal_problem(signal: np.ndarray) -> str:

@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 
-from diagnostics.evaluation import Interval
-from diagnostics.judgement import TITLES, Judged
-from diagnostics.learning_curve import CurvePoint
-from diagnostics.report.html import Cell, paragraph, table
-from diagnostics.report.tables import interval_cell
-from diagnostics.report.wording import counted
-from diagnostics.split_study import SplitScore
-from diagnostics.studies import Studies
-from diagnostics.training import Training
+from diagnostics.page.html import Cell, paragraph, table
+from diagnostics.page.tables import interval_cell
+from diagnostics.page.wording import counted
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import TITLES, Judged
+from diagnostics.training.learning_curve import CurvePoint
+from diagnostics.training.split_study import SplitScore
+from diagnostics.training.studies import Studies
+from diagnostics.training.training import Training
 
 FEWEST_SPECIMENS = 6
 """Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""

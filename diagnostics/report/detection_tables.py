@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from diagnostics.judgement import RMS_ALONE, TITLES, Judged
-from diagnostics.report.html import Cell, paragraph, table
-from diagnostics.report.tables import interval_cell
-from diagnostics.report.wording import joined, percent, percent_limits, signed, signed_limits
-from diagnostics.training import Training
+from diagnostics.page.html import Cell, paragraph, table
+from diagnostics.page.tables import interval_cell
+from diagnostics.page.wording import joined, percent, percent_limits, signed, signed_limits
+from diagnostics.statistics.judgement import RMS_ALONE, TITLES, Judged
+from diagnostics.training.training import Training
 
 
 def detection_blocks(training: Training) -> list[str]:

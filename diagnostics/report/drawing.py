@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from diagnostics.feature_table import FeatureMatrix
-from diagnostics.judgement import TITLES
+from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.page.provenance import without_path
+from diagnostics.page.style import state_colours
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures, stiffness_figures, vibration_figures
-from diagnostics.report.examples import HEALTHY, example_set, strongest_harmonic
-from diagnostics.report.provenance import without_path
-from diagnostics.report.style import state_colours
-from diagnostics.separability import Separability
-from diagnostics.studies import Studies
-from diagnostics.training import Training
+from diagnostics.report.examples import example_set
+from diagnostics.signal.order_spectrum import strongest_harmonic
+from diagnostics.statistics.judgement import TITLES
+from diagnostics.statistics.separability import Separability
+from diagnostics.training.studies import Studies
+from diagnostics.training.training import Training
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.assessment.assessment import SIZES, Records
-from diagnostics.assessment.detectable_size import detection_curve
-from diagnostics.assessment.indicator_result import IndicatorResult
-from diagnostics.assessment.noise_curve import NoiseCurve
-from diagnostics.assessment.paired_differences import HEALTHY
-from diagnostics.feature_table import FeatureMatrix
-from diagnostics.report.style import fault_colours, new_figure, state_ticks
+from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.page.style import fault_colours, new_figure, state_ticks
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.statistics.assessment import SIZES, Records
+from diagnostics.statistics.detectable_size import detection_curve
+from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.noise_curve import NoiseCurve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,24 +10,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.assessment.assessment import AssessmentSettings, Records, assessment, result_table, shared_records
-from diagnostics.assessment.indicator_result import IndicatorResult
-from diagnostics.assessment.noise_curve import NoiseCurve, noise_curve
-from diagnostics.assessment.paired_differences import HEALTHY
-from diagnostics.damage_kind import damage_kinds
-from diagnostics.extras import require_packages
-from diagnostics.feature_table import write_table
-from diagnostics.indicator_table import IndicatorTable
+from diagnostics.base.extras import require_packages
+from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.definition import base_name
-from diagnostics.progress import Stage, silent_stage
-from diagnostics.realism import meaning_of_scores
-from diagnostics.report import html, indicator_figures, indicator_tables
+from diagnostics.indicators.feature_table import write_table
+from diagnostics.indicators.indicator_table import IndicatorTable
+from diagnostics.page import html
+from diagnostics.page.provenance import provenance
+from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.tables import set_table
+from diagnostics.page.wording import percent
+from diagnostics.records.damage_kind import damage_kinds
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
-from diagnostics.report.provenance import provenance
 from diagnostics.report.report import clipping_notes, states
-from diagnostics.report.style import png_bytes, styled
-from diagnostics.report.tables import set_table
-from diagnostics.report.wording import percent
+from diagnostics.statistics.assessment import AssessmentSettings, Records, assessment, result_table, shared_records
+from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.noise_curve import NoiseCurve, noise_curve
+from diagnostics.training.realism import meaning_of_scores
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

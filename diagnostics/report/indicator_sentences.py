@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from diagnostics.assessment.indicator_result import IndicatorResult
-from diagnostics.assessment.multiple_tests import smallest_paired_p
+from diagnostics.page.wording import counted, limits, percent
 from diagnostics.report.indicator_tables import size_text
-from diagnostics.report.wording import counted, limits, percent
+from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.multiple_tests import smallest_paired_p
 
 SIGNIFICANT = 0.05
 FEWEST_SPECIMENS = 3

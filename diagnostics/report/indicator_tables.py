@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from diagnostics.assessment.indicator_result import IndicatorResult
-from diagnostics.evaluation import Interval
 from diagnostics.indicators.definition import base_name
 from diagnostics.indicators.definitions import BY_NAME, DEFINITIONS
-from diagnostics.report.html import Cell, table
+from diagnostics.page.html import Cell, table
+from diagnostics.page.tables import interval_cell
 from diagnostics.report.indicator_figures import CAUSES
-from diagnostics.report.tables import interval_cell
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.indicator_result import IndicatorResult
 
 ARROWS = {1: "rises", -1: "falls"}
 

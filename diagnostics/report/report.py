@@ -11,23 +11,24 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.extras import missing_packages, require_packages
-from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_settings, write_table
-from diagnostics.judgement import TITLES
-from diagnostics.network_training import NetworkOptions
-from diagnostics.progress import Stage, silent_stage
-from diagnostics.report import html, tables
+from diagnostics.base.extras import missing_packages, require_packages
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_settings, write_table
+from diagnostics.page import html, tables
+from diagnostics.page.provenance import provenance, without_path
+from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.wording import counted
+from diagnostics.release.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.detection_tables import detection_blocks
 from diagnostics.report.drawing import Drawing, draw
-from diagnostics.report.provenance import provenance, without_path
 from diagnostics.report.sentences import area_sentence, summary
-from diagnostics.report.style import png_bytes, styled
-from diagnostics.report.wording import counted
-from diagnostics.separability import Separability, separability, separability_table
-from diagnostics.studies import Studies, run_studies, studies_metrics
-from diagnostics.training import OtherSet, Training, save_models, train_models, training_metrics
-from diagnostics.training_sets import other_table, set_table
+from diagnostics.statistics.judgement import TITLES
+from diagnostics.statistics.separability import Separability, separability, separability_table
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.studies import Studies, run_studies, studies_metrics
+from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
+from diagnostics.training.training_sets import other_table, set_table
 from siggen.errors import DatasetError
 
 SECTIONS = (

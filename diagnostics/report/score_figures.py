@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.feature_table import FeatureMatrix
-from diagnostics.judgement import TITLES, Judged
-from diagnostics.learning_curve import CurvePoint
-from diagnostics.report.style import new_figure, state_ticks
-from diagnostics.separability import Separability
-from diagnostics.training import Training
+from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.page.style import new_figure, state_ticks
+from diagnostics.statistics.judgement import TITLES, Judged
+from diagnostics.statistics.separability import Separability
+from diagnostics.training.learning_curve import CurvePoint
+from diagnostics.training.training import Training
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

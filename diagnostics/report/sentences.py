@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.comparison import SATURATED, Comparison
-from diagnostics.evaluation import Interval, error_share_limit
-from diagnostics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
-from diagnostics.realism import meaning_of_scores
-from diagnostics.report.wording import counted, decimal, joined, limits, percent, percent_limits, signed, signed_limits
-from diagnostics.separability import Separability
-from diagnostics.training import Training
+from diagnostics.page.wording import counted, decimal, joined, limits, percent, percent_limits, signed, signed_limits
+from diagnostics.statistics.comparison import SATURATED, Comparison
+from diagnostics.statistics.evaluation import Interval, error_share_limit
+from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
+from diagnostics.statistics.separability import Separability
+from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.training import Training
 
 CHANCE_MARGIN = 0.1
 """A mean macro-AUROC under permuted labels that is farther from 0.5 than this is called suspicious."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.report.style import SLANTED, new_figure, state_ticks
+from diagnostics.page.style import SLANTED, new_figure, state_ticks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

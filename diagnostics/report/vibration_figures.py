@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.report.examples import Example, ExampleSet, OrderSpectrum
-from diagnostics.report.style import GEAR_COLOUR, PINION_COLOUR, new_figure
+from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, new_figure
+from diagnostics.report.examples import Example, ExampleSet
+from diagnostics.signal.order_spectrum import OrderSpectrum
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.features import FeatureSettings
-from diagnostics.prediction.log_features import log_values
+from diagnostics.indicators.features import FeatureSettings
+from diagnostics.release.log_features import log_values
 from diagnostics.prediction.record_pieces import at_rate, record_pieces
-from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
-from diagnostics.recording import recordings
+from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
+from diagnostics.records.recording import recordings
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.splits import SpecimenSplit
+from diagnostics.training.splits import SpecimenSplit
 
 GEARBOXES = (12, 36, 96)
 DRAWS = 8

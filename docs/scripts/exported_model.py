@@ -102,9 +102,9 @@ def integrate(model, times):
 
 def compare(config, overrides, samples=600, record=0):
     """Return times [s], then approach [m] and mesh force [N] by siggen and by scipy."""
-    from siggen.exported_model import exported_model, write_model
-    from siggen.loading import load_config
-    from siggen.record_internals import internals_table
+    from siggen.views.exported_model import exported_model, write_model
+    from siggen.checks.loading import load_config
+    from siggen.record.internals import internals_table
 
     loaded = load_config(config, [*overrides, f"duration_s={samples / 51200}"])
     with tempfile.TemporaryDirectory() as folder:

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from siggen.cli.flank_figure import save_flank_figure
+from siggen.views.flank_figure import save_flank_figure
 from siggen.config import Config
-from siggen.dataset.specimen import draw_specimen
-from siggen.flank_views import flank_damage_table, flank_views
-from siggen.gears import contact_length_loss
-from siggen.gears.damage import pits_of
-from siggen.loading import load_config
-from siggen.specimen_physics import gear_pair
-from siggen.state_damage import state_damage
-from siggen.stiffness_curves import StiffnessCurve, stiffness_curves
+from siggen.planning.specimen import draw_specimen
+from siggen.views.flank_views import flank_damage_table, flank_views
+from siggen.gears.stiffness.sections import contact_length_loss
+from siggen.gears.damage.flank_damage import pits_of
+from siggen.checks.loading import load_config
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.damage import state_damage
+from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 PAPER = "configs/paper_a.yaml"

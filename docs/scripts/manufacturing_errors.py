@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from siggen.config import Config
-from siggen.dataset.plan import planned_record
-from siggen.dataset.specimen import draw_specimen
-from siggen.loading import load_config
-from siggen.simulation import record_response, specimen_state
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.checks.loading import load_config
+from siggen.record.simulation import record_response, specimen_state
 
 PINION, GEAR = 47, 18
 """Revolutions in the hunting period, which a record lasts: the lines of both shafts are bins of its spectrum."""

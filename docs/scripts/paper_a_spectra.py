@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from siggen.loading import load_config
-from siggen.simulation import simulate_specimen
+from siggen.checks.loading import load_config
+from siggen.record.simulation import simulate_specimen
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 SHAFT_HZ, TEETH = 30, 18

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from siggen.config import read_yaml
-from siggen.dataset.plan import planned_record
-from siggen.dataset.specimen import draw_specimen
-from siggen.internal_quantities import internal_quantities
-from siggen.loading import load_config
-from siggen.natural_modes import kinetic_shares, specimen_modes
-from siggen.simulation import record_response, specimen_state
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.record.quantities import internal_quantities
+from siggen.checks.loading import load_config
+from siggen.views.natural_modes import kinetic_shares, specimen_modes
+from siggen.record.simulation import record_response, specimen_state
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 CONFIG = Path(__file__).resolve().parents[2] / "configs" / "paper_b.yaml"

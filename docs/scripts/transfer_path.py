@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 from siggen.config.config import Config
-from siggen.loading import load_config
-from siggen.measured_response import INPUTS
+from siggen.checks.loading import load_config
+from siggen.specimen.measured_path import INPUTS
 from siggen.sensing.modal_path import modal_accelerance
-from siggen.simulation import simulate
-from siggen.specimen_housing import specimen_housing
+from siggen.record.simulation import simulate
+from siggen.specimen.housing import specimen_housing
 
 GEARBOXES, SPREAD_GEARBOXES, SENSORS = 5, 150, 12
 HEALTHY_ROW = 1

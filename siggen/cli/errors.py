@@ -24,10 +24,10 @@ def errors(
 
     Deviations are positive where material is missing. Example: siggen errors set.yaml --out e.csv --png e.png
     """
-    from siggen.cli.picture_file import check_picture_file
+    from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.loading import load_config
-    from siggen.tooth_deviations import deviation_table, gear_charts
+    from siggen.views.picture_file import check_picture_file
+    from siggen.views.tooth_deviations import deviation_table, gear_charts
 
     check_table_file(out)
     if png is not None:
@@ -35,7 +35,7 @@ def errors(
     charts = gear_charts(load_config(config, overrides or ()), specimen, state)
     write_table_file(deviation_table(charts), out)
     if png is not None:
-        from siggen.cli.error_figure import save_error_figure
+        from siggen.views.error_figure import save_error_figure
 
         save_error_figure(charts, png)
     typer.echo(str(out))

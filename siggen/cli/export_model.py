@@ -21,7 +21,7 @@ def export_model(
     Example: siggen export-model configs/paper_a.yaml --record 1 --out model.npz
     """
     from siggen.cli.record_choice import chosen_config
-    from siggen.exported_model import check_model_file, exported_model, write_model
+    from siggen.views.exported_model import check_model_file, exported_model, write_model
 
     check_model_file(out)
     config = chosen_config(source, record, overrides or ())

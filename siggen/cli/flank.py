@@ -25,11 +25,11 @@ def flank(
 
     Example: siggen flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
     """
-    from siggen.cli.picture_file import check_picture_file
+    from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
     from siggen.errors import UsageError
-    from siggen.flank_views import flank_damage_table, flank_views
-    from siggen.loading import load_config
+    from siggen.views.flank_views import flank_damage_table, flank_views
+    from siggen.views.picture_file import check_picture_file
 
     check_table_file(out)
     usable = load_config(config, overrides or ())
@@ -41,7 +41,7 @@ def flank(
             raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png")
     write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
     if png is not None:
-        from siggen.cli.flank_figure import save_flank_figure
+        from siggen.views.flank_figure import save_flank_figure
 
         save_flank_figure(views, png)
     typer.echo(str(out))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from siggen.generation import Generation
+    from siggen.sets.generation import Generation
 
 LISTED_FAILURES = 10
 
@@ -33,9 +33,9 @@ def generate(
 
     Example: siggen generate configs/quickstart.yaml --out sets/quickstart
     """
+    from siggen.checks.loading import load_config
     from siggen.errors import EXIT_RECORDS_FAILED
-    from siggen.generation import generate as generate_set
-    from siggen.loading import load_config
+    from siggen.sets.generation import generate as generate_set
 
     loaded = load_config(config, overrides or ())
     with _progress() as show:

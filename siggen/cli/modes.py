@@ -10,7 +10,7 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from siggen.natural_modes import SpecimenModes
+    from siggen.views.natural_modes import SpecimenModes
 
 
 def modes(
@@ -26,12 +26,12 @@ def modes(
 
     Example: siggen modes configs/paper_b.yaml --out modes.csv --png modes.png
     """
+    from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.loading import load_config
 
     if out is not None:
         check_table_file(out)
-    from siggen.natural_modes import specimen_modes
+    from siggen.views.natural_modes import specimen_modes
 
     found = specimen_modes(load_config(config, overrides or ()), specimen)
     from rich.console import Console
@@ -41,7 +41,7 @@ def modes(
         write_table_file(found.table, out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.cli.modes_figure import save_modes_figure
+        from siggen.views.modes_figure import save_modes_figure
 
         save_modes_figure(found, png)
         typer.echo(str(png))
@@ -51,7 +51,7 @@ def _printed(found: SpecimenModes) -> Table:
     """Return frequency, share of the mesh and the two degrees of freedom that hold most of the kinetic energy."""
     from rich.table import Table
 
-    from siggen.natural_modes import kinetic_shares
+    from siggen.views.natural_modes import kinetic_shares
 
     table = Table(title=f"natural modes at a mesh stiffness of {found.mesh_stiffness_n_per_m:.3g} N/m")
     for name in ("mode", "frequency [Hz]", "mesh strain energy [%]"):

@@ -10,7 +10,7 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from siggen.path_curves import PathCurves
+    from siggen.views.path_curves import PathCurves
 
 
 def path(
@@ -29,12 +29,12 @@ def path(
 
     Example: siggen path configs/transfer_path.yaml --png path.png
     """
+    from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.loading import load_config
 
     if out is not None:
         check_table_file(out)
-    from siggen.path_curves import path_curves
+    from siggen.views.path_curves import path_curves
 
     found = path_curves(load_config(config, overrides or ()), specimen)
     from rich.console import Console
@@ -44,7 +44,7 @@ def path(
         write_table_file(found.table, out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.cli.path_figure import save_path_figure
+        from siggen.views.path_figure import save_path_figure
 
         save_path_figure(found, png)
         typer.echo(str(png))

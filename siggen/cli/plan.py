@@ -29,7 +29,7 @@ def plan(
 
     from rich.console import Console
 
-    from siggen.loading import load_config
+    from siggen.checks.loading import load_config
 
     summary = plan_summary(load_config(config, overrides or ()))
     if as_json:
@@ -45,11 +45,11 @@ def plan(
 
 def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
-    from siggen.contact_notes import contact_notes
-    from siggen.dataset.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
-    from siggen.specimen_physics import model_notes
-    from siggen.stiffness_curves import table_error_text
-    from siggen.variation_notes import reversal_notes, variation_notes
+    from siggen.checks.contact_notes import contact_notes
+    from siggen.checks.variation_notes import reversal_notes, variation_notes
+    from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
+    from siggen.specimen.gears import model_notes
+    from siggen.views.stiffness_curves import table_error_text
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}

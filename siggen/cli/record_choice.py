@@ -18,8 +18,8 @@ def chosen_config(source: Path, record: int, overrides: Sequence[str]) -> Config
     UsageError
         If it has no such record.
     """
+    from siggen.checks.loading import load_config
     from siggen.errors import UsageError, counted
-    from siggen.loading import load_config
 
     config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
     count = config.specimens * config.records_per_specimen

@@ -11,8 +11,8 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from siggen.columns.record import Channel
     from siggen.dataset.reading import Dataset
-    from siggen.dataset.record import Channel
 
 
 def show(
@@ -30,7 +30,7 @@ def show(
     dataset = open_set(folder)
     found = dataset.record(record)
     if png is not None:
-        from siggen.cli.record_figure import save_record_figure
+        from siggen.views.record_figure import save_record_figure
 
         save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
         typer.echo(str(png))

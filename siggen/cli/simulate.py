@@ -28,7 +28,7 @@ def simulate(
 
     check_table_file(out)
     config = chosen_config(source, record, overrides or ())
-    from siggen.record_internals import internals_table
+    from siggen.record.internals import internals_table
 
     write_table_file(internals_table(config, record, internals=internals), out)
     typer.echo(str(out))

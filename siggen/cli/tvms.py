@@ -35,11 +35,11 @@ def tvms(
 
     Example: siggen tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
     """
-    from siggen.cli.stiffness_figure import check_picture_file, save_stiffness_figure
+    from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.loading import load_config
-    from siggen.specimen_physics import model_notes
-    from siggen.stiffness_curves import curve_table, stiffness_curves, table_error_text
+    from siggen.specimen.gears import model_notes
+    from siggen.views.stiffness_curves import curve_table, stiffness_curves, table_error_text
+    from siggen.views.stiffness_figure import check_picture_file, save_stiffness_figure
 
     check_table_file(out)
     if png is not None:

@@ -23,8 +23,8 @@ def verify(
     from dataclasses import asdict
 
     from siggen.errors import EXIT_MISMATCH, counted
-    from siggen.verification import problem_lines
-    from siggen.verification import verify as verify_set
+    from siggen.sets.verification import problem_lines
+    from siggen.sets.verification import verify as verify_set
 
     found = verify_set(folder, sample)
     if as_json:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 import yaml
 
-from siggen.dataset.internals import internals_schema
+from siggen.columns.internals import internals_schema
+from siggen.columns.record import SCHEMA_VERSION, Column, channels, damage_schema, record_schema
 from siggen.dataset.manifest import SPLITS
-from siggen.dataset.record import SCHEMA_VERSION, Column, channels, damage_schema, record_schema
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
 

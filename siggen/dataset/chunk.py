@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.dataset.internals import internals_batch
-from siggen.dataset.record import Column, Record, RecordFailure, non_finite, record_batch
+from siggen.columns.internals import internals_batch
+from siggen.columns.record import Column, Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 Simulate = Callable[["Config", Sequence[int]], Sequence[Record | RecordFailure]]
-"""(config, ids of one specimen's records) -> results in the same order, as `siggen.simulation.simulate_specimen`."""
+"""(config, ids of one specimen's records) -> results in the same order, as `simulate_specimen` of siggen.record."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from siggen.columns.record import damage_schema, label_schema
 from siggen.dataset.manifest import DAMAGE_FOLDER, METADATA_FOLDER
-from siggen.dataset.record import damage_schema, label_schema
 from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 DamageRows = Callable[["Config", int], Sequence[Mapping[str, object]]]
-"""(config, record_id) -> rows of the damage table for one record, as `siggen.simulation.damage_rows` gives them."""
+"""(config, record_id) -> rows of the damage table for one record, as siggen.record gives them."""
 
 GROUP_ROWS = 4096
 """Rows per row group; a few MB of labels or outlines."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from siggen.dataset.record import SCHEMA_VERSION
+from siggen.columns.record import SCHEMA_VERSION
 from siggen.dataset.sidecar import Sidecar, json_bytes
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError

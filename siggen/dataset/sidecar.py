@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
-from siggen.dataset.record import SCHEMA_VERSION, RecordFailure
+from siggen.columns.record import SCHEMA_VERSION, RecordFailure
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError

@@ -1,1 +1,1 @@
-"""Structure, mesh force and integrators."""
+"""Structure, drive, friction, mesh law and time integration of a gearbox."""

@@ -10,12 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import counted
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 LOWEST_HZ = 50.0
 """A measured response may begin up to here; below, the accelerance of anything on feet goes to zero."""

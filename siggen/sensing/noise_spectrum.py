@@ -8,10 +8,8 @@ construction, so that filters have no transient on it.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from siggen.arrays import ComplexArray
 
 
 def noise_spectrum(

@@ -7,10 +7,8 @@ Sources: second-order resonator 1 / (1 - x² + 2 i ζ x), x = f/f_0, and first-o
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from siggen.arrays import ComplexArray, FloatArray
 
 
 def resonance_response(frequency_hz: FloatArray, natural_hz: float, damping_ratio: float) -> ComplexArray:

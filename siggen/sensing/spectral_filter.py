@@ -7,10 +7,8 @@ end falls into the history, whose filtered values are thrown away. Exact if the 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from siggen.arrays import ComplexArray, FloatArray
 
 
 def filter_length(history: int, samples: int) -> int:

@@ -9,10 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from siggen.arrays import ComplexArray, FloatArray
 
 BLOCK_SAMPLES = 256
 """Samples whose cosines are taken once; about the square root of a record's length."""

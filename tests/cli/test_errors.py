@@ -10,11 +10,11 @@ import pyarrow.parquet
 import pytest
 from typer.testing import CliRunner
 
+from siggen.checks.loading import load_config
 from siggen.cli.app import app
-from siggen.cli.error_figure import error_figure
 from siggen.errors import UsageError
-from siggen.loading import load_config
-from siggen.tooth_deviations import gear_charts
+from siggen.views.error_figure import error_figure
+from siggen.views.tooth_deviations import gear_charts
 
 CLASS_6 = ["--set", "manufacture={accuracy_class: 6}"]
 runner = CliRunner()

@@ -12,13 +12,13 @@ import pytest
 from matplotlib.patches import Polygon
 from typer.testing import CliRunner
 
+from siggen.checks.loading import load_config
 from siggen.cli.app import app
-from siggen.cli.flank_figure import MOST_FLANKS, flank_figure
 from siggen.errors import UsageError
-from siggen.flank_views import flank_views
-from siggen.loading import load_config
+from siggen.views.flank_figure import MOST_FLANKS, flank_figure
+from siggen.views.flank_views import flank_views
 from tests.config.minimal import config
-from tests.test_damage_outline import polygon_area
+from tests.views.test_damage_outline import polygon_area
 
 runner = CliRunner()
 

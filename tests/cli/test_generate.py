@@ -12,10 +12,10 @@ from types import SimpleNamespace
 import pytest
 from typer.testing import CliRunner
 
-import siggen.generation
+import siggen.sets.generation
 from siggen.cli.app import app
+from siggen.columns.record import RecordFailure
 from siggen.config import yaml_text
-from siggen.dataset.record import RecordFailure
 from siggen.errors import EXIT_INTERRUPTED, EXIT_RECORDS_FAILED, EXIT_USAGE, DatasetError
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, simulate_with_failures, write_fake_set
 
@@ -36,7 +36,7 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         assert workers in (None, 1)
         return write_fake_set(out, loaded, simulation=chosen.function)
 
-    monkeypatch.setattr(siggen.generation, "generate", stand_in)
+    monkeypatch.setattr(siggen.sets.generation, "generate", stand_in)
     return chosen
 
 

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
-from siggen.cli.record_figure import SIDEBANDS, amplitude_spectrum, record_figure
 from siggen.dataset.reading import open as open_set
 from siggen.errors import UsageError
+from siggen.views.record_figure import SIDEBANDS, amplitude_spectrum, record_figure
 from tests.dataset.fake_set import write_fake_set
 
 

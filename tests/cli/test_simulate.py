@@ -9,10 +9,10 @@ import pyarrow.parquet
 import pytest
 from typer.testing import CliRunner
 
+from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.loading import load_config
-from siggen.simulation import simulate_specimen
+from siggen.record.simulation import simulate_specimen
 
 SET = ["--set", "duration_s=0.05", "--set", "specimens=1"]
 runner = CliRunner()

@@ -12,9 +12,9 @@ import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
-from siggen.cli.stiffness_figure import stiffness_figure
 from siggen.errors import UsageError
-from siggen.stiffness_curves import StiffnessCurve
+from siggen.views.stiffness_curves import StiffnessCurve
+from siggen.views.stiffness_figure import stiffness_figure
 
 runner = CliRunner()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-import siggen.simulation
+import siggen.record.simulation
 from siggen.cli.app import app
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from tests.dataset.fake_set import FAKE_FILES, simulate, write_fake_set
@@ -16,7 +16,7 @@ from tests.dataset.fake_set import FAKE_FILES, simulate, write_fake_set
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(siggen.simulation, "simulate_specimen", simulate)
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate)
     write_fake_set(tmp_path / "set")
     return tmp_path / "set"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from siggen.checks.loading import load_config
 from siggen.config import Manufacture, Uniform, parse
 from siggen.errors import ConfigError
-from siggen.loading import load_config
 from tests.config.minimal import config, minimal
 
 PAIRS = {"dynamics": {"integrator": "runge_kutta", "mesh": {"law": "pairs"}}}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from siggen.checks.loading import load_config
+from siggen.columns.record import label_names
 from siggen.config import parse
-from siggen.dataset.record import label_names
 from siggen.errors import ConfigError
-from siggen.loading import load_config
 from tests.config.minimal import config, minimal
 
 RANDOM = {"speed": {"random_rms": 0.003}}

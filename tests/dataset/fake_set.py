@@ -14,11 +14,11 @@ from unittest.mock import patch
 import numpy as np
 import pyarrow as pa
 
+from siggen.columns.record import Column, Record, RecordFailure
 from siggen.config import Config, parse
-from siggen.dataset import plan
-from siggen.dataset.plan import PlannedRecord, has_internals, planned_record
-from siggen.dataset.record import Column, Record, RecordFailure
-from siggen.generation import Generation, generate
+from siggen.planning import plan
+from siggen.planning.plan import PlannedRecord, has_internals, planned_record
+from siggen.sets.generation import Generation, generate
 
 STEP_M_S2 = 2.0**-6
 """Least power of two that covers 2 * 500 m/s^2 in 16 bits, as the converter of the configuration has it."""
@@ -104,7 +104,7 @@ QUANTITIES = (
 
 
 def quantities(config: Config) -> tuple[Column, ...]:
-    """Stand in for `siggen.record_internals.stored_quantities`."""
+    """Stand in for `siggen.record.internals.stored_quantities`."""
     return QUANTITIES
 
 
@@ -120,7 +120,7 @@ def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarr
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
-    """Stand in for `siggen.simulation.simulate_specimen`."""
+    """Stand in for `siggen.record.simulation.simulate_specimen`."""
     return [fake_record(config, planned_record(config, i)) for i in record_ids]
 
 
@@ -190,7 +190,7 @@ def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[Record |
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
-    """Stand in for `siggen.simulation.damage_rows`: one ellipse per pit."""
+    """Stand in for `siggen.record.simulation.damage_rows`: one ellipse per pit."""
     planned = planned_record(config, record_id)
     damage = config.states[planned.state_id].damage
     ellipse = {

@@ -8,7 +8,7 @@ import pytest
 
 from siggen.dataset.card_section import with_section, write_card_section
 from siggen.errors import DatasetError, VerificationError
-from siggen.verification import verify
+from siggen.sets.verification import verify
 from tests.dataset.fake_set import file_bytes, write_fake_set
 
 

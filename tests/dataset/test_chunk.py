@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dataset.chunk import Chunk, ChunkSimulation, chunks
-from siggen.dataset.plan import record_ids_of
 from siggen.errors import EngineError
+from siggen.planning.plan import record_ids_of
 from tests.dataset.fake_set import fake_config, simulate, simulate_none, simulate_with_a_bug, simulate_with_failures
 
 CONFIG = fake_config()

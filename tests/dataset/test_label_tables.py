@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from siggen.dataset.record import damage_schema, label_schema
+from siggen.columns.record import damage_schema, label_schema
 from tests.dataset.fake_set import damage_rows, fake_config, simulate_with_failures, write_fake_set
 
 CONFIG = fake_config()

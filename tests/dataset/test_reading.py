@@ -11,11 +11,11 @@ import pyarrow as pa
 import pytest
 import yaml
 
-from siggen.dataset.plan import planned_record, split_of
+from siggen.columns.record import signal_matrix
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
-from siggen.dataset.record import signal_matrix
 from siggen.errors import DatasetError, UsageError
+from siggen.planning.plan import planned_record, split_of
 from tests.dataset.fake_set import fake_config, fake_record, simulate_with_failures, write_fake_set
 
 CONFIG = fake_config()
@@ -126,7 +126,7 @@ def test_reading_loads_neither_physics_nor_the_configuration_model(folder: Path)
 import sys, siggen
 dataset = siggen.open(sys.argv[1])
 dataset.labels(), dataset.damage(), dataset.record(0), next(dataset.records())
-slow = {"numba", "scipy", "pydantic", "matplotlib", "pandas", "torch", "siggen.config", "siggen.dataset.plan"}
+slow = {"numba", "scipy", "pydantic", "matplotlib", "pandas", "torch", "siggen.config", "siggen.planning.plan"}
 print(sorted(slow & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)

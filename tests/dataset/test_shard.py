@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from siggen.columns.record import record_batch, record_schema, signal_matrix
 from siggen.dataset import shard
-from siggen.dataset.record import record_batch, record_schema, signal_matrix
 from siggen.dataset.shard import write_table
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError

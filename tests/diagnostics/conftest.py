@@ -155,7 +155,7 @@ def effectless() -> MemoryDataset:
 @pytest.fixture(scope="session")
 def features(dataset: MemoryDataset) -> pa.Table:
     """The feature table of the separable set."""
-    from diagnostics.feature_table import feature_table
+    from diagnostics.indicators.feature_table import feature_table
 
     return feature_table(dataset)
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.casing_structure import Bolts, Casing, casing_structure
-from siggen.dynamics.structure import Bearing, Coupling, Rotor, SpurStage, Structure
+from siggen.dynamics.structure.casing_structure import Bolts, Casing, casing_structure
+from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, SpurStage, Structure
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3e-3 * 18 * np.cos(PRESSURE_ANGLE)

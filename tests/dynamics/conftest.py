@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure import Bearing, Coupling, Rotor, SpurStage, Structure, eight_dof
-from siggen.gears.tables import MeshTables
+from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, SpurStage, Structure, eight_dof
+from siggen.gears.stiffness.mesh_tables import MeshTables
 
 PRESSURE_ANGLE = np.radians(20.0)
 BASE_RADIUS_1 = 0.5 * 3.5e-3 * 18 * np.cos(PRESSURE_ANGLE)

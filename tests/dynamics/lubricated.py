@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from siggen.dynamics.contact_kinematics import effective_modulus
-from siggen.dynamics.lubrication import LubricatedMesh
+from siggen.dynamics.friction.contact_kinematics import effective_modulus
+from siggen.dynamics.friction.lubrication import LubricatedMesh
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)

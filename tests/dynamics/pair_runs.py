@@ -6,16 +6,16 @@ from functools import cache
 
 import numpy as np
 
-from siggen.dynamics.equations import no_inputs
-from siggen.dynamics.friction import FrictionLaw
-from siggen.dynamics.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.pair_law import PairLaw, SqueezeFilm, pair_law
-from siggen.dynamics.pair_motion import PairMotion
-from siggen.dynamics.structure import Structure
-from siggen.gears.geometry import GearPair, SpurGear
-from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
-from siggen.gears.stiffness import StiffnessOptions
-from siggen.gears.tables import MeshTables, mesh_tables
+from siggen.dynamics.friction.friction import FrictionLaw
+from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import no_inputs
+from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
 
 RELIEF = TipRelief(8e-6, 0.25 * 8.856e-3)
 TORQUE = 30.0

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import radians
 
-from siggen.gears import GearPair, Pit, SpurGear
+from siggen.gears.damage.flank_damage import Pit
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 
 
 def spur_gear(teeth=18, module_m=3.5e-3, bore_radius_m=12.5e-3, profile_shift=0.0):

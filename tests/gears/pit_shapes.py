@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import sqrt
 
-from siggen.gears import GearPair, Pit
+from siggen.gears.damage.flank_damage import Pit
+from siggen.gears.geometry.gear_pair import GearPair
 
 
 def arc_of(pair: GearPair, which: str, position_m: float) -> float:

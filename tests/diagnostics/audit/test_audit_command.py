@@ -14,7 +14,7 @@ from diagnostics.audit import measured_set as measuring
 from diagnostics.audit.audit_report import CACHE
 from diagnostics.cli.app import main
 from siggen.dataset import reading
-from siggen.verification import verify
+from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, write_fake_set
 
 

@@ -11,7 +11,7 @@ from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import Detection
 from diagnostics.audit.separability_findings import verdict
-from diagnostics.evaluation import Interval
+from diagnostics.statistics.evaluation import Interval
 
 
 def detection(state: str, length_mm: float, auc: float) -> Detection:

@@ -20,7 +20,7 @@ from diagnostics.audit.detectability import (
 )
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import reference_records
-from diagnostics.evaluation import Interval
+from diagnostics.statistics.evaluation import Interval
 
 
 @pytest.fixture(scope="module")

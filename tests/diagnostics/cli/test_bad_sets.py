@@ -15,11 +15,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from diagnostics.cli.app import main
-from diagnostics.feature_table import table_notes
+from diagnostics.indicators.feature_table import table_notes
+from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.dataset.manifest import sealed
-from siggen.dataset.plan import planned_record
-from siggen.dataset.record import Record
+from siggen.planning.plan import planned_record
 from tests.dataset.fake_set import fake_config, fake_record, write_fake_set
 
 COMMANDS = {

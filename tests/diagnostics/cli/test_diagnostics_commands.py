@@ -15,9 +15,9 @@ import pytest
 import diagnostics.cli.app
 import siggen.cli.app
 from diagnostics.cli.app import main
-from diagnostics.recording import LABEL_NAMES, TACHO_NAME
+from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
+from siggen.columns.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
-from siggen.dataset.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
 from siggen.errors import UsageError
 
 
@@ -70,7 +70,9 @@ def test_unknown_suffix_is_refused_before_any_work(
 def test_missing_extra_names_the_line_that_installs_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("diagnostics.extras.missing_packages", lambda *names: ("torch",) if "torch" in names else ())
+    monkeypatch.setattr(
+        "diagnostics.base.extras.missing_packages", lambda *names: ("torch",) if "torch" in names else ()
+    )
     assert run(monkeypatch, "train", str(tmp_path), "--out", str(tmp_path / "m")) == 2
     assert "pip install 'siggen[cnn]'" in capsys.readouterr().err
 

@@ -10,7 +10,7 @@ import plain_indicators as plain
 import pytest
 from scipy.special import jv
 
-from diagnostics.channel_indicators import (
+from diagnostics.indicators.channel_indicators import (
     CEPSTRUM_BAND,
     ChannelIndicators,
     IndicatorSettings,
@@ -19,9 +19,9 @@ from diagnostics.channel_indicators import (
 )
 from diagnostics.indicators.definition import base_name
 from diagnostics.indicators.definitions import BY_NAME
-from diagnostics.shaft_signals import Shaft, record_shafts
+from diagnostics.indicators.state_history import history_indicators
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
-from diagnostics.state_history import history_indicators
+from diagnostics.signal.shaft_signals import Shaft, record_shafts
 
 TEETH, PER_TOOTH, FS_HZ = (18, 47), 128, 25_600.0
 Z, PER_TURN = TEETH[0], TEETH[0] * PER_TOOTH

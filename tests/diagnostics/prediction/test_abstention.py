@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from diagnostics.prediction.group_bound import group_bound
-from diagnostics.prediction.noise_floor import noise_floor, octaves_hz
-from diagnostics.prediction.training_distance import (
+from diagnostics.release.group_bound import group_bound
+from diagnostics.release.noise_floor import noise_floor, octaves_hz
+from diagnostics.release.training_distance import (
     calibrated_distance,
     distance_facts,
     distance_features,
     distance_from_facts,
 )
-from diagnostics.splits import SpecimenSplit
+from diagnostics.training.splits import SpecimenSplit
 
 FS_HZ = 12_800.0
 

@@ -9,11 +9,12 @@ from typing import Any
 
 import pytest
 
-from diagnostics.baselines import logistic_pipeline
 from diagnostics.cli.app import main
-from diagnostics.network_training import NetworkOptions
 from diagnostics.prediction.released_model import load_model
-from diagnostics.training import save_models, train_models
+from diagnostics.release.saved_models import save_models
+from diagnostics.training.baselines import logistic_pipeline
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.training import train_models
 from siggen.errors import UsageError
 
 
@@ -74,9 +75,9 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
 def test_a_network_of_another_model_is_refused(folder: Path) -> None:
     torch = pytest.importorskip("torch")
     pytest.importorskip("safetensors")
-    from diagnostics.cnn import WideKernelNetwork
-    from diagnostics.cnn_files import NetworkFile, save_network
-    from diagnostics.windows import WindowSettings
+    from diagnostics.loader.windows import WindowSettings
+    from diagnostics.training.cnn import WideKernelNetwork
+    from diagnostics.training.cnn_files import NetworkFile, save_network
 
     windows, channels = WindowSettings(teeth=18), ("bearing_vertical", "bearing_horizontal")
     torch.manual_seed(0)

@@ -13,15 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnostics.calibration import tempered
 from diagnostics.cli.app import main
-from diagnostics.network_training import NetworkOptions
-from diagnostics.prediction.distance_part import fit_part
-from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
-from diagnostics.training import save_models, train_models
+from diagnostics.release.distance_part import fit_part
+from diagnostics.release.model_facts import manifest_digest
+from diagnostics.release.saved_models import save_models
+from diagnostics.statistics.calibration import tempered
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.training import train_models
 from siggen.dataset.manifest import sealed
 from siggen.errors import UsageError
 
@@ -186,9 +187,9 @@ def test_distance_is_one_for_typical_records_whatever_the_speed_and_grows_off_th
 def test_onnx_gives_the_logits_of_torch(tmp_path: Path) -> None:
     onnxruntime = pytest.importorskip("onnxruntime")
     torch = pytest.importorskip("torch")
-    from diagnostics.cnn import WideKernelNetwork
-    from diagnostics.cnn_files import NetworkFile, export_onnx
-    from diagnostics.windows import WindowSettings
+    from diagnostics.loader.windows import WindowSettings
+    from diagnostics.training.cnn import WideKernelNetwork
+    from diagnostics.training.cnn_files import NetworkFile, export_onnx
 
     windows = WindowSettings(teeth=18)
     torch.manual_seed(0)

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.evaluation import Interval
 from diagnostics.prediction.prediction import Nearness, Vote
 from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
+from diagnostics.statistics.evaluation import Interval
 
 
 def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) -> Any:

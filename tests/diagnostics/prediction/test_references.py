@@ -16,15 +16,16 @@ import pytest
 from pyarrow import parquet
 from scipy.signal import resample_poly
 
-from diagnostics.calibration import fitted_temperature
-from diagnostics.classifier_file import load_classifier
 from diagnostics.cli.app import main
-from diagnostics.feature_table import FeatureMatrix, feature_matrix, feature_table
-from diagnostics.network_training import NetworkOptions
-from diagnostics.prediction.log_features import healthy_referenced, healthy_references, reference_speed_ratio
-from diagnostics.prediction.release import REFERENCED, release
-from diagnostics.splits import specimen_split
-from diagnostics.training import save_models, train_models
+from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_table
+from diagnostics.release.log_features import healthy_referenced, healthy_references, reference_speed_ratio
+from diagnostics.release.release import REFERENCED, release
+from diagnostics.release.saved_models import save_models
+from diagnostics.statistics.calibration import fitted_temperature
+from diagnostics.training.classifier_file import load_classifier
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.splits import specimen_split
+from diagnostics.training.training import train_models
 
 FS_HZ = 12_800
 

@@ -13,11 +13,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.assessment.assessment import AssessmentSettings
-from diagnostics.assessment.noise_curve import noise_curve
-from diagnostics.indicator_table import indicator_table
 from diagnostics.indicators.definitions import DEFINITIONS
+from diagnostics.indicators.indicator_table import indicator_table
 from diagnostics.report.indicator_report import kind_notes, write_indicator_report
+from diagnostics.statistics.assessment import AssessmentSettings
+from diagnostics.statistics.noise_curve import noise_curve
 
 SETTINGS = AssessmentSettings(resamples=60)
 

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from diagnostics.assessment.indicator_result import UNDEFINED, IndicatorResult, StateResult
-from diagnostics.evaluation import Interval
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
 from diagnostics.report.indicator_tables import undefined_html
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
 
 NAN = math.nan
 

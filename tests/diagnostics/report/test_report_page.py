@@ -14,11 +14,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
-from diagnostics.network_training import NetworkOptions
-from diagnostics.realism import meaning_of_scores
-from diagnostics.report.examples import OrderSpectrum, strongest_harmonic
-from diagnostics.report.provenance import without_path
+from diagnostics.page.provenance import without_path
 from diagnostics.report.report import write_report
+from diagnostics.signal.order_spectrum import OrderSpectrum, strongest_harmonic
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.realism import meaning_of_scores
 from siggen.errors import DatasetError
 
 

@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnostics.comparison import Comparison
-from diagnostics.evaluation import Interval
-from diagnostics.judgement import VALIDATION_AUROC
+from diagnostics.page.wording import counted, joined, percent, signed
 from diagnostics.report.sentences import (
     area_sentence,
     certainty_sentence,
@@ -23,8 +21,10 @@ from diagnostics.report.sentences import (
     summary,
     trust_sentence,
 )
-from diagnostics.report.wording import counted, joined, percent, signed
-from diagnostics.separability import Separability
+from diagnostics.statistics.comparison import Comparison
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import VALIDATION_AUROC
+from diagnostics.statistics.separability import Separability
 
 NAN = math.nan
 UNDEFINED = Interval(NAN, NAN, NAN)

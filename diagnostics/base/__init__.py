@@ -1,0 +1,1 @@
+"""What every room needs: seeds, progress, optional packages."""

@@ -1,0 +1,21 @@
+"""Streams of order-resampled windows for training: `WindowLoader` and `WindowStream`, loaded when first used."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from diagnostics.loader.window_index import StreamSettings
+    from diagnostics.loader.window_stream import WindowLoader, WindowStream
+
+__all__ = ["StreamSettings", "WindowLoader", "WindowStream"]
+
+_HOMES = {"StreamSettings": "window_index", "WindowLoader": "window_stream", "WindowStream": "window_stream"}
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name from the module that defines it."""
+    if name not in _HOMES:
+        raise AttributeError(f"diagnostics.loader has no {name!r}; it has {', '.join(__all__)}")
+    return getattr(import_module(f"diagnostics.loader.{_HOMES[name]}"), name)

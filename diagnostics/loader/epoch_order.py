@@ -1,0 +1,102 @@
+"""Who reads which window when: the windows of an epoch over ranks, workers, buffers and batches.
+
+Row groups are permuted; every rank takes an equal stretch of the windows in that order, every worker of it a stretch of
+whole batches, so that ranks differ by one window at most and batches come from the workers strictly in turn; what is
+decoded together is shuffled together. Pure: the same arguments give the same order on any machine. Source: derived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.base.seeding import Purpose, generator
+from siggen.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Which part of an epoch a reader has: rank of `world_size`, and worker of `workers` within the rank.
+
+    Raises
+    ------
+    UsageError
+        If a number is not below its count.
+    """
+
+    rank: int = 0
+    world_size: int = 1
+    worker: int = 0
+    workers: int = 1
+
+    def __post_init__(self) -> None:
+        for name, number, count in (
+            ("rank", self.rank, self.world_size),
+            ("worker", self.worker, self.workers),
+        ):
+            if not 0 <= number < count:
+                raise UsageError(f"{name}: received {number} of {count}; allowed are 0 to {count - 1}")
+
+
+@dataclass(frozen=True, slots=True)
+class Shuffling:
+    """How an epoch is mixed: seed, or None for the order of the files, and row groups that are shuffled together."""
+
+    seed: int | None = 0
+    buffer_groups: int = 4
+
+
+def rank_windows(windows: int, part: Part) -> tuple[int, int]:
+    """Return the first and the last but one position of the windows of a rank; ranks differ by one window at most."""
+    return windows * part.rank // part.world_size, windows * (part.rank + 1) // part.world_size
+
+
+def lane_sizes(windows: int, batch: int, workers: int) -> np.ndarray:
+    """Return how many windows every worker of a rank has, (workers,) int, if batch i comes from worker i % workers."""
+    sizes = np.full(-(-windows // batch), batch, dtype=np.int64)
+    if sizes.size:
+        sizes[-1] = windows - batch * (sizes.size - 1)
+    return np.bincount(np.arange(sizes.size) % workers, weights=sizes, minlength=workers).astype(np.int64)
+
+
+def epoch_chunks(group: np.ndarray, epoch: int, part: Part, batch: int, shuffling: Shuffling) -> list[np.ndarray]:
+    """Return the windows that one worker reads in an epoch, chunk by chunk.
+
+    Parameters
+    ----------
+    group : (n,) int
+        Row group of every window, ascending.
+    epoch : int
+        Another epoch, another order.
+    part : Part
+        Which reader.
+    batch : int
+        Windows of a batch.
+    shuffling : Shuffling
+        Seed and size of the buffer.
+
+    Returns
+    -------
+    list of (k,) int
+        Numbers of windows; a chunk needs `buffer_groups` row groups at most.
+    """
+    place = _group_places(int(group[-1]) + 1 if group.size else 0, epoch, shuffling)
+    sequence = np.argsort(place[group], kind="stable")
+    first, last = rank_windows(group.size, part)
+    ends = np.cumsum(lane_sizes(last - first, batch, part.workers))
+    start = int(ends[part.worker - 1]) if part.worker else 0
+    lane = sequence[first + start : first + int(ends[part.worker])]
+    buffer = place[group[lane]] // shuffling.buffer_groups
+    chunks = np.split(lane, np.flatnonzero(np.diff(buffer)) + 1) if lane.size else []
+    if shuffling.seed is None:
+        return chunks
+    rng = generator(shuffling.seed, Purpose.LOADER, epoch, 1 + part.rank, part.worker)
+    return [rng.permutation(chunk) for chunk in chunks]
+
+
+def _group_places(groups: int, epoch: int, shuffling: Shuffling) -> np.ndarray:
+    """Return at which place every row group comes; the same for all ranks and workers."""
+    if shuffling.seed is None:
+        return np.arange(groups)
+    return generator(shuffling.seed, Purpose.LOADER, epoch).permutation(groups)

@@ -1,0 +1,1 @@
+"""How a page looks and speaks: HTML, style, wording, tables, provenance."""

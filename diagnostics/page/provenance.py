@@ -1,0 +1,24 @@
+"""Where a page comes from, in words that are the same on every machine."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Any
+
+from diagnostics.page.wording import counted
+
+
+def provenance(dataset: Any, seed: int) -> str:
+    """Return what a reader needs to cite the page and to make it again: program, set, identity, seed."""
+    records = dataset.labels(columns=["record_id"]).num_rows
+    return (
+        f"Made by siggen-diagnostics {version('siggen')} with seed {seed} from the set {dataset.path.name}, identity "
+        f"{dataset.manifest['identity']}: {counted(records, 'record')} of {dataset.duration_s:g}\N{NO-BREAK SPACE}s in "
+        f"{counted(len(dataset.channels), 'channel')} at {dataset.fs_hz:g}\N{NO-BREAK SPACE}Hz. The identity names the "
+        "configuration; the same one gives the same records."
+    )
+
+
+def without_path(error: Exception, dataset: Any) -> str:
+    """Return an error's message for a page that others read: the set by its name, not by its place on this machine."""
+    return str(error).replace(str(dataset.path), dataset.path.name)

@@ -1,0 +1,123 @@
+"""Tables of a report: what the set holds, scores with intervals, every feature's separability."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from diagnostics.page.html import Cell, table
+from diagnostics.page.wording import counted
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import BOOSTING, TITLES
+from diagnostics.statistics.separability import Separability
+from diagnostics.training.training import Training
+
+
+def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
+    """Return records by state and split, and specimens by split."""
+    splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
+    rows = [
+        [
+            Cell(state),
+            *(Cell(str(int(((labels["state"] == state) & (labels["split"] == name)).sum()))) for name in splits),
+        ]
+        for state in classes
+    ]
+    count = [np.unique(labels["specimen_id"][labels["split"] == name]).size for name in splits]
+    rows.append([Cell("specimens (gearboxes)"), *(Cell(str(number)) for number in count)])
+    return table(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
+
+
+def score_table(training: Training) -> str:
+    """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
+    rows = []
+    for judged in training.judged:
+        permuted = float(judged.permuted_auroc.mean()) if judged.permuted_auroc.size else math.nan
+        rows.append(
+            [
+                Cell(TITLES[judged.name], _details(judged.name, judged.details)),
+                interval_cell(judged.scores.accuracy),
+                interval_cell(judged.scores.macro_auroc),
+                Cell(f"{permuted:.2f}" if math.isfinite(permuted) else "–", value=permuted),
+            ]
+        )
+    specimens = counted(training.judged[0].scores.specimens, "test specimen")
+    caption = (
+        f"Scores on {specimens} with 95 % limits from resampled specimens; macro-AUROC after training on permuted "
+        "labels (mean)."
+    )
+    head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def calibration_table(training: Training) -> str:
+    """Return what the probabilities of every classifier are worth without and with its temperature."""
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            Cell(f"{found.temperature:.2f}", value=found.temperature),
+            *(interval_cell(each) for each in (found.brier_before, found.brier, found.before, found.after)),
+            Cell(f"{found.honest:.2f}", value=found.honest),
+        ]
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    scores, classes = ("Brier score", "Calibration error"), len(training.judged[0].scores.classes)
+    head = [
+        *("Classifier", "T [-]"),
+        *(f"{score}, {which} T [-]" for score in scores for which in ("without", "with")),
+        "Calibration error if true [-]",
+    ]
+    caption = (
+        "Probabilities on test specimens without and with the temperature T from validation specimens (1 where it does "
+        "not help validation specimens left out of its fit), 95 % limits. Brier score: 0 is best, "
+        f"{1.0 - 1.0 / classes:.2f} is naming all classes equally probable. Expected calibration error: chance alone "
+        "makes it positive, the last column says how much for these probabilities (with T), were they true."
+    )
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def _details(name: str, details: dict[str, Any]) -> str:
+    if "strength" in details:
+        return f"{counted(details['features'], 'feature')}, {strength_text(name, details['strength'])}"
+    return (
+        f"windows of {details['revolutions_per_window']} pinion revolutions × "
+        f"{details['samples_per_revolution']} samples, "
+        f"epoch {details['best_epoch']} of {details['epochs']}"
+    )
+
+
+def strength_text(name: str, strength: float) -> str:
+    """Return what was chosen on validation specimens."""
+    return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"
+
+
+def separability_html(found: list[Separability]) -> str:
+    """Return all features, strongest first."""
+    states = list(dict.fromkeys(state for entry in found for state in entry.auc))
+    rows = [
+        [
+            Cell(entry.feature),
+            *(interval_cell(entry.auc[state]) for state in states),
+            interval_cell(entry.spearman, sign=True),
+            Cell(f"{100.0 * entry.defined_share:.0f}", value=entry.defined_share),
+        ]
+        for entry in found
+    ]
+    head = ["Feature", *(f"AUC, {state}" for state in states), "Spearman, damaged area", "Defined [%]"]
+    caption = (
+        "Every feature by itself, strongest first: AUC of each state against healthy, rank correlation with the "
+        "damaged area, share of records in which it is defined; 95 % limits from resampled specimens."
+    )
+    return table(head, rows, caption=caption, sortable=True, tall=True)
+
+
+def interval_cell(found: Interval, *, sign: bool = False) -> Cell:
+    """Return a value with its limits in small print."""
+    form = "+.2f" if sign else ".2f"
+    if not math.isfinite(found.value):
+        return Cell("undefined", value=math.nan)
+    limits = "" if math.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"
+    return Cell(f"{found.value:{form}}", limits, found.value)

@@ -1,0 +1,56 @@
+"""Numbers and lists as a sentence says them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from diagnostics.statistics.evaluation import Interval
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number with its noun, in the plural unless there is one."""
+    ending = "es" if noun.endswith(("x", "ss")) else "s"
+    return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else noun + ending}"
+
+
+def joined(parts: Sequence[str]) -> str:
+    """Return a list as text: a, b and c."""
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+
+
+def percent(value: float) -> str:
+    """Return a share as whole percent."""
+    return f"{100.0 * value:.0f}\N{NO-BREAK SPACE}%" if math.isfinite(value) else "undefined"
+
+
+def decimal(value: float) -> str:
+    """Return a number with two decimals."""
+    return f"{value:.2f}" if math.isfinite(value) else "undefined"
+
+
+def signed(value: float) -> str:
+    """Return a difference with two decimals and its sign; none before zero."""
+    text = f"{value:+.2f}"
+    return text[1:] if text[1:] == "0.00" else text.replace("-", "\N{MINUS SIGN}")
+
+
+def limits(found: Interval) -> str:
+    """Return the limits of a value, or why there are none."""
+    if math.isnan(found.low):
+        return "no interval from one specimen"
+    return f"{decimal(found.low)} to {decimal(found.high)}"
+
+
+def signed_limits(found: Interval) -> str:
+    """Return the limits of a difference, or why there are none."""
+    if math.isnan(found.low):
+        return "no interval from one specimen"
+    return f"{signed(found.low)} to {signed(found.high)}"
+
+
+def percent_limits(found: Interval) -> str:
+    """Return the limits of a share, or why there are none."""
+    if math.isnan(found.low):
+        return "no interval from one specimen"
+    return f"{percent(found.low)} to {percent(found.high)}"

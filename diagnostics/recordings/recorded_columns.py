@@ -1,0 +1,45 @@
+"""Columns: the columns of a recorded file by name, whatever its format."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """What a file holds.
+
+    Attributes
+    ----------
+    values : mapping of str to (n,) float64
+        Column by name; columns without a name are called by their position, from "1" on.
+    fs_hz : float or None
+        Sampling frequency where the file states it.
+    full_scale : bool
+        Whether values are shares of the recorder's full scale, as integer WAV files hold them.
+    """
+
+    values: Mapping[str, np.ndarray]
+    fs_hz: float | None = None
+    full_scale: bool = False
+
+
+def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:
+    """Return the columns of an array by position from 1 on: the longer axis is time; one alone has the prefix's name.
+
+    Raises
+    ------
+    ValueError
+        If the array is not one- or two-dimensional and real.
+    """
+    if array.dtype.kind not in "biuf" or array.ndim not in (1, 2):
+        raise ValueError(f"received {array.ndim} dimensions of {array.dtype}; allowed are one or two of real numbers")
+    rows = np.atleast_2d(array.astype(np.float64))
+    if array.ndim == 2 and rows.shape[0] > rows.shape[1]:
+        rows = rows.T
+    if len(rows) == 1:
+        return {prefix or "1": rows[0]}
+    return {f"{prefix}:{k}" if prefix else str(k): row for k, row in enumerate(rows, start=1)}

@@ -1,0 +1,157 @@
+"""Check of a whole set before features, classifiers or an audit: which records they cannot take, and the way out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from diagnostics.records.record_problems import (
+    LARGEST_CLIPPED_SHARE,
+    PROBLEMS_SHOWN,
+    clipped_share,
+    whole_record_problem,
+)
+from diagnostics.records.recording import Recording, recordings
+from siggen.errors import DatasetError
+
+RECORDS_SHOWN = 3
+CLIPPED = f"is clipped in more than {LARGEST_CLIPPED_SHARE:.1%} of the samples"
+CLIPPED_RECORDS = 0.05
+"""Share of clipped records of a channel up to which they are noted, not refused: single ones clip in real sets too."""
+
+
+class RecordCheck:
+    """Collects what is wrong with the records of a set, one after the other, and refuses them together."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[str, str], list[int]] = {}
+        self._clipped: dict[str, list[int]] = {}
+        self._count = 0
+
+    def usable(self, record: Recording) -> bool:
+        """Tell whether a record can be used, and remember why not; clipping alone is judged over the whole set."""
+        self._count += 1
+        number = int(record.labels["record_id"])
+        problems = _problems(record)
+        for key in problems:
+            self._found.setdefault(key, []).append(number)
+        for name, signal in record.channels.items():
+            if _varies(signal) and clipped_share(signal) > LARGEST_CLIPPED_SHARE:
+                self._clipped.setdefault(name, []).append(number)
+        return not problems
+
+    def finish(self, dataset: Any, *, can_leave_channels: bool = False) -> tuple[str, ...]:
+        """Return notes on single clipped records, which are used all the same.
+
+        Raises
+        ------
+        DatasetError
+            Naming channels, records and what to do, if some cannot be used or a channel is clipped throughout.
+        """
+        found = dict(self._found)
+        for name, records in self._clipped.items():
+            if len(records) > CLIPPED_RECORDS * self._count:
+                found[name, f"{CLIPPED} (range_m_s2 is too narrow)"] = records
+        if found:
+            raise DatasetError(_refusal(dataset, found, can_leave_channels))
+        return tuple(f"channel {name} {CLIPPED} in {_shown(records)}" for name, records in self._clipped.items())
+
+
+def check_records(dataset: Any, *, can_leave_channels: bool = False) -> tuple[str, ...]:
+    """Check that every record has known gears, a usable angle, and channels that are finite, vary and are not clipped.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    can_leave_channels : bool
+        Whether the command has `--channel`, which the message then offers.
+
+    Returns
+    -------
+    tuple of str
+        Notes on what is used all the same.
+
+    Raises
+    ------
+    DatasetError
+        As of `RecordCheck.finish`.
+    """
+    check = RecordCheck()
+    for record in recordings(dataset):
+        check.usable(record)
+    return check.finish(dataset, can_leave_channels=can_leave_channels)
+
+
+def check_states(dataset: Any) -> None:
+    """Check that a set has healthy and damaged records to compare.
+
+    Raises
+    ------
+    DatasetError
+        If one kind is missing.
+    """
+    labels = dataset.labels(columns=["fault", "state"])
+    healthy = [fault == "healthy" for fault in labels.column("fault").to_pylist()]
+    if any(healthy) and not all(healthy):
+        return
+    states = ", ".join(sorted(set(labels.column("state").to_pylist()))) or "no records"
+    missing = "damaged" if any(healthy) else "healthy"
+    raise DatasetError(
+        f"{dataset.path}: no {missing} records to rank indicators with; received the states {states}. Add a {missing} "
+        "state under `states` in the configuration and generate the set into a new folder; `siggen-diagnostics "
+        "features` writes the values alone."
+    )
+
+
+def _problems(record: Recording) -> list[tuple[str, str]]:
+    """Return (channel, what is wrong); an empty channel means the whole record."""
+    whole = whole_record_problem(record, gear_turns=False)
+    if whole:
+        return [("", whole)]
+    return [(name, text) for name, signal in record.channels.items() if (text := _channel_problem(signal))]
+
+
+def _channel_problem(signal: np.ndarray) -> str:
+    if not np.isfinite(signal).all():
+        return "holds values that are not finite"
+    return "" if _varies(signal) else "is constant"
+
+
+def _varies(signal: np.ndarray) -> bool:
+    return bool((signal != signal[0]).any())
+
+
+def _refusal(dataset: Any, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
+    lines = [
+        f"  channel {channel} {text} in {_shown(records)}" if channel else f"  {_shown(records)}: {text}"
+        for (channel, text), records in found.items()
+    ]
+    rest = len(lines) - PROBLEMS_SHOWN
+    more = [f"  and {rest} more"] if rest > 0 else []
+    return "\n".join(
+        [
+            f"{dataset.path}: records that cannot be used",
+            *lines[:PROBLEMS_SHOWN],
+            *more,
+            _way_out(dataset, found, can_leave_channels),
+        ]
+    )
+
+
+def _way_out(dataset: Any, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
+    broken = {channel for channel, _ in found}
+    usable = [channel.name for channel in dataset.channels if channel.name not in broken]
+    if can_leave_channels and usable and "" not in broken:
+        return f"Leave the channel out: {' '.join(f'--channel {name}' for name in usable)}"
+    return (
+        f"`siggen verify {dataset.path}` tells whether files were changed; else mend the set's config.yaml and "
+        "generate it into a new folder. `siggen-diagnostics indicators --leave-out` does without such records."
+    )
+
+
+def _shown(records: list[int]) -> str:
+    more = " ..." if len(records) > RECORDS_SHOWN else ""
+    listed = ", ".join(str(number) for number in records[:RECORDS_SHOWN])
+    return f"{len(records)} record(s) ({listed}{more})"

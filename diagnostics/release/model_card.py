@@ -1,0 +1,138 @@
+"""The card that goes with saved models: what they are, on what they were trained, what their scores mean."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import Judged
+from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.splits import SpecimenSplit
+from diagnostics.training.training import Training
+
+
+def model_card(training: Training, dataset: Any) -> str:
+    """Return the card as Markdown.
+
+    Parameters
+    ----------
+    training : Training
+        The judged classifiers.
+    dataset : siggen Dataset
+        The set they were trained on.
+    """
+    parts = [
+        f"# Gear fault classifiers trained on {dataset.path.name}",
+        meaning_of_scores(dataset.config),
+        "## Data",
+        _data(training, dataset),
+        "## Files",
+        _files(training),
+        "## Scores on test specimens",
+        _scores(training),
+        _probabilities(training),
+        "## Limits",
+        "Trained on simulated records only. Do not use the scores as an estimate of performance on measured records.",
+    ]
+    if training.notes:
+        parts += ["## Notes", "\n".join(f"* {note}" for note in training.notes)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _data(training: Training, dataset: Any) -> str:
+    count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
+    channels = ", ".join(f"{channel.name} [{channel.unit}]" for channel in dataset.channels)
+    return "\n".join(
+        [
+            f"* identity of the set: `{dataset.manifest['identity']}`",
+            f"* {class_text(training.split)}",
+            f"* specimens: {count}; no specimen is in two splits",
+            f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
+        ]
+    )
+
+
+def class_text(split: SpecimenSplit) -> str:
+    """Return the classes, and which states they hold where that is not one each."""
+    merged = {name: states for name, states in split.members.items() if len(states) > 1}
+    if not merged:
+        return f"states: {', '.join(split.classes)}"
+    held = "; ".join(f"{name}: records of {', '.join(states)}" for name, states in merged.items())
+    return f"classes: {', '.join(split.classes)} ({held})"
+
+
+def _files(training: Training) -> str:
+    lines = [
+        "* `classifier.skops`: medians for undefined values, standardisation, logistic regression "
+        f"(C = {training.classifier.strength:g}, chosen on validation specimens) on "
+        f"{len(training.classifier.features)} "
+        "indicators; `feature_names.json` lists them in order, with the settings of their definitions",
+    ]
+    if training.network:
+        facts = training.network.facts
+        windows = facts.windows
+        lines += [
+            f"* `cnn.safetensors`: 1-D network with a wide first layer, on windows of {windows.revolutions} pinion "
+            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles; input "
+            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2; normalisation is part of the network",
+            "* `cnn.onnx`: the same, input `windows`, output `logits`; average the class probabilities over "
+            "the windows "
+            f"of a record, {windows.hop_revolutions} revolutions apart",
+        ]
+    return "\n".join(lines)
+
+
+def _scores(training: Training) -> str:
+    titles = (
+        *("classifier", "accuracy", "balanced accuracy", "macro-AUROC", "detection AUROC"),
+        "macro-AUROC with permuted labels",
+    )
+    head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
+    first = training.judged[0].scores
+    return "\n".join([head, *(_row(found) for found in training.judged)]) + (
+        "\n\nIntervals: 95 %, bootstrap over test specimens. Always naming the most frequent class gives an accuracy "
+        f"of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}; both AUROC have 0.50 as "
+        "chance. Detection: healthy against all damaged records, by 1 - p(healthy)."
+    )
+
+
+def _row(found: Judged) -> str:
+    permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
+    scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
+    detected = interval_text(found.detection.every) if found.detection else "-"
+    cells = (found.name, *map(interval_text, scores), detected, permuted)
+    return f"| {' | '.join(cells)} |"
+
+
+def _probabilities(training: Training) -> str:
+    titles = (
+        *("classifier", "T", "Brier score without T", "Brier score with T"),
+        *("calibration error without T", "calibration error with T", "calibration error if true"),
+    )
+    rows = [
+        " | ".join(
+            [
+                judged.name,
+                f"{found.temperature:.2f}",
+                *map(interval_text, (found.brier_before, found.brier, found.before, found.after)),
+                f"{found.honest:.2f}",
+            ]
+        )
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
+    return "\n".join(lines) + (
+        "\n\nThe saved models give probabilities with T, which comes from validation specimens and is 1 where it does "
+        "not help those left out of its fit. Chance alone makes the calibration error positive: the last column is "
+        "what it would be on these records, were the probabilities (with T) true."
+    )
+
+
+def interval_text(found: Interval) -> str:
+    """Return value and limits with two decimals, or 'undefined'."""
+    if found.value != found.value:
+        return "undefined"
+    if found.low != found.low:
+        return f"{found.value:.2f} (no interval)"
+    return f"{found.value:.2f} [{found.low:.2f}, {found.high:.2f}]"

@@ -1,0 +1,178 @@
+"""What a released model says about itself: data, labels, channels, rates, and where its training records lie."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from diagnostics.release.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.splits import TEST
+from siggen.errors import UsageError
+
+FACTS_FILE = "model.json"
+FORMAT = "siggen-diagnostics model 3"
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFacts:
+    """A released model's own description.
+
+    Attributes
+    ----------
+    set_name, identity, manifest_digest : str
+        The set it was trained on: name, SHA-256 of its configuration, SHA-256 of its manifest (which holds the hash of
+        every file).
+    classes, channels : tuple of str
+        States and channel names, in the models' order.
+    unit : str
+        Unit of every channel.
+    fs_hz, duration_s : float
+        Rate and length of the training records.
+    teeth : tuple of (int, int)
+        Pairs of teeth that occur in training and validation, as all that follows: models never saw test records.
+    speed_range_hz, torque_range_nm : (float, float)
+        Operating points.
+    fewest_revolutions : int
+        Pinion revolutions of the shortest average.
+    reference_speed_ratio : float or None
+        Largest ratio, 1 or more, of the speeds of a record and of one it refers to; None without the
+        healthy-referenced variant.
+    """
+
+    set_name: str
+    identity: str
+    manifest_digest: str
+    classes: tuple[str, ...]
+    channels: tuple[str, ...]
+    unit: str
+    fs_hz: float
+    duration_s: float
+    teeth: tuple[tuple[int, int], ...]
+    speed_range_hz: tuple[float, float]
+    torque_range_nm: tuple[float, float]
+    fewest_revolutions: int
+    reference_speed_ratio: float | None = None
+
+
+def manifest_digest(manifest: dict[str, Any]) -> str:
+    """Return the SHA-256 of a manifest's content, the `digest` that `manifest.json` carries."""
+    content = json.dumps(manifest, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def model_facts(dataset: Any, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
+    """Return the facts of models trained on a set; ranges are those of its training and validation records.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set.
+    table : pyarrow.Table
+        Its feature table.
+    classes : tuple of str
+        States in the order of the models.
+    """
+    seen = table.filter(pc.not_equal(table.column("split"), TEST))
+
+    def column(name: str) -> np.ndarray:
+        return np.asarray(seen.column(name).to_pylist())
+
+    def limits(name: str) -> tuple[float, float]:
+        return float(column(name).min()), float(column(name).max())
+
+    pairs = {(int(a), int(b)) for a, b in zip(column("teeth_pinion"), column("teeth_gear"), strict=True)}
+    return ModelFacts(
+        set_name=str(dataset.manifest.get("name", dataset.path.name)),
+        identity=str(dataset.manifest["identity"]),
+        manifest_digest=manifest_digest(dataset.manifest),
+        classes=classes,
+        channels=tuple(channel.name for channel in dataset.channels),
+        unit=dataset.channels[0].unit,
+        fs_hz=float(dataset.fs_hz),
+        duration_s=float(dataset.duration_s),
+        teeth=tuple(sorted(pairs)),
+        speed_range_hz=limits("speed_hz"),
+        torque_range_nm=limits("torque_nm"),
+        fewest_revolutions=int(column("revolutions_pinion").min()),
+    )
+
+
+def write_facts(
+    facts: ModelFacts,
+    distance: TrainingDistance,
+    referenced: TrainingDistance | None,
+    scores: dict[str, Any],
+    folder: Path,
+) -> None:
+    """Write `model.json`."""
+    content = {
+        "format": FORMAT,
+        "facts": asdict(facts),
+        "scores": scores,
+        "distance": distance_facts(distance),
+        "referenced_distance": distance_facts(referenced) if referenced else None,
+    }
+    (folder / FACTS_FILE).write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:
+    """Read `model.json`: facts, distance, and the distance of the healthy-referenced variant where there is one.
+
+    Raises
+    ------
+    UsageError
+        If it is missing, damaged or of another format.
+    """
+    path = folder / FACTS_FILE
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content.get("format") != FORMAT:
+            raise ValueError(f"format {content.get('format')!r} instead of {FORMAT!r}")
+        facts = {name: _tuples(value) for name, value in content["facts"].items()}
+        referenced = content["referenced_distance"]
+        return (
+            ModelFacts(**facts),
+            distance_from_facts(content["distance"]),
+            distance_from_facts(referenced) if referenced else None,
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def read_accuracy(folder: Path) -> dict[str, Interval]:
+    """Read the accuracy of every classifier on the test specimens from `model.json`.
+
+    Raises
+    ------
+    UsageError
+        If it is missing or damaged.
+    """
+    path = folder / FACTS_FILE
+    try:
+        tested = json.loads(path.read_text(encoding="utf-8"))["scores"]["test"]
+        return {name: _interval(score["accuracy"]) for name, score in tested.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def _interval(numbers: dict[str, float | None]) -> Interval:
+    return Interval(**{name: math.nan if value is None else float(value) for name, value in numbers.items()})
+
+
+def _unusable(path: Path, error: Exception) -> UsageError:
+    return UsageError(
+        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics train` wrote with this version"
+    )
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(entry) for entry in value) if isinstance(value, list) else value

@@ -1,0 +1,61 @@
+"""The folder of all models of a training: classifiers, network, facts for recordings and card."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from diagnostics.indicators.feature_table import feature_settings
+from diagnostics.release.model_card import model_card
+from diagnostics.release.release import release, save_release
+from diagnostics.release.release_card import release_card
+from diagnostics.training.classifier_file import save_classifier
+from diagnostics.training.training import Training
+
+MODEL_FILES = (
+    *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
+    *("model.json", "referenced_classifier.skops", "referenced_feature_names.json"),
+)
+
+
+def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path) -> list[str]:
+    """Write all models and the model card into a folder; return notes on what could not be written.
+
+    Parameters
+    ----------
+    training : Training
+        What to save.
+    table : pyarrow.Table
+        The feature table; its settings go along.
+    dataset : siggen Dataset
+        Names the set in the card.
+    folder : Path
+        Created where missing.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
+        (folder / name).unlink(missing_ok=True)
+    identity, notes = set_identity(dataset), []
+    save_classifier(training.classifier, feature_settings(table), identity, folder)
+    if training.network:
+        from diagnostics.training.cnn_files import export_onnx, save_network
+
+        network, facts = training.network.trained.network, training.network.facts
+        save_network(network, facts, folder / "cnn.safetensors")
+        try:
+            export_onnx(network, facts, folder / "cnn.onnx")
+        except (RuntimeError, ImportError) as error:
+            notes.append(f"ONNX export failed: {error}")
+    released = release(training, table, dataset)
+    save_release(training, released, table, folder)
+    notes += [released.note] if released.note else []
+    card = f"{model_card(training, dataset)}\n{release_card(released)}"
+    (folder / "model_card.md").write_text(card, encoding="utf-8")
+    return notes
+
+
+def set_identity(dataset: Any) -> str:
+    """Return the identity of a set, a SHA-256 of its configuration."""
+    return str(dataset.manifest["identity"])

@@ -1,0 +1,243 @@
+"""Evaluation of every indicator in every channel of a set, in both designs, best first.
+
+Intervals: 95 %, bootstrap over specimens. Nothing is trained; but the direction of each indicator is read from the same
+specimens, and so is the place in the ranking: the best of many is optimistic, which the adjusted p-values account for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.indicators.indicator_table import IndicatorTable
+from diagnostics.indicators.state_history import histories
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.statistics.detectable_size import detection_curve, size_at
+from diagnostics.statistics.effect_size import cohens_d, paired_d
+from diagnostics.statistics.evaluation import LEVEL, Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
+from diagnostics.statistics.monotonicity import ladder_steps, monotonicity
+from diagnostics.statistics.multiple_tests import benjamini_hochberg, holm, paired_p, specimen_means, two_sample_p
+from diagnostics.statistics.paired_differences import PairedRecords, paired_records, shares_above
+from diagnostics.statistics.sensitivity import explained_share
+from diagnostics.statistics.separability import LARGEST_BLOCK, RESAMPLES, weighted_spearman
+
+DETECTION_SHARES = {"a50": 0.5, "a90": 0.9}
+SIZES = {"area_mm2": "damaged_area_mm2", "profile_mm": "damage_profile_length_mm"}
+
+
+@dataclass(frozen=True, slots=True)
+class AssessmentSettings:
+    """Seed and number of bootstrap resamples, and the rate of false alarms at which sizes are judged."""
+
+    seed: int = 0
+    resamples: int = RESAMPLES
+    false_alarms: float = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Records:
+    """What all indicators share: labels, states, bootstrap weights, pairs, steps of the ladders."""
+
+    labels: dict[str, np.ndarray]
+    states: tuple[str, ...]
+    weights: np.ndarray
+    pairs: PairedRecords
+    steps: tuple[np.ndarray, np.ndarray]
+
+    def interval(self, samples: np.ndarray, rows: np.ndarray) -> Interval:
+        """Return the interval of a statistic over these rows."""
+        return interval(samples, int(np.unique(self.labels["specimen_id"][rows]).size))
+
+
+def assessment(
+    table: IndicatorTable, settings: AssessmentSettings | None = None, advance: Callable[[], None] | None = None
+) -> list[IndicatorResult]:
+    """Return the results of every indicator and channel, best separation between other specimens first.
+
+    Parameters
+    ----------
+    table : IndicatorTable
+        All indicators of the set.
+    settings : AssessmentSettings, optional
+        Default: `AssessmentSettings()`.
+    advance : callable, optional
+        Called after every indicator.
+    """
+    chosen = settings or AssessmentSettings()
+    records = shared_records(table, chosen)
+    found = []
+    for column, name in enumerate(table.matrix.names):
+        found.append(_one(records, name, table.matrix.values[:, column], chosen))
+        if advance:
+            advance()
+    _adjust(found)
+    _add_sensor_shares(table, found)
+    return sorted(found, key=lambda result: (_last_if_nan(result.score_others.value), result.column))
+
+
+def shared_records(table: IndicatorTable, settings: AssessmentSettings) -> Records:
+    """Return what all indicators share."""
+    labels = table.matrix.labels
+    count = labels["specimen_id"].size
+    resamples = min(settings.resamples, max(50, LARGEST_BLOCK // count))
+    weights = bootstrap_weights(labels["specimen_id"], settings.seed, resamples)
+    order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
+    damaged = set(labels["state"][labels["fault"] != HEALTHY].tolist())
+    states = tuple(sorted(damaged, key=lambda state: order[state]))
+    return Records(labels, states, weights, paired_records(labels), ladder_steps(histories(labels)))
+
+
+def _one(records: Records, name: str, values: np.ndarray, settings: AssessmentSettings) -> IndicatorResult:
+    indicator, channel = name.split("__", 1)
+    others, other_samples = _other_specimens(records, values)
+    same, same_samples = _same_specimen(records, values)
+    direction = _direction(same) or _direction(others) or 1
+    rows = np.flatnonzero(np.isfinite(values))
+    area, stiffness = (
+        records.interval(weighted_spearman(values[rows], records.labels[label][rows], records.weights[:, rows]), rows)
+        for label in ("damaged_area_mm2", "mesh_stiffness_loss")
+    )
+    before, after = records.steps
+    rise = values[after] - values[before]
+    kept = np.isfinite(rise)
+    steps = monotonicity(rise[kept], records.weights[:, after[kept]])
+    result = IndicatorResult(
+        name, indicator, channel, direction, others, same,
+        _score(records, other_samples, direction), _score(records, same_samples, direction),
+        area, stiffness, records.interval(steps, after[kept]), float(np.mean(np.isfinite(values))),
+    )  # fmt: skip
+    result.sensitivity = _sensitivity(records.labels, values, channel)
+    result.detectable, result.smallest_size = _detectable(records, values * direction, settings.false_alarms)
+    return result
+
+
+def _other_specimens(records: Records, values: np.ndarray) -> tuple[dict[str, StateResult], list[np.ndarray]]:
+    """Return each state against all healthy records, and the bootstrap samples of its AUC."""
+    healthy, specimen = records.labels["fault"] == HEALTHY, records.labels["specimen_id"]
+    found, samples = {}, []
+    for state in records.states:
+        rows = np.flatnonzero(np.isfinite(values) & (healthy | (records.labels["state"] == state)))
+        weights, positive = records.weights[:, rows], ~healthy[rows]
+        area = weighted_auc(values[rows], positive, weights, specimen[rows])
+        effect = cohens_d(values[rows], positive, weights)
+        groups = [rows[~positive], rows[positive]]
+        p_value = two_sample_p(*(specimen_means(values[group], specimen[group]) for group in groups))
+        found[state] = StateResult(records.interval(area, rows), records.interval(effect, rows), p_value)
+        samples.append(area)
+    return found, samples
+
+
+def _same_specimen(records: Records, values: np.ndarray) -> tuple[dict[str, StateResult], list[np.ndarray]]:
+    """Return each state against the specimen's own healthy record, and the samples of the share that rises."""
+    pairs, specimen = records.pairs, records.labels["specimen_id"]
+    change = values[pairs.rows] - values[pairs.partners]
+    found, samples = {}, []
+    for state in records.states:
+        kept = np.isfinite(change) & (records.labels["state"][pairs.rows] == state)
+        rows, difference = pairs.rows[kept], change[kept]
+        weights = records.weights[:, rows]
+        share, effect = shares_above(difference, weights), paired_d(difference, weights)
+        p_value = paired_p(specimen_means(difference, specimen[rows])) if rows.size else math.nan
+        found[state] = StateResult(records.interval(share, rows), records.interval(effect, rows), p_value)
+        samples.append(share)
+    return found, samples
+
+
+def _direction(states: dict[str, StateResult]) -> int:
+    distance = [r.separation.value - 0.5 for r in states.values() if math.isfinite(r.separation.value)]
+    return int(np.sign(round(sum(distance), 12)))
+
+
+def _score(records: Records, samples: list[np.ndarray], direction: int) -> Interval:
+    """Return the mean separation over the states, turned by the direction."""
+    if not samples:
+        return UNDEFINED
+    mean = np.mean(samples, axis=0)
+    return records.interval(0.5 + direction * (mean - 0.5), np.arange(records.weights.shape[1]))
+
+
+def _adjust(found: list[IndicatorResult]) -> None:
+    """Adjust the p-values of each design for all indicators, channels and states."""
+    for design in ("others", "same"):
+        results = [result for entry in found for result in getattr(entry, design).values()]
+        p_values = np.array([result.p_value for result in results], dtype=np.float64)
+        for result, strict, mild in zip(results, holm(p_values), benjamini_hochberg(p_values), strict=True):
+            result.holm, result.false_discovery = float(strict), float(mild)
+
+
+def _sensitivity(labels: dict[str, np.ndarray], values: np.ndarray, channel: str) -> dict[str, float]:
+    """Return what explains the indicator in the healthy records of this channel."""
+    rows = np.flatnonzero(np.isfinite(values) & (labels["fault"] == HEALTHY))
+    causes = {"speed": "speed_hz", "load": "torque_nm", "noise": f"snr_{channel}_db", "specimen": "specimen_id"}
+    found = dict.fromkeys(causes, math.nan)
+    for cause, label in causes.items():
+        if label not in labels or not rows.size:
+            continue
+        usable = rows[np.isfinite(labels[label][rows])]
+        if usable.size:
+            found[cause] = explained_share(values[usable], labels[label][usable], groups=cause == "specimen")
+    return found
+
+
+def _add_sensor_shares(table: IndicatorTable, found: list[IndicatorResult]) -> None:
+    """Add what the sensor explains, over the healthy records of all channels together; one number per indicator."""
+    healthy = table.matrix.labels["fault"] == HEALTHY
+    by_name = {result.column: result for result in found}
+    place = {name: column for column, name in enumerate(table.matrix.names)}
+    for indicator in dict.fromkeys(result.indicator for result in found):
+        columns = [(c, f"{indicator}__{c}") for c in table.channels if f"{indicator}__{c}" in place]
+        values = np.concatenate([table.matrix.values[healthy, place[name]] for _, name in columns])
+        sensor = np.repeat([channel for channel, _ in columns], int(healthy.sum()))
+        kept = np.isfinite(values)
+        share = explained_share(values[kept], sensor[kept], groups=True) if kept.any() else math.nan
+        for _, name in columns:
+            by_name[name].sensitivity["sensor"] = share
+
+
+def _detectable(
+    records: Records, values: np.ndarray, false_alarms: float
+) -> tuple[dict[str, Interval], dict[str, float]]:
+    """Return the smallest sizes found, and the size of the smallest group of damage, by design and kind of size.
+
+    Between other specimens and, where healthy records are repeated, on the same one, from changes against its first.
+    """
+    pairs, fault = records.pairs, records.labels["fault"]
+    designs = {"others": (values, fault == HEALTHY, np.arange(values.size))}
+    if pairs.null_rows.size:
+        after = np.concatenate([pairs.rows, pairs.null_rows])
+        change = values[after] - values[np.concatenate([pairs.partners, pairs.null_partners])]
+        designs["same"] = (change, np.arange(after.size) >= pairs.rows.size, after)
+    found: dict[str, Interval] = {}
+    smallest: dict[str, float] = {}
+    for design, (judged, healthy, rows) in designs.items():
+        kept = np.isfinite(judged)
+        for size, label in SIZES.items():
+            if label not in records.labels:
+                continue
+            sizes, weights = records.labels[label][rows[kept]], records.weights[:, rows[kept]]
+            curve = detection_curve(judged[kept], healthy[kept], sizes, weights, false_alarms)
+            smallest[f"{design}_{size}"] = float(curve.size[0]) if curve else math.nan
+            for name, level in DETECTION_SHARES.items():
+                found[f"{design}_{size}_{name}"] = size_interval(size_at(curve, level)) if curve else UNDEFINED
+    return found, smallest
+
+
+def size_interval(samples: np.ndarray) -> Interval:
+    """Return size and limits; resamples that do not reach the share count as infinite."""
+    tail = 0.5 * (1.0 - LEVEL)
+    low, high = np.quantile(samples[1:], [tail, 1.0 - tail], method="nearest")
+    return Interval(float(samples[0]), float(low), float(high))
+
+
+def _last_if_nan(score: float) -> float:
+    return -score if math.isfinite(score) else math.inf
+
+
+def result_table(found: list[IndicatorResult]) -> pa.Table:
+    """Return all results as a table, one row per indicator and channel, in the order of the ranking."""
+    return pa.Table.from_pylist([{"rank": rank, **result.row()} for rank, result in enumerate(found, start=1)])

@@ -1,0 +1,1 @@
+"""Classifiers and the network, their scores and their files."""

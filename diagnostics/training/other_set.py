@@ -1,0 +1,73 @@
+"""Another set as the test: other gears, supports or paths than those that were trained on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.records.state_classes import HEALTHY, class_names
+from diagnostics.statistics.evaluation import Predictions
+from diagnostics.training.baselines import FeatureClassifier, state_index
+from diagnostics.training.network_training import TrainedNetworkFile
+from siggen.errors import UsageError
+
+OTHER_SPECIMENS = 1 << 40
+"""Added to specimen numbers of the other set where both sets are in one table: they share numbers, not gearboxes."""
+
+
+def check_other_set(dataset: Any, other: Any) -> None:
+    """Check that classifiers of a set can be judged on another one.
+
+    Raises
+    ------
+    UsageError
+        If channels, sampling rate or states differ, or both are the same set.
+    """
+    if dataset.manifest["identity"] == other.manifest["identity"]:
+        raise UsageError(f"--test {other.path}: is the set that is trained on; leave --test out, or give another set")
+    names = [tuple(channel.name for channel in found.channels) for found in (dataset, other)]
+    if names[0] != names[1]:
+        raise UsageError(
+            f"--test {other.path}: received the channels {', '.join(names[1])}; the classifiers take "
+            f"{', '.join(names[0])}. Generate it with the same `sensors`, or choose common ones with --channel."
+        )
+    if dataset.fs_hz != other.fs_hz:
+        raise UsageError(
+            f"--test {other.path}: received a sampling rate of {other.fs_hz:g} Hz; the classifiers were trained at "
+            f"{dataset.fs_hz:g} Hz, and indicators of another band are others. Generate it with `fs_hz: "
+            f"{dataset.fs_hz:g}`."
+        )
+    known, found = (_states(each) for each in (dataset, other))
+    if not found <= known:  # any healthy state belongs to the healthy class, whatever its name
+        raise UsageError(
+            f"--test {other.path}: has the states {', '.join(sorted(found - known))}, which training does not know; "
+            f"allowed are {', '.join(sorted(known))}. Name its states like those, or train on a set that has them."
+        )
+
+
+def _states(dataset: Any) -> set[str]:
+    """Return the states of a set, all healthy ones under one name."""
+    table = dataset.labels(columns=["state", "state_id", "fault"])
+    labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}
+    return set(class_names(labels, HEALTHY).tolist())
+
+
+def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> Predictions:
+    """Return uncalibrated predictions of the other set by a classifier on indicators."""
+    return replace(model, temperature=1.0).predict(matrix)
+
+
+def network_predictions_of(network: TrainedNetworkFile, other: Any, matrix: FeatureMatrix) -> Predictions:
+    """Return uncalibrated predictions of the other set by the network; its pinions may have other teeth."""
+    from diagnostics.loader.windows import order_records
+    from diagnostics.training.cnn import network_predictions
+
+    records = order_records(other)
+    trained = replace(network.trained, temperature=1.0)
+    every = np.arange(len(records.signals))
+    return network_predictions(
+        trained, records, every, state_index(matrix, trained.classes), matrix.labels["specimen_id"]
+    )

@@ -1,0 +1,185 @@
+"""What a split does to a score: the same windows and the same classifier, split in seven ways.
+
+Only the last rows ask what matters, an unseen gearbox on an unseen sensor or at an unseen speed; random windows put
+pieces of one record on both sides and are shown as what they are. Source: standard literature (grouped
+cross-validation); choice of splits derived.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.window_features import by_channel
+from diagnostics.statistics.evaluation import Predictions, Scores, bootstrap_weights, interval, macro_auroc, scores
+from diagnostics.training.baselines import logistic_pipeline, rms_features, state_index
+from diagnostics.training.other_set import OTHER_SPECIMENS
+
+FOLDS = 5
+SPEED_BANDS = 3
+RESAMPLES = 300
+Fold = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True, slots=True)
+class SplitScore:
+    """One way to split: what is held out, whether it leaks, scores by indicators and by RMS alone, and folds."""
+
+    title: str
+    leaky: bool
+    indicators: Scores
+    rms: Scores
+    folds: int
+
+
+def split_study(
+    windows: FeatureMatrix,
+    classes: tuple[str, ...],
+    seed: int,
+    other: FeatureMatrix | None = None,
+    advance: Callable[[], None] | None = None,
+) -> tuple[SplitScore, ...]:
+    """Return the scores of all splits that the set allows.
+
+    Parameters
+    ----------
+    windows : FeatureMatrix
+        Indicators of windows, from `window_matrix`.
+    classes : tuple of str
+        States in order.
+    seed : int
+        Seeds folds and bootstrap.
+    other : FeatureMatrix, optional
+        Windows of another set: trained on all of the first, tested on all of this.
+    advance : callable, optional
+        Called after every row.
+    """
+    single = by_channel(windows)
+    tasks = [(windows, *entry) for entry in _together(windows.labels, seed)]
+    tasks += [(single, *entry) for entry in _single(single.labels, seed)]
+    if other is not None:
+        tasks.append(_other(windows, other))
+    found = []
+    for matrix, title, leaky, folds in tasks:
+        if folds:
+            found.append(_score(matrix, classes, title, leaky, folds, seed))
+        if advance:
+            advance()
+    return tuple(found)
+
+
+def rows_of_study(other: bool) -> int:
+    """Return how often `split_study` calls `advance`."""
+    return 9 if other else 8
+
+
+def _together(labels: dict[str, np.ndarray], seed: int) -> list[tuple[str, bool, list[Fold]]]:
+    specimens = labels["specimen_id"]
+    every = np.arange(specimens.size)
+    bands = speed_bands(labels["speed_hz"].astype(np.float64))
+    return [
+        ("random windows (leaky)", True, held_out(_fold_of(every, seed))),
+        ("records", True, held_out(_fold_of(labels["record_id"], seed))),
+        ("specimens", False, held_out(_fold_of(specimens, seed))),
+        ("one speed band", True, held_out(bands)),
+        ("one speed band of other specimens", False, crossed(bands, _fold_of(specimens, seed))),
+    ]
+
+
+def _single(labels: dict[str, np.ndarray], seed: int) -> list[tuple[str, bool, list[Fold]]]:
+    _, channel = np.unique(labels["channel"], return_inverse=True)
+    fold = _fold_of(labels["specimen_id"], seed)
+    several = int(channel.max()) > 0
+    return [
+        ("single channel: specimens", False, held_out(fold)),
+        ("single channel: one sensor", True, held_out(channel) if several else []),
+        ("single channel: one sensor of other specimens", False, crossed(channel, fold) if several else []),
+    ]
+
+
+def _other(windows: FeatureMatrix, other: FeatureMatrix) -> tuple[FeatureMatrix, str, bool, list[Fold]]:
+    columns = other.columns(windows.names)
+    labels = {name: np.concatenate([windows.labels[name], columns.labels[name]]) for name in windows.labels}
+    second = np.repeat([False, True], [windows.values.shape[0], other.values.shape[0]])
+    labels["specimen_id"] = labels["specimen_id"] + OTHER_SPECIMENS * second
+    joined = FeatureMatrix(np.concatenate([windows.values, columns.values]), windows.names, labels)
+    return joined, "other set", False, [(~second, second)]
+
+
+def speed_bands(speed_hz: np.ndarray) -> np.ndarray:
+    """Return the speed band of every row, by thirds of the speeds; fewer where there are fewer speeds."""
+    limits = np.unique(np.quantile(speed_hz, np.arange(1, SPEED_BANDS) / SPEED_BANDS))
+    return np.unique(np.digitize(speed_hz, limits, right=True), return_inverse=True)[1]
+
+
+def _fold_of(group: np.ndarray, seed: int) -> np.ndarray:
+    """Return the fold of every row; rows of a group share it."""
+    members, index = np.unique(group, return_inverse=True)
+    return (generator(seed, Purpose.FOLDS).permutation(members.size) % min(FOLDS, members.size))[index]
+
+
+def held_out(part: np.ndarray) -> list[Fold]:
+    """Return one fold per part: trained on the others, tested on it; none where there is a single part."""
+    parts = np.unique(part)
+    return [(part != one, part == one) for one in parts] if parts.size > 1 else []
+
+
+def crossed(first: np.ndarray, second: np.ndarray) -> list[Fold]:
+    """Return one fold per pair of parts: tested where both are met, trained where neither is."""
+    folds = [
+        ((first != one) & (second != two), (first == one) & (second == two))
+        for one in np.unique(first)
+        for two in np.unique(second)
+    ]
+    return [(train, test) for train, test in folds if train.any() and test.any()]
+
+
+def _score(
+    matrix: FeatureMatrix, classes: tuple[str, ...], title: str, leaky: bool, folds: Sequence[Fold], seed: int
+) -> SplitScore:
+    alone = matrix.columns([*rms_features(matrix.names)] or ["rms"])
+    found = [fold_scores(*_out_of_fold(part, classes, folds), seed) for part in (matrix, alone)]
+    return SplitScore(title, leaky, found[0], found[1], len(folds))
+
+
+def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> Scores:
+    """Judge out-of-fold predictions with the macro-AUROC averaged over folds, never ranked across them.
+
+    A state that is rare in a fold is frequent in its training; ranked across folds, even a classifier that knows
+    nothing but these frequencies would fall below chance.
+    """
+    weights = bootstrap_weights(found.specimen, seed, RESAMPLES)
+    areas, sizes = [], []
+    for one in np.unique(fold):
+        mine = fold == one
+        part = Predictions(found.classes, found.truth[mine], found.probability[mine], found.specimen[mine])
+        areas.append(macro_auroc(part, weights[:, mine]))
+        sizes.append(weights[:, mine].sum(axis=1))
+    area, size = np.stack(areas), np.where(np.isfinite(areas), sizes, 0.0)
+    with np.errstate(invalid="ignore"):
+        mean = (np.nan_to_num(area) * size).sum(axis=0) / size.sum(axis=0)
+    specimens = int(np.unique(found.specimen).size)
+    return replace(scores(found, seed, RESAMPLES), macro_auroc=interval(mean, specimens))
+
+
+def _out_of_fold(
+    matrix: FeatureMatrix, classes: tuple[str, ...], folds: Sequence[Fold]
+) -> tuple[Predictions, np.ndarray]:
+    """Return the predictions of every row by the classifiers that were not trained on it, and its fold."""
+    truth = state_index(matrix, classes)
+    fold = np.zeros(truth.size, dtype=np.int64)
+    probability = np.full((truth.size, len(classes)), np.nan)
+    for number, (train, test) in enumerate(folds):
+        if np.unique(truth[train]).size < 2:
+            continue
+        fold[test] = number
+        model = logistic_pipeline().fit(matrix.values[train], truth[train])
+        probability[test] = 0.0
+        probability[np.ix_(test, model.classes_)] = model.predict_proba(matrix.values[test])
+    known = np.isfinite(probability[:, 0])
+    found = Predictions(classes, truth[known], probability[known], matrix.labels["specimen_id"][known])
+    return found, fold[known]

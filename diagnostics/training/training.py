@@ -1,0 +1,280 @@
+"""All classifiers of one set, trained and judged the same way, compared on the same specimens, and saved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.base.single_thread import single_thread
+from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, table_notes
+from diagnostics.statistics.comparison import Comparison, comparison, state_auc
+from diagnostics.statistics.evaluation import Interval, Predictions
+from diagnostics.statistics.judgement import (
+    BOOSTING,
+    INDICATORS,
+    NETWORK,
+    RMS_ALONE,
+    TITLES,
+    Judged,
+    judged,
+    judged_metrics,
+    validation_score,
+)
+from diagnostics.training.baselines import (
+    PERMUTATIONS,
+    FeatureClassifier,
+    calibrated_classifier,
+    permutation_control,
+    rms_features,
+    train_classifier,
+)
+from diagnostics.training.boosting import train_boosting
+from diagnostics.training.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
+from diagnostics.training.other_set import classifier_predictions, network_predictions_of
+from diagnostics.training.severity import (
+    AreaScores,
+    area_predictions,
+    area_scores,
+    boosted_areas,
+    expected_area,
+    mean_areas,
+)
+from diagnostics.training.splits import SpecimenSplit, specimen_split
+
+
+@dataclass(frozen=True, slots=True)
+class OtherSet:
+    """Another set to judge on: what `siggen.open` returned, and its feature table."""
+
+    dataset: Any
+    table: pa.Table
+
+
+@dataclass(frozen=True, slots=True)
+class Training:
+    """Everything that training a set gave: judged classifiers and the models to save.
+
+    Attributes
+    ----------
+    judged, other : tuple of Judged
+        On the test specimens; on another set, empty without one.
+    other_name : str
+        Folder of the other set, or empty.
+    comparisons : tuple of Comparison
+        Paired differences on the test specimens.
+    rms_severe : Interval or None
+        AUC of RMS alone for the state with the largest damage against healthy.
+    severity : tuple of AreaScores
+        Damaged area as a number.
+    """
+
+    judged: tuple[Judged, ...]
+    classifier: FeatureClassifier
+    network: TrainedNetworkFile | None
+    split: SpecimenSplit
+    specimens: dict[str, int]
+    notes: tuple[str, ...]
+    other: tuple[Judged, ...]
+    other_name: str
+    comparisons: tuple[Comparison, ...]
+    rms_severe: Interval | None
+    severity: tuple[AreaScores, ...]
+
+
+@single_thread
+def train_models(
+    dataset: Any,
+    table: pa.Table,
+    seed: int,
+    *,
+    network: NetworkOptions | None = None,
+    other: OtherSet | None = None,
+    stage: Stage = silent_stage,
+) -> Training:
+    """Train and judge all classifiers of a set.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned; the network reads its signals.
+    table : pyarrow.Table
+        Its feature table.
+    seed : int
+        Seeds bootstrap, permutations and network.
+    network : NetworkOptions, optional
+        Whether and how to train the network.
+    other : OtherSet, optional
+        A set to judge all classifiers on as well.
+    stage : Stage
+        Told of every step.
+
+    Raises
+    ------
+    DatasetError
+        If the split cannot be used (see `specimen_split`) or records are too short for a window.
+    """
+    options = network or NetworkOptions()
+    matrix = feature_matrix(table)
+    split = specimen_split(matrix.labels)
+    models = _feature_models(matrix, split, seed, stage)
+    with stage("permuted labels", PERMUTATIONS) as advance:
+        control = permutation_control(matrix, split, seed, advance=advance)
+    results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
+    trained = None
+    if options.cnn:
+        found, trained = judge_networks(dataset, matrix, split, seed, options, stage)
+        results += found
+    specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
+    details = (str(found.details["note"]) for found in results if found.details.get("note"))
+    notes = dict.fromkeys((*table_notes(table), *details))
+    return Training(
+        judged=tuple(results),
+        classifier=models[INDICATORS],
+        network=trained,
+        split=split,
+        specimens=specimens,
+        notes=tuple(notes),
+        other=_judge_other(models, trained, results, other, split.healthy, seed, stage) if other else (),
+        other_name=other.dataset.path.name if other else "",
+        comparisons=_comparisons(results, split.healthy, seed),
+        rms_severe=_rms_severe(results, matrix, split, seed),
+        severity=_severity(results, matrix, split, seed),
+    )
+
+
+def _masks(split: SpecimenSplit) -> dict[str, np.ndarray]:
+    return {"train": split.train, "validation": split.validation, "test": split.test}
+
+
+def _specimens(matrix: FeatureMatrix, mask: np.ndarray) -> int:
+    return int(np.unique(matrix.labels["specimen_id"][mask]).size)
+
+
+def _feature_models(
+    matrix: FeatureMatrix, split: SpecimenSplit, seed: int, stage: Stage
+) -> dict[str, FeatureClassifier]:
+    """Return the calibrated classifiers on indicators by name."""
+    alone = matrix.columns(rms_features(matrix.names))
+    trainers: dict[str, Callable[[], FeatureClassifier]] = {
+        INDICATORS: lambda: train_classifier(matrix, split),
+        BOOSTING: lambda: train_boosting(matrix, split, seed),
+        RMS_ALONE: lambda: train_classifier(alone, split),
+    }
+    models = {}
+    with stage("classifiers on indicators", len(trainers)) as advance:
+        for name, train in trainers.items():
+            models[name] = calibrated_classifier(train(), matrix, split)
+            advance()
+    return models
+
+
+def _judge(
+    name: str,
+    model: FeatureClassifier,
+    matrix: FeatureMatrix,
+    split: SpecimenSplit,
+    control: np.ndarray,
+    seed: int,
+) -> Judged:
+    found = classifier_predictions(model, matrix.rows(split.test))
+    details = {"features": len(model.features), "strength": model.strength, "note": model.note}
+    if split.validation.any():
+        details |= validation_score(model.predict(matrix.rows(split.validation)))
+    permuted = control if name == INDICATORS else np.empty(0)
+    return judged(name, found, model.temperature, permuted, details, seed, split.healthy)
+
+
+def _judge_other(
+    models: dict[str, FeatureClassifier],
+    network: TrainedNetworkFile | None,
+    results: list[Judged],
+    other: OtherSet,
+    healthy: str | None,
+    seed: int,
+    stage: Stage,
+) -> tuple[Judged, ...]:
+    """Judge every classifier on all records of the other set, none of whose gearboxes was trained on."""
+    matrix = feature_matrix(other.table, healthy)
+    found: dict[str, tuple[Predictions, float]] = {
+        name: (classifier_predictions(model, matrix), model.temperature) for name, model in models.items()
+    }
+    if network:
+        with stage("network on the other set", 1) as advance:
+            votes = network_predictions_of(network, other.dataset, matrix)
+            advance()
+        found[NETWORK] = (votes, network.trained.temperature)
+    details = {result.name: result.details for result in results}
+    return tuple(judged(name, *votes, np.empty(0), details[name], seed, healthy) for name, votes in found.items())
+
+
+def _comparisons(results: list[Judged], healthy: str | None, seed: int) -> tuple[Comparison, ...]:
+    """Compare every pair of classifiers, the later one first, with RMS alone always second."""
+    order = sorted(results, key=lambda found: found.name == RMS_ALONE)
+    return tuple(
+        comparison((first.name, second.name), first.predictions, second.predictions, seed, healthy)
+        for position, second in enumerate(order)
+        for first in order[:position]
+    )
+
+
+def largest_state(matrix: FeatureMatrix, split: SpecimenSplit) -> str | None:
+    """Return the class with the largest mean damaged area of training records; None where there is no damage."""
+    areas = mean_areas(matrix, split)
+    return split.classes[int(np.argmax(areas))] if areas.max() > 0 else None
+
+
+def _rms_severe(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Interval | None:
+    severe = largest_state(matrix, split)
+    if severe is None or split.healthy is None:
+        return None
+    found = next(result.predictions for result in results if result.name == RMS_ALONE)
+    return state_auc(found, split.classes.index(split.healthy), split.classes.index(severe), seed)
+
+
+def _severity(results: list[Judged], matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> tuple[AreaScores, ...]:
+    """Judge the damaged area as a number, beside the median of the training records."""
+    test, alone = matrix.rows(split.test), matrix.columns(rms_features(matrix.names))
+    by_state = mean_areas(matrix, split)
+    predicted = {
+        "ridge regression on indicators": area_predictions(matrix, split),
+        "gradient boosting on indicators": boosted_areas(matrix, split, seed),
+        "ridge regression on RMS": area_predictions(alone, split),
+        **{f"{TITLES[found.name]}, by its states": expected_area(found.predictions, by_state) for found in results},
+        "median of training": np.full(
+            test.values.shape[0], float(np.median(matrix.labels["damaged_area_mm2"][split.train]))
+        ),
+    }
+    return tuple(area_scores(title, area, test, seed) for title, area in predicted.items())
+
+
+def training_metrics(training: Training) -> dict[str, Any]:
+    """Return what `metrics.json` says about the classifiers."""
+    return {
+        "states": [state for states in training.split.members.values() for state in states],
+        "classes": {name: list(states) for name, states in training.split.members.items()},
+        "specimens": training.specimens,
+        "notes": list(training.notes),
+        "classifiers": {found.name: judged_metrics(found) for found in training.judged},
+        "other_set": training.other_name or None,
+        "classifiers_on_other_set": {found.name: judged_metrics(found) for found in training.other},
+        "comparisons": [
+            {
+                "first": pair.first,
+                "second": pair.second,
+                "accuracy": pair.accuracy.numbers(),
+                "macro_auroc": pair.macro_auroc.numbers(),
+                "detection_auroc": pair.detection.numbers() if pair.detection else None,
+            }
+            for pair in training.comparisons
+        ],
+        "rms_severe_auc": training.rms_severe.numbers() if training.rms_severe else None,
+        "damaged_area": [
+            {"title": s.title, "error_mm2": s.error_mm2.numbers(), "spearman": s.spearman.numbers()}
+            for s in training.severity
+        ],
+    }

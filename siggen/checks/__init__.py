@@ -1,0 +1,1 @@
+"""What cannot be, and what should be said, before anything is simulated."""

@@ -1,0 +1,64 @@
+"""Sentences about the lubricated contacts of a set that lie outside the data of the formulas applied to them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from siggen.config import Config, Friction, bounds, corners
+from siggen.dynamics.friction.contact_kinematics import Values
+from siggen.dynamics.friction.lubrication import FilmGroups
+from siggen.dynamics.friction.lubrication_notes import lubrication_notes
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.specimen import OperatingPoint
+from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
+from siggen.specimen.gears import gear_pair
+
+FORCE_SHARES = np.array([[0.3], [1.0]])
+"""Forces of a pair over the static mesh force, between which most of an engagement lies."""
+POSITIONS = 9
+
+
+def contact_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know about the lubricated contacts of a set, at the bounds of its distributions.
+
+    Contacts are those of the path of contact at 0.3 to 1 times the static mesh force; lands inside damage, where the
+    set has any that counts as geometry, with a remark of their own.
+    """
+    section = config.dynamics.friction
+    if config.dynamics.rubbing != "mixed_ehl":
+        return ()
+    healthy, pitted = zip(*_groups(config), strict=True)
+    fluid = (section.fluid, max(composite_roughness_m(corner)[0] for corner in corners(section)))
+    notes = lubrication_notes(_united(healthy), "masjedi_khonsari", *fluid)
+    if not (damage_is_geometry(config.dynamics) and any(state.damage is not None for state in config.states)):
+        return notes
+    inside = lubrication_notes(_united(pitted), "masjedi_khonsari")
+    return (*notes, *(f"lands inside damage: {note}" for note in inside if note not in notes))
+
+
+def _groups(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
+    """Yield the groups of healthy flanks and of lands inside damage at all combinations of bounds."""
+    points = [corner for point in config.operating_points for corner in corners(point)]
+    for gears in corners(config.gears):
+        pair = gear_pair(gears)
+        for section in corners(config.dynamics.friction):
+            for point in points:
+                yield _groups_at(section, pair, OperatingPoint(bounds(point.speed_hz)[0], bounds(point.torque_nm)[0]))
+
+
+def _groups_at(section: Friction, pair: GearPair, point: OperatingPoint) -> tuple[FilmGroups, FilmGroups]:
+    mesh = lubricated_mesh(section, pair, point)
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, POSITIONS)
+    force = FORCE_SHARES * abs(point.torque_nm) / pair.pinion.base_radius_m
+    healthy_m, pitted_m = composite_roughness_m(section)
+    return mesh.groups(position, force, healthy_m), mesh.groups(position, force, pitted_m)
+
+
+def _united(found: tuple[FilmGroups, ...]) -> FilmGroups:
+    def values(name: str) -> Values:
+        return np.concatenate([np.ravel(getattr(groups, name)) for groups in found])
+
+    return FilmGroups(*(values(name) for name in FilmGroups._fields))

@@ -1,0 +1,81 @@
+"""Names of what no sensor sees: those that a configuration's model has, and those asked for that it has not."""
+
+from __future__ import annotations
+
+import difflib
+
+from siggen.config import Config, corners
+from siggen.dynamics.structure.structure import Structure
+from siggen.errors import Problem
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
+from siggen.specimen.structure import structure
+
+NEAREST = 3
+
+
+def quantity_problems(config: Config) -> list[Problem]:
+    """Return the names in `internals.quantities` that the model does not have, each with those nearest to it."""
+    section = config.internals
+    asked = () if section is None else section.named
+    if not asked:
+        return []
+    available = available_quantities(config)
+    problems = []
+    for place, name in asked:
+        if name not in available:
+            near = ", ".join(difflib.get_close_matches(name, available, NEAREST, cutoff=0.0))
+            allowed = (
+                f"allowed: all, or one of the {len(available)} quantities of this model; nearest: {near} (`siggen "
+                "simulate CONFIG --record 0 --out FILE` without this key writes every one)"
+            )
+            problems.append(Problem(f"internals.quantities.{place}", f"'{name}'", allowed))
+    return problems
+
+
+def available_quantities(config: Config) -> tuple[str, ...]:
+    """Return the names of all internal quantities of the records of a configuration.
+
+    They follow from the configuration alone: the gears of the ranges with the longest path of contact have as many
+    pairs in reach as any.
+    """
+    specimen, point = draw_specimen(config, 0), draw_operating_point(config, 0, 0)
+    pair = max((gear_pair(corner) for corner in corners(config.gears)), key=_contact_ratio)
+    points = specimen.stiffness.table_points
+    mesh = SpecimenMesh(
+        pair,
+        structure(specimen.dynamics, pair, specimen.sensors),
+        mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=points),
+        teeth_missing(specimen.dynamics, pair, points),
+    )
+    step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
+    motion = specimen_motion(specimen.dynamics, mesh, point, step_s)
+    return quantity_names(motion.structure, motion.internal_names)
+
+
+def quantity_names(assembled: Structure, internal_names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names of the quantities of a motion of this structure with these internals."""
+    return (
+        "pinion_angle_rad",
+        *(acceleration_name(place) for place in assembled.motions),
+        *(bearing_force_name(place) for place in assembled.bearing_forces),
+        *internal_names,
+        "transmission_error_m",
+    )
+
+
+def acceleration_name(place: str) -> str:
+    """Return the name of the clean acceleration of a motion such as "casing/vertical"."""
+    return f"clean_accel_{place.replace('/', '_')}_m_s2"
+
+
+def bearing_force_name(place: str) -> str:
+    """Return the name of a bearing force."""
+    return f"bearing_force_{place.replace('/', '_')}_n"
+
+
+def _contact_ratio(pair: GearPair) -> float:
+    return (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m

@@ -1,0 +1,64 @@
+"""What is physically impossible in a section `variation`: motors that stall by slip, run-downs driven by the load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import pi
+from typing import Any
+
+from siggen.config import Dynamics, OperatingRange, Variation, bounds
+from siggen.errors import Problem
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.structure import disc_inertia_kg_m2
+
+NEEDED = ("variation", "operating_points", "dynamics", "duration_s")
+
+
+def variation_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> list[Problem]:
+    """Return the problems of a section at the bounds of all numbers, for the gears that are possible."""
+    if not set(NEEDED) <= sections.keys() or not sections["variation"].active:
+        return []
+    variation, points = sections["variation"], sections["operating_points"]
+    return [
+        *_stalling(variation, points),
+        *_driven_by_load(variation, points, sections["dynamics"], sections["duration_s"], pairs),
+    ]
+
+
+def _stalling(variation: Variation, points: Sequence[OperatingRange]) -> list[Problem]:
+    slip, rated_nm = bounds(variation.speed.slip)[1], bounds(variation.speed.rated_torque_nm)[0]
+    torque_nm = max(bounds(point.torque_nm)[1] for point in points)
+    if slip * torque_nm / rated_nm < 0.5:
+        return []
+    received = f"{slip:g} at {rated_nm:g} N m, which is {slip * torque_nm / rated_nm:.0%} at {torque_nm:g} N m"
+    allowed = "allowed: a slip below 50 % at the highest torque; lower slip or the torque, or raise rated_torque_nm"
+    return [Problem("variation.speed.slip", received, allowed)]
+
+
+def _driven_by_load(
+    variation: Variation,
+    points: Sequence[OperatingRange],
+    dynamics: Dynamics,
+    duration_s: float,
+    pairs: Sequence[GearPair],
+) -> list[Problem]:
+    """Refuse run-downs in which the gear would drive the pinion in the mean: the other flanks would carry."""
+    speed = variation.speed
+    change = bounds(speed.end_ratio)[0] - bounds(speed.start_ratio)[1]
+    for point in points:
+        slowing = 2.0 * pi * bounds(point.speed_hz)[1] * min(change, 0.0) / duration_s
+        at_mesh = [bounds(point.torque_nm)[0] + _driven_inertia_kg_m2(dynamics, pair) * slowing for pair in pairs]
+        if min(at_mesh, default=1.0) <= 0.0:
+            received = f"{change:+g} of {bounds(point.speed_hz)[1]:g} Hz in {duration_s:g} s, with which gear and load "
+            received += f"drive the pinion ({min(at_mesh):.4g} N m at the mesh)"
+            allowed = "allowed: a mean torque above 0 at the mesh; raise end_ratio, duration_s or the torque"
+            return [Problem("variation.speed.end_ratio", received, allowed)]
+    return []
+
+
+def _driven_inertia_kg_m2(dynamics: Dynamics, pair: GearPair) -> float:
+    """Return the largest inertia of gear and load, seen from the pinion."""
+    own = dynamics.gear.inertia_kg_m2
+    gear = disc_inertia_kg_m2(pair.gear, pair.face_width_m) if own is None else bounds(own)[1]
+    load = 0.0 if dynamics.model == "6dof" else bounds(dynamics.load_inertia_kg_m2)[1]
+    return (gear + load) * (pair.pinion.teeth / pair.gear.teeth) ** 2

@@ -1,0 +1,1 @@
+"""Names, units and meanings of every column of a set."""

@@ -1,0 +1,41 @@
+"""Columns of manufacturing errors, part of the labels of `siggen.columns.record`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from siggen.columns.column import MICROMETRE, Column
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+GEAR_ERROR_COLUMNS = (
+    ("accuracy_class_{}", pa.int32(), "", "flank tolerance class of the {} by ISO 1328-1:2013"),
+    ("tolerance_share_{}", pa.float64(), "", "share of that class's tolerances that the {} may use"),
+    ("pitch_deviation_{}_um", pa.float64(), MICROMETRE, "largest single pitch deviation of the {}"),
+    ("cumulative_pitch_{}_um", pa.float64(), MICROMETRE, "total cumulative pitch deviation of the {}"),
+    ("runout_{}_um", pa.float64(), MICROMETRE, "radial runout of the {}, twice its eccentricity; part of its pitch"),
+    ("profile_slope_{}_um", pa.float64(), MICROMETRE, "largest profile slope deviation of the {}'s teeth"),
+    ("profile_form_{}_um", pa.float64(), MICROMETRE, "largest profile form deviation of the {}'s teeth"),
+    ("profile_deviation_{}_um", pa.float64(), MICROMETRE, "largest total profile deviation of the {}'s teeth"),
+)
+"""Columns of each gear in sets with manufacturing errors: as a machine measures them about the shaft's axis."""
+
+
+def manufacture_columns(config: Config) -> tuple[Column, ...]:
+    """Return the columns of manufacturing errors; none for sets of perfect gears."""
+    if config.manufacture is None:
+        return ()
+    of_gears = (
+        Column(name.format(which), kind, unit, meaning.format(which))
+        for which in ("pinion", "gear")
+        for name, kind, unit, meaning in GEAR_ERROR_COLUMNS
+    )
+    lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
+    return (
+        Column("manufacture_draw", pa.string(), "", "whether states share the specimen's gears: specimen or state"),
+        *of_gears,
+        Column("lead_misalignment_um", pa.float64(), MICROMETRE, lead),
+    )

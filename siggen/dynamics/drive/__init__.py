@@ -1,0 +1,1 @@
+"""What moves the gearbox from outside: speed, torque and external forces over time."""

@@ -1,0 +1,127 @@
+"""External forces on any body as harmonics of the rotation: unbalance, tones of bearings, anything of that form.
+
+Equations: centrifugal and tangential inertia of an eccentric mass, -m d²/dt² [e (cos Θ, sin Θ)] (derived); orders of
+rolling bearings (reference: standard literature). Angles are those of the pinion times an order, so the gear's shaft
+has the order z_1/z_2 and a cage a fraction of one; a phase may wander slowly about that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.drive.excitation import Turning
+from siggen.dynamics.drive.slow_variation import SlowVariation
+from siggen.dynamics.structure.structure import Structure
+
+
+@dataclass(frozen=True, slots=True)
+class Harmonic:
+    """amplitude cos(order Θ + phase + wander_rad n(t)); order per revolution of the pinion, n a slow variation."""
+
+    amplitude_n: float
+    order: float
+    phase_rad: float
+    wander_rad: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class HarmonicForce:
+    """Harmonics that act along one direction of the coordinates, (n,) per newton."""
+
+    direction: FloatArray
+    harmonics: tuple[Harmonic, ...]
+    wander: SlowVariation | None = None
+
+    @property
+    def vectors(self) -> FloatArray:
+        """The direction as (1, n)."""
+        return self.direction[None, :]
+
+    def inputs(self, turning: Turning) -> FloatArray:
+        """Return the force (k, 1) [N]."""
+        slow = 0.0 if self.wander is None else self.wander.value(turning.time_s)
+        force = np.zeros_like(turning.time_s)
+        for one in self.harmonics:
+            force += one.amplitude_n * np.cos(one.order * turning.angle_rad + one.phase_rad + one.wander_rad * slow)
+        return force[:, None]
+
+
+@dataclass(frozen=True, slots=True)
+class Unbalance:
+    """An eccentric mass m e [kg m] on a shaft that turns at `order` times the pinion.
+
+    `directions` (2, n) are unit forces along two axes at right angles; the shaft turns from the first to the second, or
+    back if `order` is negative. At angle 0 the mass stands at `phase_rad` from the first.
+    """
+
+    directions: FloatArray
+    moment_kg_m: float
+    order: float
+    phase_rad: float
+
+    @property
+    def vectors(self) -> FloatArray:
+        """The directions (2, n)."""
+        return self.directions
+
+    def inputs(self, turning: Turning) -> FloatArray:
+        """Return the forces (k, 2) [N]."""
+        angle = self.order * turning.angle_rad + self.phase_rad
+        outward = self.moment_kg_m * (self.order * turning.speed_rad_s) ** 2
+        backward = self.moment_kg_m * self.order * turning.acceleration_rad_s2
+        cosine, sine = np.cos(angle), np.sin(angle)
+        return np.stack([outward * cosine + backward * sine, outward * sine - backward * cosine], axis=1)
+
+
+def bearing_direction(structure: Structure, place: str, axis: str) -> FloatArray:
+    """Return the generalised force (n,) of 1 N between a shaft and its seat: on the shaft along the axis, and back.
+
+    Raises
+    ------
+    ValueError
+        If the structure has no such bearing.
+    """
+    key = f"{place}/{axis}"
+    if key not in structure.bearing_forces:
+        allowed = ", ".join(structure.bearing_forces) or "none in a model of rotations alone"
+        raise ValueError(f"bearing: received {key}; allowed are {allowed}")
+    # Force on the housing per displacement is the stiffness times the unit direction of the shaft's part.
+    stiff = structure.bearing_forces[key][0]
+    return stiff / np.linalg.norm(_on_shaft(structure, place, stiff))
+
+
+def shaft_directions(structure: Structure, place: str) -> FloatArray:
+    """Return the generalised forces (2, n) of 1 N on the rotor at a bearing, horizontal and vertical."""
+    directions = [bearing_direction(structure, place, axis) for axis in ("horizontal", "vertical")]
+    return np.array([_on_shaft(structure, place, direction) for direction in directions])
+
+
+def turning_sense(structure: Structure, place: str) -> float:
+    """Return +1 if the shaft at a bearing turns from horizontal to vertical, -1 if back (derived).
+
+    With g along the line of action and w the direction in which flanks slide positively, both in the plane of the
+    coordinates, a point of the pinion's flank at arm s slides by s Ω along w: so w is g turned by a quarter in the
+    sense of the pinion. The gear turns the other way.
+    """
+    rows = [structure.coordinates.index(name) for name in _translations(place)]
+    along, across = structure.mesh_vector[rows], structure.sliding_vectors[0][rows]
+    horizontal, vertical = shaft_directions(structure, place)[:, rows]
+    pinion = np.sign(_cross(along, across)) * np.sign(_cross(horizontal, vertical))
+    return float(pinion if place.startswith("pinion") else -pinion)
+
+
+def _cross(first: FloatArray, second: FloatArray) -> float:
+    return float(first[0] * second[1] - first[1] * second[0])
+
+
+def _translations(place: str) -> tuple[str, str]:
+    return ("x_1", "y_1") if place.startswith("pinion") else ("x_2", "y_2")
+
+
+def _on_shaft(structure: Structure, place: str, values: FloatArray) -> FloatArray:
+    """Return a vector (n,) with its entries at the rotor alone."""
+    at_rotor = [name in _translations(place) for name in structure.coordinates]
+    return np.where(at_rotor, values, 0.0)

@@ -1,0 +1,1 @@
+"""Oil film, asperities and friction between the flanks."""

@@ -1,0 +1,185 @@
+"""AsperityTable: asperity share and fluid friction over position and load, for the compiled time loop.
+
+Derived: bilinear interpolation over the position s (uniform) and the logarithm of the load group Ŵ (uniform from
+`LOAD_FLOOR`, below which the models hold their values), one layer per roughness. The film formulas are power laws,
+hence nearly linear in that logarithm, and the ratio is cut off at 1 after the interpolation, so the table has no kinks.
+The error is measured at the middle of every cell, where that of a smooth function is largest (`asperity_table_error`):
+below 1.2e-3 in the share (1e-4 in the friction coefficient) for the default grid, 18/47 teeth of module 3 mm at 30 Hz
+in ISO VG 220, the path of contact with 0.5 mm on either side and roughness from 0.1 to 5 µm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.friction.asperity_share import RATIO_MODELS
+from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
+from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh
+
+FluidFriction = Callable[[Values, Values], Values]
+"""Friction coefficient of the lubricated part at positions [m] and forces [N]."""
+
+
+class AsperityTable(NamedTuple):
+    """Tables over (roughness, position, load); a named tuple, since compiled code takes no dataclass.
+
+    `ratio` (roughnesses, positions, loads): asperity load ratio, whose minimum with 1 is the share; `fluid` (positions,
+    loads): friction coefficient of the lubricated part; `line_m`: T; `start_m`, `per_m`: first position and grid points
+    per metre; `floor_n_per_m`: force at the lower end of the load axis over R_e; `per_log`: grid points per unit of the
+    natural logarithm of the load.
+    """
+
+    ratio: FloatArray
+    fluid: FloatArray
+    line_m: float
+    start_m: float
+    per_m: float
+    floor_n_per_m: float
+    per_log: float
+
+
+def asperity_table(
+    mesh: LubricatedMesh,
+    roughness_m: Sequence[float],
+    fluid_friction: float | FluidFriction,
+    range_m: tuple[float, float],
+    largest_force_n: float,
+    model: str = "masjedi_khonsari",
+    points: tuple[int, int] = (65, 65),
+) -> AsperityTable:
+    """Return the table of a mesh at its speed.
+
+    Parameters
+    ----------
+    mesh : LubricatedMesh
+    roughness_m : sequence of float
+        Composite rms roughness σ of each layer [m], for example the healthy flank, then pitted ones.
+    fluid_friction : float or callable
+        Friction coefficient of the lubricated part: a constant, or a function of position [m] and force [N].
+    range_m : (first, last)
+        Positions s of the grid [m], inside the line of action; beyond them the end values hold.
+    largest_force_n : float
+        The load axis reaches this force at every position; beyond its end the end values hold [N].
+    model : str
+        A name of `RATIO_MODELS`.
+    points : (positions, loads)
+
+    Raises
+    ------
+    ValueError
+        If the range, the force, a roughness, the model or the number of points is impossible.
+    """
+    _check(mesh, roughness_m, range_m, model, points)
+    position = np.linspace(*range_m, points[0])
+    floor = LOAD_FLOOR * mesh.contact_length_m * mesh.effective_modulus_pa
+    lowest = floor * relative_radius(position, mesh.line_m)
+    span = float(np.log(largest_force_n / lowest.min())) if largest_force_n > 0.0 else np.nan
+    if not (np.isfinite(span) and span > 0.0):
+        allowed = f"allowed are finite forces above {lowest.min():.3g} N"
+        raise ValueError(f"largest_force_n: received {largest_force_n}; {allowed}")
+    force = lowest[:, None] * np.exp(span * np.arange(points[1]) / (points[1] - 1))
+    fluid = np.full(points, np.nan)
+    fluid[:] = fluid_friction(position[:, None], force) if callable(fluid_friction) else fluid_friction
+    ratio = np.stack([ratios_at(mesh, sigma, position[:, None], force, model) for sigma in roughness_m])
+    for array in (ratio, fluid):
+        array.setflags(write=False)
+    return AsperityTable(
+        ratio=ratio,
+        fluid=fluid,
+        line_m=mesh.line_m,
+        start_m=float(range_m[0]),
+        per_m=(points[0] - 1) / (range_m[1] - range_m[0]),
+        floor_n_per_m=floor,
+        per_log=(points[1] - 1) / span,
+    )
+
+
+def ratios_at(mesh: LubricatedMesh, roughness_m: float, position_m: Values, force_n: Values, model: str) -> FloatArray:
+    """Return the load ratio directly by the model at positions [m] and forces [N] that broadcast."""
+    return np.asarray(RATIO_MODELS[model](mesh.groups(position_m, force_n, roughness_m)), dtype=np.float64)
+
+
+def asperity_table_error(table: AsperityTable, mesh: LubricatedMesh, roughness_m: Sequence[float], model: str) -> float:
+    """Return the largest absolute error of the interpolated share at the middle of all cells."""
+    positions, loads = table.fluid.shape
+    position = (table.start_m + (np.arange(positions - 1) + 0.5) / table.per_m)[:, None]
+    floor = table.floor_n_per_m * relative_radius(position, table.line_m)
+    force = floor * np.exp((np.arange(loads - 1) + 0.5) / table.per_log)
+    worst = 0.0
+    for layer, sigma in zip(table.ratio, roughness_m, strict=True):
+        mean = 0.25 * (layer[1:, 1:] + layer[1:, :-1] + layer[:-1, 1:] + layer[:-1, :-1])
+        direct = ratios_at(mesh, sigma, position, force, model)
+        worst = max(worst, float(np.abs(np.minimum(mean, 1.0) - np.minimum(direct, 1.0)).max()))
+    return worst
+
+
+@njit(cache=True)
+def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: float) -> tuple[float, float]:
+    """Return the asperity share La, 0 to 1, and the friction coefficient of the lubricated part; clamped to the table.
+
+    Both in one call, since finding the cell costs more than the values.
+    """
+    positions, loads = table.fluid.shape
+    i, j, a, b = contact_cell(
+        positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log, position_m,
+        force_n,
+    )  # fmt: skip
+    ratio = cell_value(table.ratio[layer].reshape(-1), i * loads + j, loads, a, b)
+    return min(ratio, 1.0), cell_value(table.fluid.reshape(-1), i * loads + j, loads, a, b)
+
+
+@njit(cache=True)
+def contact_cell(
+    positions: int,
+    loads: int,
+    line_m: float,
+    start_m: float,
+    per_m: float,
+    floor_n_per_m: float,
+    per_log: float,
+    position_m: float,
+    force_n: float,
+) -> tuple[int, int, float, float]:
+    """Return the cell of a position and a force in a table, and the weights of its upper ends, clamped to the table."""
+    along = min(max((position_m - start_m) * per_m, 0.0), positions - 1.0)
+    held = start_m + along / per_m
+    load = force_n * line_m / (floor_n_per_m * held * (line_m - held))
+    up = min(np.log(max(load, 1.0)) * per_log, loads - 1.0)
+    i, j = min(int(along), positions - 2), min(int(up), loads - 2)
+    return i, j, along - i, up - j
+
+
+@njit(cache=True)
+def cell_value(values: FloatArray, first: int, loads: int, a: float, b: float) -> float:
+    """Return the value in a cell of a table in row order whose lower corner is `first`, bilinear in the weights."""
+    low = values[first] * (1.0 - a) + values[first + loads] * a
+    high = values[first + 1] * (1.0 - a) + values[first + loads + 1] * a
+    return low * (1.0 - b) + high * b
+
+
+@njit(cache=True)
+def asperity_share(table: AsperityTable, layer: int, position_m: float, force_n: float) -> float:
+    """Return the asperity share La of a contact, 0 to 1."""
+    return mixed_contact(table, layer, position_m, force_n)[0]
+
+
+def _check(
+    mesh: LubricatedMesh,
+    roughness_m: Sequence[float],
+    range_m: tuple[float, float],
+    model: str,
+    points: tuple[int, int],
+) -> None:
+    if not 0.0 < range_m[0] < range_m[1] < mesh.line_m:
+        raise ValueError(f"range_m: received {range_m}; allowed is a rising pair inside 0 to {mesh.line_m:.6g} m")
+    if not roughness_m or not all(np.isfinite(value) and value >= 0.0 for value in roughness_m):
+        raise ValueError(f"roughness_m: received {tuple(roughness_m)}; allowed is at least one finite value from 0")
+    if model not in RATIO_MODELS:
+        raise ValueError(f"model: received {model!r}; allowed are {', '.join(RATIO_MODELS)}")
+    if min(points) < 2:
+        raise ValueError(f"points: received {points}; allowed are at least 2 each")

@@ -1,0 +1,87 @@
+"""FrictionLaw: the friction force between two flanks, compiled for the time loop.
+
+Derived (the composite law is standard): μ = La μ_b + (1 - La) min(μ_EHL, μ_b) with the asperity share La, so μ stays
+between μ_EHL and μ_b whatever the roughness of a pit; F = μ N tanh(v/v_0) with the sliding speed v of
+`contact_kinematics.sliding_speed`, which keeps the sign of v: the dissipated power F v is never negative. F acts in -x
+on the pinion (arm s) and in +x on the gear (arm T - s). A force N <= 0 gives no friction: on the back flank the line of
+action is another one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
+
+BOUNDARY_FRICTION = 0.11
+FLUID_FRICTION = 0.02
+SLIP_SPEED_M_S = 0.02
+
+
+class FrictionLaw(NamedTuple):
+    """What the compiled friction force needs: tables, μ_b and the speed v_0 [m/s] that rounds the sign of v.
+
+    A constant coefficient is a table of that fluid friction and share 0 (`constant_friction`).
+    """
+
+    table: AsperityTable
+    boundary: float
+    slip_speed_m_s: float
+
+
+def composite_friction(
+    table: AsperityTable, boundary: float = BOUNDARY_FRICTION, slip_speed_m_s: float = SLIP_SPEED_M_S
+) -> FrictionLaw:
+    """Return the composite law of a table of shares and fluid friction.
+
+    Raises
+    ------
+    ValueError
+        If the boundary friction is outside 0 to 1 or the slip speed is not positive.
+    """
+    if not 0.0 <= boundary <= 1.0:
+        raise ValueError(f"boundary: received {boundary}; allowed are 0 to 1, usual are 0.10 to 0.12")
+    if not (np.isfinite(slip_speed_m_s) and slip_speed_m_s > 0.0):
+        raise ValueError(f"slip_speed_m_s: received {slip_speed_m_s}; allowed are finite values above 0")
+    return FrictionLaw(table, float(boundary), float(slip_speed_m_s))
+
+
+def constant_friction(coefficient: float, slip_speed_m_s: float = SLIP_SPEED_M_S, layers: int = 1) -> FrictionLaw:
+    """Return a law with one coefficient for all `layers` of roughness; 0 turns friction off.
+
+    Raises
+    ------
+    ValueError
+        If the coefficient is outside 0 to 1 or the slip speed is not positive.
+    """
+    ratio, fluid = np.zeros((layers, 2, 2)), np.full((2, 2), float(coefficient))
+    for array in (ratio, fluid):
+        array.setflags(write=False)
+    table = AsperityTable(ratio, fluid, line_m=4.0, start_m=1.0, per_m=1.0, floor_n_per_m=1.0, per_log=1.0)
+    return composite_friction(table, coefficient, slip_speed_m_s)
+
+
+@njit(cache=True)
+def friction_mixed(share: float, boundary: float, fluid: float) -> float:
+    """Return μ = La μ_b + (1 - La) min(μ_EHL, μ_b); numbers or arrays that broadcast."""
+    bounded = np.minimum(fluid, boundary)
+    return bounded + share * (boundary - bounded)
+
+
+@njit(cache=True)
+def friction_coefficient(law: FrictionLaw, layer: int, position_m: float, force_n: float) -> float:
+    """Return the friction coefficient of a contact on the flank roughness `layer` of the table."""
+    share, fluid = mixed_contact(law.table, layer, position_m, force_n)
+    return friction_mixed(share, law.boundary, fluid)
+
+
+@njit(cache=True)
+def friction_force(law: FrictionLaw, layer: int, position_m: float, force_n: float, sliding_m_s: float) -> float:
+    """Return the friction force F [N] of one pair of flanks, of the sign of the sliding speed; 0 without contact."""
+    if force_n <= 0.0:
+        return 0.0
+    coefficient = friction_coefficient(law, layer, position_m, force_n)
+    return coefficient * force_n * np.tanh(sliding_m_s / law.slip_speed_m_s)

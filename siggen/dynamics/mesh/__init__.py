@@ -1,0 +1,1 @@
+"""Force of the tooth pairs over position and approach."""

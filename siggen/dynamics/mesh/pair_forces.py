@@ -1,0 +1,196 @@
+"""Forces of all tooth pairs in reach, compiled: springs, dampers, squeezed film and friction.
+
+Equations: `pair_law`.
+"""
+
+from __future__ import annotations
+
+from math import tanh
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray, IntArray
+from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
+from siggen.dynamics.friction.friction import friction_mixed
+from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import (
+    ASPERITY_SHARE,
+    CARRYING,
+    COEFFICIENT,
+    DAMPING,
+    FLANK,
+    FRICTION,
+    NORMAL,
+    PENETRATION,
+    PLACED,
+    POSITION,
+    ROUGH,
+    SLIDING,
+    STIFFNESS,
+    WHOLE,
+    find_flanks,
+    pair_table,
+    place_pairs,
+)
+from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
+
+
+@njit(cache=True, inline="always")
+def _film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
+    """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
+    place = (position_m - scalars[at.START_M]) / scalars[at.PITCH_M]
+    if rate_m_s <= 0.0 or place < 0.0 or place > scalars[at.CONTACT_RATIO]:
+        return 0.0
+    curvature_m = position_m * (scalars[at.LINE_M] - position_m) / scalars[at.LINE_M]
+    return scalars[at.FILM] * (0.5 * curvature_m / max(gap_m, scalars[at.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+
+
+@njit(cache=True, inline="always")
+def _lubricate(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
+) -> None:
+    """Write asperity share and friction coefficient of slot i at a force; rough lands count by their share."""
+    loads, positions = index[at.LUBRICATED_LOADS], index[at.LUBRICATED_POSITIONS]
+    along, up, a, b = contact_cell(
+        positions, loads, scalars[at.LUBRICATED_LINE], scalars[at.LUBRICATED_START], scalars[at.LUBRICATED_PER_M],
+        scalars[at.LUBRICATED_FLOOR], scalars[at.LUBRICATED_PER_LOG], pairs[i, POSITION], force_n / pairs[i, CARRYING],
+    )  # fmt: skip
+    corner = along * loads + up
+    share = min(cell_value(numbers, index[at.RATIO_AT] + corner, loads, a, b), 1.0)
+    rough = pairs[i, ROUGH]
+    if rough > 0.0 and index[at.ROUGHNESSES] > 1:
+        raised = cell_value(numbers, index[at.RATIO_AT] + positions * loads + corner, loads, a, b)
+        share = share * (1.0 - rough) + min(raised, 1.0) * rough
+    fluid = cell_value(numbers, index[at.FLUID_AT] + corner, loads, a, b)
+    pairs[i, ASPERITY_SHARE] = share
+    pairs[i, COEFFICIENT] = friction_mixed(share, scalars[at.BOUNDARY], fluid)
+
+
+@njit(cache=True, inline="always")
+def _load(
+    scalars: FloatArray,
+    numbers: FloatArray,
+    index: IntArray,
+    pairs: FloatArray,
+    i: int,
+    elastic: float,
+    damping: float,
+    rate_m_s: float,
+) -> None:
+    """Write the forces of a touching slot: spring, damper, friction on the drive flank."""
+    root, driven = scalars[at.DAMPING_ROOT], pairs[i, FLANK] > 0.0
+    if index[at.SHARE_DAMPS] > 0:
+        root = scalars[at.DAMPING_STRUCTURE] + scalars[at.DAMPING_FILM]
+        if driven:
+            _lubricate(scalars, numbers, index, pairs, i, elastic)
+            share = pairs[i, ASPERITY_SHARE]
+            root = scalars[at.DAMPING_STRUCTURE] + scalars[at.DAMPING_FILM] * (1.0 - share)
+            root += scalars[at.DAMPING_ASPERITIES] * share
+    pairs[i, DAMPING] = root * damping * pairs[i, STIFFNESS]
+    force = elastic + pairs[i, DAMPING] * rate_m_s
+    if not driven:
+        pairs[i, NORMAL] = min(0.0, force)
+    elif force > 0.0:
+        pairs[i, NORMAL] = force
+        if index[at.ROUGHNESSES] > 0:
+            _lubricate(scalars, numbers, index, pairs, i, force)
+            pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[at.SLIP_SPEED])
+
+
+@njit(cache=True)
+def write_forces(
+    scalars: FloatArray,
+    numbers: FloatArray,
+    index: IntArray,
+    approach_m: float,
+    rate_m_s: float,
+    pitches: float,
+    sliding_0_m_s: float,
+    sliding_1_per_s: float,
+    pairs: FloatArray,
+) -> None:
+    """Write what `pair_forces` writes, from the arrays of a law: for loops that have taken them out of it once."""
+    if pairs[0, PLACED] != pitches:
+        place_pairs(scalars, numbers, index, pitches, pairs)
+    find_flanks(scalars, approach_m, pairs)
+    if index[at.APART] > 0:
+        share_coupled(scalars, numbers, index, pairs)
+    touching = 0.0
+    for i in range(pairs.shape[0]):
+        for column in range(NORMAL, FRICTION + 1):
+            pairs[i, column] = 0.0
+        for column in range(CARRYING, DAMPING + 1):
+            pairs[i, column] = 0.0
+        if pairs[i, WHOLE] == 0.0:
+            for column in range(PENETRATION, FLANK + 1):
+                pairs[i, column] = 0.0
+            continue
+        pairs[i, SLIDING] = sliding_0_m_s + pairs[i, POSITION] * sliding_1_per_s
+        # NORMAL holds the elastic force until the damping is known, which needs the stiffness of all that touch.
+        elastic, tangent, carrying = spring_of_flank(numbers, index, pairs, i, pairs[i, PENETRATION])
+        if elastic == 0.0:
+            pairs[i, FLANK], pairs[i, STIFFNESS] = 0.0, pairs[i, WHOLE]
+            continue
+        pairs[i, FLANK] = 1.0 if elastic > 0.0 else -1.0
+        pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, CARRYING] = elastic, tangent, carrying
+        touching += tangent
+    damping = 1.0 / np.sqrt(touching) if touching > 0.0 else 0.0
+    for i in range(pairs.shape[0]):
+        if pairs[i, FLANK] != 0.0:
+            elastic = pairs[i, NORMAL]
+            pairs[i, NORMAL] = 0.0
+            _load(scalars, numbers, index, pairs, i, elastic, damping, rate_m_s)
+        elif scalars[at.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
+            gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
+            pairs[i, NORMAL] = _film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
+
+
+@njit(cache=True)
+def pair_forces(
+    law: PairLaw,
+    approach_m: float,
+    rate_m_s: float,
+    pitches: float,
+    sliding_0_m_s: float,
+    sliding_1_per_s: float,
+    pairs: FloatArray,
+) -> None:
+    """Write the forces of all pairs into `pairs` of `pair_table`; sliding speed at s: sliding_0 + s sliding_1."""
+    write_forces(
+        law.scalars, law.numbers, law.places, approach_m, rate_m_s, pitches, sliding_0_m_s, sliding_1_per_s, pairs
+    )
+
+
+@njit(cache=True)
+def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
+    """Return ΣN [N] at rest."""
+    pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)
+    total = 0.0
+    for i in range(pairs.shape[0]):
+        total += pairs[i, NORMAL]
+    return total
+
+
+def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
+    """Return the approach [m] at which the pairs carry a force [N] at rest; negative on the back flank.
+
+    Raises
+    ------
+    ValueError
+        If not even a penetration of a tenth of a base pitch carries it.
+    """
+    pairs = pair_table(law)
+    reach = 0.1 * law.base_pitch_m
+    low, high = -law.backlash_m - reach, reach
+    if not static_force(law, low, pitches, pairs) <= force_n <= static_force(law, high, pitches, pairs):
+        raise ValueError(f"force_n: received {force_n}; allowed are forces that teeth carry within {reach:.3g} m")
+    # Monotone, so halving always ends; 80 halvings of 2 mm are below the rounding of a nanometre.
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        if static_force(law, middle, pitches, pairs) < force_n:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

@@ -1,0 +1,122 @@
+"""What happens in every tooth contact, named with units: forces, friction, film, pressure; at output rate only.
+
+Values are those of the table of pairs (`pair_places`). Film and film ratio (reference: standard literature, formulas
+of `lubrication`) are computed from them: central film by Masjedi and Khonsari at the line load on what carries; the
+roughness inside damage enters by its mean square over the face (derived). Hertz pressure: line contact. While a pair
+does not touch, its forces, moments, damping and load share are 0, and what only a contact has (`contact_names`) is
+NaN; a back flank that touches has forces, but neither friction, film nor pressure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.friction.contact_kinematics import hertz_pressure, relative_radius
+from siggen.dynamics.friction.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
+from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, PER_CONTACT, PER_FILM
+from siggen.dynamics.mesh.pair_places import (
+    ASPERITY_SHARE,
+    CARRYING,
+    COEFFICIENT,
+    DAMPING,
+    FLANK,
+    FRICTION,
+    NORMAL,
+    POSITION,
+    ROUGH,
+    SLIDING,
+    STIFFNESS,
+)
+
+SUMS = (
+    "mesh_force_n",
+    "mesh_stiffness_n_per_m",
+    "mesh_damping_n_s_per_m",
+    "friction_force_n",
+    "friction_moment_pinion_nm",
+    "friction_moment_gear_nm",
+)
+PER_PAIR = (
+    "force_n",
+    "load_share",
+    "friction_n",
+    "sliding_m_s",
+    "position_m",
+    "friction_moment_pinion_nm",
+    "friction_moment_gear_nm",
+    "friction_coefficient",
+    "damping_n_s_per_m",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PairContact:
+    """What pressure and film of the pairs follow from.
+
+    `oil` is None without one; `roughness_m`: composite rms of healthy flanks and of a pair inside damage.
+    """
+
+    effective_modulus_pa: float
+    face_width_m: float
+    oil: LubricatedMesh | None = None
+    roughness_m: tuple[float, float] = (0.0, 0.0)
+
+
+def pair_internal_names(slots: int, contact: PairContact | None) -> tuple[str, ...]:
+    """Return the names of `pair_internals`; pair n of an engagement has the number n mod slots."""
+    single = (*PER_PAIR, *_of_contact(contact))
+    return (*SUMS, *(f"{PAIR_PREFIX}{slot}_{name}" for slot in range(slots) for name in single))
+
+
+def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None) -> FloatArray:
+    """Return the values named by `pair_internal_names` (k, names) of tables of pairs (k, slots, columns).
+
+    Parameters
+    ----------
+    pairs : (k, slots, columns)
+        Tables of `pair_places`, one per state.
+    line_m : float
+        Length T of the line of action [m].
+    contact : PairContact or None
+    """
+    normal, friction, position = (pairs[:, :, column] for column in (NORMAL, FRICTION, POSITION))
+    touching = pairs[:, :, FLANK] != 0.0
+    total = normal.sum(axis=1)
+    on_pinion, on_gear = position * friction, (line_m - position) * friction
+    sums = [total, np.where(touching, pairs[:, :, STIFFNESS], 0.0).sum(axis=1), pairs[:, :, DAMPING].sum(axis=1)]
+    sums += [friction.sum(axis=1), on_pinion.sum(axis=1), on_gear.sum(axis=1)]
+    single = [normal, normal / np.where(total == 0.0, 1.0, total)[:, None], friction, pairs[:, :, SLIDING], position]
+    coefficient = np.where(_drives(pairs), pairs[:, :, COEFFICIENT], np.nan)
+    single += [on_pinion, on_gear, coefficient, pairs[:, :, DAMPING]]
+    if contact is not None:
+        single += _contact_values(pairs, line_m, contact)
+    return np.concatenate([np.stack(sums, axis=1), np.stack(single, axis=2).reshape(len(pairs), -1)], axis=1)
+
+
+def _of_contact(contact: PairContact | None) -> tuple[str, ...]:
+    if contact is None:
+        return ()
+    return PER_CONTACT if contact.oil is None else (*PER_CONTACT, *PER_FILM)
+
+
+def _drives(pairs: FloatArray) -> NDArray[np.bool_]:
+    return (pairs[:, :, FLANK] > 0.0) & (pairs[:, :, NORMAL] > 0.0)
+
+
+def _contact_values(pairs: FloatArray, line_m: float, contact: PairContact) -> list[FloatArray]:
+    touching = _drives(pairs)
+    # Where nothing touches any contact will do: its values are replaced.
+    position = np.where(touching, pairs[:, :, POSITION], 0.5 * line_m)
+    force = np.where(touching, pairs[:, :, NORMAL] / np.where(touching, pairs[:, :, CARRYING], 1.0), 1.0)
+    radius = relative_radius(position, line_m)
+    values = [hertz_pressure(force / contact.face_width_m, radius, contact.effective_modulus_pa)]
+    if contact.oil is not None:
+        healthy, pitted = contact.roughness_m
+        roughness = np.sqrt(healthy**2 + np.where(touching, pairs[:, :, ROUGH], 0.0) * (pitted**2 - healthy**2))
+        film = masjedi_khonsari_central(contact.oil.groups(position, force, roughness))
+        values += [film, film_ratio(film, roughness), pairs[:, :, ASPERITY_SHARE]]
+    return [np.where(touching, value, np.nan) for value in values]

@@ -1,0 +1,249 @@
+"""PairLaw: the mesh force as a sum over tooth pairs, each with its own stiffness, missing material and friction.
+
+Equations (reference: standard literature; load sharing, friction and contact of pitted flanks as paper B names them:
+Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the line of action and d_n = x - e_n
+
+    drive flank:                   N_n = max(0, f_n(p_n) + c_n ẋ) where f_n(p_n) > 0,   p_n = d_n - Σ_m c_nm N_m
+    back flank, x - e_p < -j:      N_n = min(0, k_n p_n + c_n ẋ),  d_n = x - e_p + j     e_p: place of the teeth alone
+    c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
+    F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
+
+f_n(p) = k_n p, or the force of slices across pitted flanks (`slice_law`). c_nm is the deflection at one pair per unit
+force at another, through the gear bodies that they share; 0 without coupling. Between flanks that approach without
+touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders, iso-viscous; derived); its force
+jumps where the flanks touch, from that of the thinnest film to the mesh damper's, since a film in closed contact is as
+good as rigid. Positions are in base pitches, as in `mesh_force`; outside the path of contact the stiffness is that of
+its end. Load sharing is N_n/ΣN and needs no formula of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.friction.friction import FrictionLaw
+from siggen.dynamics.mesh.packed_tables import PackedTables
+
+if TYPE_CHECKING:
+    from siggen.dynamics.mesh.damping import DampingLaw
+    from siggen.dynamics.mesh.slice_law import SliceLaw
+    from siggen.gears.geometry.missing_material import MissingMaterial
+    from siggen.gears.stiffness.mesh_tables import MeshTables
+
+
+(
+    CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
+    BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
+    LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG,
+) = range(23)  # fmt: skip
+"""Places of single numbers in `PairLaw.scalars`."""
+SCALARS = 23
+
+(
+    TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
+    SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
+    ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT,
+) = range(26)  # fmt: skip
+"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction)
+and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
+HEAD = 26
+
+
+class PairLaw(NamedTuple):
+    """All that the compiled pair law needs, in three arrays (see `packed_tables` for the reason).
+
+    `scalars` (SCALARS,), `numbers` (k,) all tables in a row, `places` (k,) where they begin and the teeth's rows.
+    """
+
+    scalars: FloatArray
+    numbers: FloatArray
+    places: NDArray[np.int64]
+
+    @property
+    def teeth(self) -> int:
+        """Teeth of the pinion."""
+        return int(self.places[TEETH_1])
+
+    @property
+    def slots(self) -> int:
+        """How many pairs can be in reach at once; pair n has slot n mod slots during its whole engagement."""
+        return int(np.floor(self.scalars[REACH_BEFORE] + self.scalars[CONTACT_RATIO] + self.scalars[REACH_AFTER])) + 1
+
+    @property
+    def base_pitch_m(self) -> float:
+        """Distance of neighbouring pairs [m]."""
+        return float(self.scalars[PITCH_M])
+
+    @property
+    def line_of_action_m(self) -> float:
+        """Length T of the line of action [m]."""
+        return float(self.scalars[LINE_M])
+
+    @property
+    def backlash_m(self) -> float:
+        """Total normal backlash [m]."""
+        return float(self.scalars[BACKLASH_M])
+
+    @property
+    def damping_root_kg(self) -> float:
+        """2 ζ √m_e in √kg; where the ratio depends on the lubrication, of its part that is always there."""
+        return float(self.scalars[DAMPING_ROOT])
+
+
+@dataclass(frozen=True, slots=True)
+class SqueezeFilm:
+    """Oil that is pressed out between flanks that approach each other; thinner films than the floor do not occur."""
+
+    viscosity_pa_s: float
+    face_width_m: float
+    floor_m: float
+
+
+def pair_law(
+    tables: MeshTables,
+    missing: MissingMaterial,
+    *,
+    line_of_action_m: float,
+    damping_ratio: float | DampingLaw,
+    equivalent_mesh_mass_kg: float,
+    backlash_m: float,
+    friction: FrictionLaw | None = None,
+    film: SqueezeFilm | None = None,
+    slices: SliceLaw | None = None,
+    coupling_m_per_n: FloatArray | None = None,
+) -> PairLaw:
+    """Return the law of these tables.
+
+    Parameters
+    ----------
+    tables : MeshTables
+        Stiffness of single pairs; with slices, of pairs whose whole face is in contact (`slice_tables`).
+    missing : MissingMaterial
+    line_of_action_m, equivalent_mesh_mass_kg, backlash_m : float
+    damping_ratio : float or DampingLaw
+        ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
+    friction, film : FrictionLaw, SqueezeFilm or None
+    slices : SliceLaw or None
+        On the grid of `tables`: forces of pitted or misaligned flanks.
+    coupling_m_per_n : (apart, points) or None
+        Deflection at one pair per unit force at the pair a + 1 base pitches away, over the position of the pair that
+        entered later, on the grid of `tables` [m/N].
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite, or tables do not fit together.
+    """
+    _check(tables, missing, damping_ratio, backlash_m, film)
+    packed = PackedTables(HEAD)
+    scalars = np.zeros(SCALARS)
+    pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
+    points, missing_points = tables.pair_stiffness_n_per_m.shape[1], missing.pinion.profile_m.shape[1]
+    scalars[CONTACT_RATIO], scalars[PER_PITCH] = ratio, (points - 1) / ratio
+    scalars[MISSING_PER_PITCH] = (missing_points - 1) * pitch / (missing.end_m - missing.start_m)
+    scalars[REACH_BEFORE] = max(0.0, (tables.start_m - missing.start_m) / pitch)
+    scalars[REACH_AFTER] = max(0.0, (missing.end_m - tables.end_m) / pitch)
+    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, line_of_action_m
+    scalars[BACKLASH_M] = backlash_m
+    scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
+    scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
+    _pack_teeth(packed, tables, missing)
+    if slices is not None:
+        _pack_slices(packed, scalars, slices, tables)
+    if coupling_m_per_n is not None:
+        _pack_coupling(packed, coupling_m_per_n, points)
+    if friction is not None:
+        _pack_friction(packed, scalars, friction)
+    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(equivalent_mesh_mass_kg)))
+    scalars.setflags(write=False)
+    return PairLaw(scalars, packed.numbers, packed.index)
+
+
+def _check(
+    tables: MeshTables,
+    missing: MissingMaterial,
+    damping_ratio: float | DampingLaw,
+    backlash_m: float,
+    film: SqueezeFilm | None,
+) -> None:
+    ratios = (damping_ratio,) if isinstance(damping_ratio, (int, float)) else tuple(damping_ratio)
+    numbers = [("damping_ratio", value) for value in ratios] + [("backlash_m", backlash_m)]
+    if film is not None:
+        numbers += [("film viscosity_pa_s", film.viscosity_pa_s)]
+    for name, value in numbers:
+        if not (np.isfinite(value) and value >= 0.0):
+            raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
+    if min(tables.start_m - missing.start_m, missing.end_m - tables.end_m) < -1e-9 * tables.base_pitch_m:
+        raise ValueError(
+            f"missing material: received tables from {missing.start_m} m to {missing.end_m} m; allowed are tables "
+            f"from {tables.start_m} m or before to {tables.end_m} m or after"
+        )
+
+
+def _pack_teeth(packed: PackedTables, tables: MeshTables, missing: MissingMaterial) -> None:
+    packed.head(TEETH_1, tables.table_of_pair.shape[0])
+    packed.head(TEETH_2, tables.table_of_pair.shape[1])
+    packed.head(POINTS, tables.pair_stiffness_n_per_m.shape[1])
+    packed.head(MISSING_POINTS, missing.pinion.profile_m.shape[1])
+    packed.add(STIFFNESS_AT, tables.pair_stiffness_n_per_m)
+    packed.add_index(TABLE_AT, tables.table_of_pair)
+    places = ((MISSING_1_AT, OFFSET_1_AT, KIND_1_AT), (MISSING_2_AT, OFFSET_2_AT, KIND_2_AT))
+    for (profile, offset, kind), teeth in zip(places, (missing.pinion, missing.gear), strict=True):
+        packed.add(profile, teeth.profile_m)
+        packed.add(offset, teeth.offset_m)
+        packed.add_index(kind, teeth.kind_of_tooth)
+
+
+def _pack_slices(packed: PackedTables, scalars: FloatArray, slices: SliceLaw, tables: MeshTables) -> None:
+    if slices.stiffness_n_per_m.shape != tables.pair_stiffness_n_per_m.shape:
+        raise ValueError(
+            f"slices: received tables of shape {slices.stiffness_n_per_m.shape}; allowed are those of the stiffness, "
+            f"{tables.pair_stiffness_n_per_m.shape}"
+        )
+    packed.head(GROUPS, slices.sink_m.shape[2])
+    for place, values in (
+        (SINK_AT, slices.sink_m), (FLUSH_AT, slices.flush), (LAND_AT, slices.land), (ON_DAMAGE_AT, slices.on_damage),
+        (CONTACT_AT, slices.contact_n_per_m),
+    ):  # fmt: skip
+        packed.add(place, values)
+    scalars[LEAD_M] = slices.lead_m
+
+
+def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:
+    table = np.asarray(coupling_m_per_n, dtype=np.float64)
+    if table.ndim != 2 or table.shape[1] != points or not np.isfinite(table).all():
+        raise ValueError(
+            f"coupling_m_per_n: received shape {table.shape}; allowed are finite tables of shape (apart, {points})"
+        )
+    packed.head(APART, table.shape[0])
+    packed.add(COUPLING_AT, table)
+
+
+def _pack_friction(packed: PackedTables, scalars: FloatArray, friction: FrictionLaw) -> None:
+    table = friction.table
+    packed.head(ROUGHNESSES, table.ratio.shape[0])
+    packed.head(LUBRICATED_POSITIONS, table.fluid.shape[0])
+    packed.head(LUBRICATED_LOADS, table.fluid.shape[1])
+    packed.add(RATIO_AT, table.ratio)
+    packed.add(FLUID_AT, table.fluid)
+    scalars[SLIP_SPEED], scalars[BOUNDARY] = friction.slip_speed_m_s, friction.boundary
+    scalars[LUBRICATED_LINE], scalars[LUBRICATED_START] = table.line_m, table.start_m
+    scalars[LUBRICATED_PER_M], scalars[LUBRICATED_FLOOR] = table.per_m, table.floor_n_per_m
+    scalars[LUBRICATED_PER_LOG] = table.per_log
+
+
+def _pack_damping(packed: PackedTables, scalars: FloatArray, ratio: float | DampingLaw, root: float) -> None:
+    """Write 2 ζ √m_e, or its three parts."""
+    if isinstance(ratio, (int, float)):
+        scalars[DAMPING_ROOT] = 2.0 * float(ratio) * root
+        return
+    if packed.index[ROUGHNESSES] == 0:
+        raise ValueError("damping_ratio: received parts by asperity share without a friction law; allowed: with one")
+    packed.head(SHARE_DAMPS, 1)
+    scalars[DAMPING_STRUCTURE], scalars[DAMPING_FILM] = 2.0 * ratio.structure * root, 2.0 * ratio.film * root
+    scalars[DAMPING_ASPERITIES] = 2.0 * ratio.asperities * root
+    scalars[DAMPING_ROOT] = scalars[DAMPING_STRUCTURE] + 0.5 * (scalars[DAMPING_FILM] + scalars[DAMPING_ASPERITIES])

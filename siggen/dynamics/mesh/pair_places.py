@@ -1,0 +1,92 @@
+"""Where the tooth pairs in reach are at an angle, compiled: the table of pairs and all of it that no state changes.
+
+Derived: pair n of the global count is pitches - n base pitches behind its entry. Integrators ask for several states at
+one angle, so what belongs to an angle stays in the table until another one is asked for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray, IntArray
+from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh.pair_law import PairLaw
+
+(
+    NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,
+    PLACED, WHOLE, GAP, OFFSET, CELL, WEIGHT, ROW, ROUGH, COUPLED,
+) = range(20)  # fmt: skip
+"""Columns of the table of pairs: forces [N]; penetration p [m]; stiffness f' where a pair touches, of the whole face
+where not, 0 for an empty slot [N/m]; sliding speed [m/s]; position s [m]; +1, -1, 0 for the drive flank, the back flank
+and no contact; share of the face that carries; asperity share; friction coefficient; damping [N s/m]. Then what is kept
+per angle: the angle [base pitches], stiffness of the whole face, missing material, place of the teeth, cell of the
+tables and weight of its upper end, row, share of the face on damage; from COUPLED on the coupling to older pairs."""
+MOST_APART = 3
+"""Pairs further apart than this do not couple: no gear has more in contact."""
+COLUMNS = COUPLED + MOST_APART
+
+
+def pair_table(law: PairLaw) -> FloatArray:
+    """Return a table (slots, COLUMNS) for `pair_forces`, in which no angle is kept yet."""
+    pairs = np.zeros((law.slots, COLUMNS))
+    pairs[0, PLACED] = np.nan
+    return pairs
+
+
+@njit(cache=True)
+def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
+    """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
+    return numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight
+
+
+@njit(cache=True)
+def _cell(place: float, points: int) -> tuple[int, float]:
+    """Return the cell and the weight of its upper end, `place` intervals from the first point, kept at the ends."""
+    place = min(max(place, 0.0), points - 1.0)
+    cell = min(int(place), points - 2)
+    return cell, place - cell
+
+
+@njit(cache=True)
+def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
+    """Write what depends on the angle alone."""
+    slots = pairs.shape[0]
+    for i in range(slots):
+        pairs[i, WHOLE] = 0.0
+    pairs[0, PLACED] = pitches
+    points = index[at.POINTS]
+    pair = int(np.floor(pitches + scalars[at.REACH_BEFORE]))
+    while pitches - pair < scalars[at.CONTACT_RATIO] + scalars[at.REACH_AFTER]:
+        place = pitches - pair
+        i, tooth_1, tooth_2 = pair % slots, pair % index[at.TEETH_1], pair % index[at.TEETH_2]
+        row = index[index[at.TABLE_AT] + tooth_1 * index[at.TEETH_2] + tooth_2]
+        cell, weight = _cell(place * scalars[at.PER_PITCH], points)
+        pairs[i, WHOLE] = between(numbers, index[at.STIFFNESS_AT] + row * points, cell, weight)
+        pairs[i, ROW], pairs[i, CELL], pairs[i, WEIGHT] = row, cell, weight
+        pairs[i, POSITION] = scalars[at.START_M] + place * scalars[at.PITCH_M]
+        pairs[i, OFFSET] = numbers[index[at.OFFSET_1_AT] + tooth_1] + numbers[index[at.OFFSET_2_AT] + tooth_2]
+        count = index[at.MISSING_POINTS]
+        along, share = _cell((place + scalars[at.REACH_BEFORE]) * scalars[at.MISSING_PER_PITCH], count)
+        first = between(numbers, index[at.MISSING_1_AT] + index[index[at.KIND_1_AT] + tooth_1] * count, along, share)
+        first += between(numbers, index[at.MISSING_2_AT] + index[index[at.KIND_2_AT] + tooth_2] * count, along, share)
+        pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[at.LEAD_M]
+        pairs[i, ROUGH] = 0.0
+        if index[at.GROUPS] > 0:
+            pairs[i, ROUGH] = between(numbers, index[at.ON_DAMAGE_AT] + row * points, cell, weight)
+        for a in range(min(index[at.APART], MOST_APART)):
+            pairs[i, COUPLED + a] = between(numbers, index[at.COUPLING_AT] + a * points, cell, weight)
+        pair -= 1
+
+
+@njit(cache=True, inline="always")
+def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
+    """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
+    for i in range(pairs.shape[0]):
+        if pairs[i, WHOLE] == 0.0:
+            continue
+        pairs[i, FLANK] = 0.0
+        pairs[i, PENETRATION] = approach_m - pairs[i, GAP]
+        if pairs[i, PENETRATION] <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[at.BACKLASH_M]:
+            pairs[i, FLANK] = -1.0
+            pairs[i, PENETRATION] = approach_m - pairs[i, OFFSET] + scalars[at.BACKLASH_M]

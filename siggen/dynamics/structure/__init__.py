@@ -1,0 +1,1 @@
+"""Masses, dampers and springs of gears, shafts, bearings and casing."""

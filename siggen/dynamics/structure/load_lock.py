@@ -1,0 +1,35 @@
+"""The load held softly at its mean speed, so that friction, which takes torque, does not change the speed (derived).
+
+A spring and a damper on the rotation of the load make T_L = T_0 z_2/z_1 + D θ̇_L + K θ_L: the mean of θ̇_L is then zero
+and θ_L settles at a constant angle. At 1 Hz it is far below every mode of the gearbox.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from siggen.dynamics.structure.structure import Element, Structure, assemble
+
+LOCK_HZ = 1.0
+"""Natural frequency of the whole inertia on the spring."""
+LOCK_DAMPING_RATIO = 0.95
+"""Just below critical: the state matrix keeps distinct eigenvalues."""
+
+
+def locked_load(structure: Structure) -> Structure:
+    """Return the structure with spring and damper on the rotation at which the load acts."""
+    torques = dict(zip(structure.coordinates, structure.torque_vector, strict=True))
+    load = min(torques, key=lambda name: torques[name])
+    ratio = -torques[load]
+    turns = {"theta_m": ratio, "theta_1": ratio, "theta_2": 1.0, "theta_l": 1.0}
+    rotation = np.array([turns.get(name, 0.0) for name in structure.coordinates])
+    inertia = float(rotation @ structure.mass @ rotation)
+    omega = 2.0 * np.pi * LOCK_HZ
+    lock = Element({load: 1.0}, inertia * omega**2, 2.0 * LOCK_DAMPING_RATIO * inertia * omega)
+    stiffness, damping = assemble(structure.coordinates, [lock])
+    stiffness, damping = stiffness + structure.stiffness, damping + structure.damping
+    for matrix in (stiffness, damping):
+        matrix.setflags(write=False)
+    return replace(structure, stiffness=stiffness, damping=damping)

@@ -1,0 +1,254 @@
+"""Structure: mass, damping and stiffness of one gear stage, assembled from springs and dampers of rank one.
+
+Equations: 8-DOF translation-torsion model of a spur gear stage (reference: standard literature; the kind of model used
+in paper A: Influence of Tooth Pitting on TVMS and Vibration Response of a Spur Gear Pair); signs of the mesh vector
+derived. Coordinates are deviations from rigid rotation. y is vertical, along the pitch-line velocity of the pinion at
+the mesh; x runs along the centre line from pinion to gear; rotations count positive in the running sense of the shaft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A spring and a damper in parallel along one generalised direction v: k v vᵀ and c v vᵀ."""
+
+    direction: Mapping[str, float]
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """Linear part of the model without the gear mesh, and where forces act and motions are seen.
+
+    Attributes
+    ----------
+    coordinates : names of the n degrees of freedom
+    mass, damping, stiffness : (n, n)
+    mesh_vector : (n,) p, approach along the line of action = pᵀ q; a positive mesh force acts as -p
+    sliding_vectors : (2, n) r_0, r_1: sliding speed of the flanks at s along the line of action = (r_0 + s r_1)ᵀ q̇ plus
+        that of the rigid rotation; a friction force F acts as -(r_0 + s r_1) F
+    torque_vector : (n,) generalised force per unit motor torque, the balancing load torque included
+    equivalent_mesh_mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²)
+    motions : place/axis -> (n,), displacement at that place = vector · q
+    bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
+    """
+
+    coordinates: tuple[str, ...]
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    mesh_vector: FloatArray
+    sliding_vectors: FloatArray
+    torque_vector: FloatArray
+    equivalent_mesh_mass_kg: float
+    motions: Mapping[str, FloatArray]
+    bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True, slots=True)
+class Bearing:
+    """Both bearings of one shaft together, along the centre line (x) and vertical (y)."""
+
+    stiffness_x_n_per_m: float
+    stiffness_y_n_per_m: float
+    damping_x_n_s_per_m: float
+    damping_y_n_s_per_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A torsional shaft with its coupling."""
+
+    stiffness_nm_per_rad: float
+    damping_nm_s_per_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rotor:
+    """One gear with its bearings."""
+
+    base_radius_m: float
+    mass_kg: float
+    inertia_kg_m2: float
+    bearing: Bearing
+
+
+@dataclass(frozen=True, slots=True)
+class SpurStage:
+    """Numbers of a motor, a pinion, a gear and a load; the 6-DOF variant uses only the gears."""
+
+    working_pressure_angle_rad: float
+    pinion: Rotor
+    gear: Rotor
+    motor_inertia_kg_m2: float
+    load_inertia_kg_m2: float
+    input_coupling: Coupling
+    output_coupling: Coupling
+
+    @property
+    def ratio(self) -> float:
+        """Torque at the load per torque at the motor, z_2/z_1."""
+        return self.gear.base_radius_m / self.pinion.base_radius_m
+
+    @property
+    def line_of_action_m(self) -> float:
+        """Distance T of the base tangent points [m]."""
+        radii = self.pinion.base_radius_m + self.gear.base_radius_m
+        return float(radii * np.tan(self.working_pressure_angle_rad))
+
+    @property
+    def equivalent_mesh_mass_kg(self) -> float:
+        """J_1 J_2 / (J_1 R_b2² + J_2 R_b1²) [kg]."""
+        pinion, gear = self.pinion, self.gear
+        return 1.0 / (pinion.base_radius_m**2 / pinion.inertia_kg_m2 + gear.base_radius_m**2 / gear.inertia_kg_m2)
+
+
+def vector(coordinates: Sequence[str], entries: Mapping[str, float]) -> FloatArray:
+    """Return the (n,) vector with the named entries and zeros elsewhere, read-only.
+
+    Raises
+    ------
+    ValueError
+        If an entry names no coordinate.
+    """
+    unknown = set(entries) - set(coordinates)
+    if unknown:
+        raise ValueError(f"received coordinates {sorted(unknown)}; allowed are {', '.join(coordinates)}")
+    result = np.array([entries.get(name, 0.0) for name in coordinates])
+    result.setflags(write=False)
+    return result
+
+
+def assemble(coordinates: Sequence[str], elements: Sequence[Element]) -> tuple[FloatArray, FloatArray]:
+    """Return (stiffness, damping), each (n, n), as sums of k v vᵀ and c v vᵀ over the elements."""
+    n = len(coordinates)
+    stiffness, damping = np.zeros((n, n)), np.zeros((n, n))
+    for element in elements:
+        v = vector(coordinates, element.direction)
+        dyad = v[:, None] * v[None, :]
+        stiffness += element.stiffness * dyad
+        damping += element.damping * dyad
+    return stiffness, damping
+
+
+def eight_dof(stage: SpurStage) -> Structure:
+    """Return motor, pinion, gear and load: q = [θ_m, x_1, y_1, θ_1, x_2, y_2, θ_2, θ_L].
+
+    Source: standard literature (8-DOF spur gear model), see the module.
+    """
+    inertias = {"theta_m": stage.motor_inertia_kg_m2, **_gear_inertias(stage), "theta_l": stage.load_inertia_kg_m2}
+    return _spur_structure(stage, inertias, shafts(stage), driven_at="theta_m", loaded_at="theta_l")
+
+
+def six_dof(stage: SpurStage) -> Structure:
+    """Return pinion and gear alone, q = [x_1, y_1, θ_1, x_2, y_2, θ_2], with the torques applied to the gears.
+
+    Source: standard literature (6-DOF spur gear model), see the module.
+    """
+    return _spur_structure(stage, _gear_inertias(stage), (), driven_at="theta_1", loaded_at="theta_2")
+
+
+def _gear_inertias(stage: SpurStage) -> dict[str, float]:
+    pinion, gear = stage.pinion, stage.gear
+    return {
+        "x_1": pinion.mass_kg,
+        "y_1": pinion.mass_kg,
+        "theta_1": pinion.inertia_kg_m2,
+        "x_2": gear.mass_kg,
+        "y_2": gear.mass_kg,
+        "theta_2": gear.inertia_kg_m2,
+    }
+
+
+def shafts(stage: SpurStage) -> tuple[Element, Element]:
+    """Return the couplings between motor and pinion and between gear and load."""
+    return (
+        Element({"theta_m": 1.0, "theta_1": -1.0}, *_numbers(stage.input_coupling)),
+        Element({"theta_2": 1.0, "theta_l": -1.0}, *_numbers(stage.output_coupling)),
+    )
+
+
+def _numbers(coupling: Coupling) -> tuple[float, float]:
+    return coupling.stiffness_nm_per_rad, coupling.damping_nm_s_per_rad
+
+
+_PLACES = {
+    "pinion_bearing/vertical": "y_1",
+    "pinion_bearing/horizontal": "x_1",
+    "gear_bearing/vertical": "y_2",
+    "gear_bearing/horizontal": "x_2",
+}
+
+
+def _supports(stage: SpurStage) -> dict[str, Element]:
+    """Return place/axis -> the bearing element there."""
+    numbers = {}
+    for index, rotor in (("1", stage.pinion), ("2", stage.gear)):
+        bearing = rotor.bearing
+        numbers["x_" + index] = (bearing.stiffness_x_n_per_m, bearing.damping_x_n_s_per_m)
+        numbers["y_" + index] = (bearing.stiffness_y_n_per_m, bearing.damping_y_n_s_per_m)
+    return {place: Element({name: 1.0}, *numbers[name]) for place, name in _PLACES.items()}
+
+
+def _spur_structure(
+    stage: SpurStage, inertias: Mapping[str, float], couplings: Sequence[Element], *, driven_at: str, loaded_at: str
+) -> Structure:
+    """Assemble grounded bearings, shafts and the gear mesh over the coordinates of `inertias`."""
+    coordinates = tuple(inertias)
+    supports = _supports(stage)
+    stiffness, damping = assemble(coordinates, (*supports.values(), *couplings))
+    mass = np.diag(list(inertias.values()))
+    for matrix in (mass, damping, stiffness):
+        matrix.setflags(write=False)
+    directions = {place: vector(coordinates, element.direction) for place, element in supports.items()}
+    return Structure(
+        coordinates=coordinates,
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        mesh_vector=vector(coordinates, _line_of_action(stage)),
+        sliding_vectors=sliding_vectors(coordinates, stage, _across_line_of_action(stage)),
+        torque_vector=vector(coordinates, {driven_at: 1.0, loaded_at: -stage.ratio}),
+        equivalent_mesh_mass_kg=stage.equivalent_mesh_mass_kg,
+        motions=directions,
+        bearing_forces={
+            place: (directions[place] * element.stiffness, directions[place] * element.damping)
+            for place, element in supports.items()
+        },
+    )
+
+
+def _line_of_action(stage: SpurStage) -> dict[str, float]:
+    """Return p: both gears' motions along the line of action, which runs along (sin α, cos α) from pinion to gear."""
+    sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
+    return {
+        "x_1": sine,
+        "y_1": cosine,
+        "theta_1": stage.pinion.base_radius_m,
+        "x_2": -sine,
+        "y_2": -cosine,
+        "theta_2": -stage.gear.base_radius_m,
+    }
+
+
+def _across_line_of_action(stage: SpurStage) -> dict[str, float]:
+    """Return the sliding of the pinion's flank against the gear's by motion of the gears, across the line of action."""
+    sine, cosine = np.sin(stage.working_pressure_angle_rad), np.cos(stage.working_pressure_angle_rad)
+    return {"x_1": -cosine, "y_1": sine, "x_2": cosine, "y_2": -sine}
+
+
+def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mapping[str, float]) -> FloatArray:
+    """Return r_0, r_1 (2, n): arms s on the pinion, T - s on the gear; `across` is the translation of the gears."""
+    still = vector(coordinates, {**across, "theta_2": -stage.line_of_action_m})
+    result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])
+    result.setflags(write=False)
+    return result

@@ -1,0 +1,19 @@
+"""History: the samples before the first one of a record, for filters that remember (derived)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from siggen.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """What came before sample 0: place/axis -> (h,), the last value one sample before it; empty in a failed response.
+
+    The acceleration before the history is zero where it is shorter than was asked for: the motion began at rest.
+    """
+
+    acceleration_m_s2: Mapping[str, FloatArray]
+    bearing_force_n: Mapping[str, FloatArray]

@@ -1,0 +1,89 @@
+"""Modes of the structure with a constant mesh stiffness: natural frequencies and decay of what the mesh excites.
+
+Equations: eigenvalues of the undamped pencil (K, M) and of the state matrix (reference: standard literature).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotations
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import Equations, state_matrix
+
+EXCITED_SHARE = 1e-9
+"""Modes whose residue in the bearing displacement is below this share of the largest are not excited by the mesh."""
+
+
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """Undamped modes, ascending; rigid ones have frequency 0.
+
+    `frequency_hz` (k,); `shapes` (k, n), mass-normalised, their largest entry positive; `mesh_share` (k,): share of the
+    strain energy that is in the mesh, 0 for rigid modes.
+    """
+
+    frequency_hz: FloatArray
+    shapes: FloatArray
+    mesh_share: FloatArray
+
+
+def natural_modes(structure: Structure, mesh_stiffness_n_per_m: float) -> Modes:
+    """Return the modes of the structure with a constant mesh stiffness [N/m]."""
+    p = structure.mesh_vector
+    stiffness = structure.stiffness + mesh_stiffness_n_per_m * p[:, None] * p[None, :]
+    basis = elastic_basis(structure, stiffness)
+    scaled = basis.T @ stiffness @ basis
+    elastic, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    free = _orthonormal(free_rotations(structure, stiffness), structure.mass)
+    values = np.concatenate([np.zeros(free.shape[1]), elastic])
+    shapes = np.hstack([free, basis @ vectors]).T
+    rigid = np.arange(values.size) < free.shape[1]
+    largest = shapes[np.arange(len(shapes)), np.argmax(np.abs(shapes), axis=1)]
+    shapes = shapes * np.sign(largest)[:, None]
+    # Mass-normalised, so the strain energy of a mode is half its eigenvalue.
+    mesh = mesh_stiffness_n_per_m * (shapes @ p) ** 2
+    share = np.where(rigid, 0.0, mesh / np.where(rigid, 1.0, values))
+    return Modes(np.sqrt(values) / (2.0 * np.pi), shapes, share)
+
+
+def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
+    """Return vectors (n, r) of the same space that are orthonormal in M."""
+    root = np.linalg.cholesky(mass)
+    return np.linalg.solve(root.T, np.linalg.qr(root.T @ vectors)[0])
+
+
+def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> FloatArray:
+    """Return the undamped natural frequencies (n,) [Hz], ascending, at a constant mesh stiffness; rigid ones are 0."""
+    return natural_modes(structure, mesh_stiffness_n_per_m).frequency_hz
+
+
+def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
+    """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
+
+    The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
+    """
+    p, k = structure.mesh_vector, equations.reference_stiffness
+    basis = elastic_basis(structure, structure.stiffness + k * p[:, None] * p[None, :])
+    n, m = basis.shape
+    # In this basis the mass is the identity, and no free rotation is left.
+    matrix = np.zeros((2 * m, 2 * m))
+    full = state_matrix(equations, k, mesh_damping_n_s_per_m)[n:]
+    matrix[:m, m:] = np.eye(m)
+    matrix[m:, :m], matrix[m:, m:] = (basis.T @ structure.mass @ full[:, half] @ basis for half in _halves(n))
+    values, right = np.linalg.eig(matrix)
+    motions = np.array(list(structure.motions.values())) @ basis
+    inputs = np.concatenate([np.zeros(m), basis.T @ p])
+    # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
+    participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
+    residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
+    excited = residue > EXCITED_SHARE * residue.max()
+    return float(max(0.0, (-values.real[excited]).min()))
+
+
+def _halves(n: int) -> tuple[slice, slice]:
+    """Return where displacements and velocities stand in a state (2n,)."""
+    return slice(0, n), slice(n, 2 * n)

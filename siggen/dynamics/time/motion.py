@@ -1,0 +1,37 @@
+"""Motion: what is stepped through time, whatever the structure and the law of the mesh."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import Equations
+
+
+class Motion(Protocol):
+    """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,)."""
+
+    structure: Structure
+    equations: Equations
+    transient_s: float
+    teeth: int
+    base_pitch_m: float
+    largest_approach_m: float
+    internal_names: tuple[str, ...]
+
+    @property
+    def law(self) -> NamedTuple:
+        """The mesh law: tables and numbers."""
+
+    def start(self, pitches: float) -> FloatArray:
+        """Return the state at the start, at a pinion angle in base pitches."""
+
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
+        """Return at how many states no teeth touch."""
+
+    def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
+        """Return the values named in `internal_names` (k, names)."""

@@ -1,0 +1,261 @@
+"""PairMotion: a structure under the forces of single tooth pairs, as what `response` steps through time.
+
+Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F, about the static state at
+the mean mesh stiffness; p and r are the mesh and sliding vectors of the structure. The phase of the mesh is prescribed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
+from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import FLANK, FRICTION, NORMAL, POSITION, pair_table
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.time.equations import Equations, equations_about, external_push, inverse_times
+from siggen.dynamics.time.runge_kutta import runge_kutta_step
+from siggen.dynamics.time.transient import transient_s
+
+MOTION = ("approach_m", "approach_rate_m_s")
+
+
+class PairEquations(NamedTuple):
+    """Constant numbers of the equations of motion and how sliding enters them.
+
+    `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
+    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
+    `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s];
+    `external_input` (m, n): see `Equations`.
+    """
+
+    rows: FloatArray
+    static_force: float
+    static_approach: float
+    rigid_sliding_0: float
+    rigid_sliding_1: float
+    external_input: FloatArray
+
+
+class PairMotion:
+    """Steps with the classical Runge-Kutta method; works with any structure.
+
+    `input_vectors` (m, n) are those of `equations_about`; `speed_input` is the number of the input that is Ω/Ω_0 - 1,
+    or -1 where the speed is constant.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        law: PairLaw,
+        *,
+        torque_nm: float,
+        speed_hz: float,
+        reference_stiffness_n_per_m: float,
+        step_s: float,
+        contact: PairContact | None = None,
+        input_vectors: FloatArray | None = None,
+        speed_input: int = -1,
+    ) -> None:
+        self.structure = structure
+        self.law = law
+        self.contact = contact
+        self.equations = equations_about(
+            structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
+        )
+        self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
+        damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
+        self.transient_s = transient_s(structure, self.equations, damping)
+        self.teeth = law.teeth
+        self.largest_approach_m = law.backlash_m
+        self.base_pitch_m = law.base_pitch_m
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *_names(structure))
+        self._pairs = pair_table(law)
+        self._step_s = step_s
+        self._speed_input = speed_input
+
+    def start(self, pitches: float) -> FloatArray:
+        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
+        equations, p = self.equations, self.equations.mesh_vector
+        approach = static_approach_m(self.law, equations.static_force, pitches)
+        stiffness = equations.reference_stiffness
+        loaded = self.structure.stiffness + stiffness * p[:, None] * p[None, :]
+        moved = p * (stiffness * (approach - equations.static_approach))
+        deviation = static_solution(self.structure, loaded, moved)
+        return np.concatenate([deviation, np.zeros_like(deviation)])
+
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+        column = self._speed_input
+        _advance(self.pair_equations, self.law, self._pairs, self._step_s, column, pitches, inputs, trajectory)
+
+    def rate(self, state: FloatArray, pitches: float) -> FloatArray:
+        """Return ż (2n,) of a state, for other solvers."""
+        rate = np.empty_like(state)
+        pair_rate((self.pair_equations, self.law, self._pairs), state, pitches, rate)
+        return rate
+
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
+        """Return at how many states no pair carries."""
+        return _steps_apart(self.pair_equations, self.law, self._pairs, states, pitches)
+
+    def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
+        """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`; without inputs at Ω_0."""
+        result = np.stack([pair_table(self.law)] * len(states))
+        haste = np.zeros(len(states)) if inputs is None or self._speed_input < 0 else inputs[:, self._speed_input]
+        _all_pairs(self.pair_equations, self.law, states, pitches, np.ascontiguousarray(haste), result)
+        return result
+
+    def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
+        """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
+        n = self.equations.mesh_vector.size
+        found = pair_internals(self.pairs(states, pitches, inputs), self.law.line_of_action_m, self.contact)
+        approach = [
+            self.equations.static_approach + (states[:, :n] * self.equations.mesh_vector).sum(axis=1),
+            (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
+        ]
+        moved = states[:, :n] + self.equations.static_deflection
+        return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
+
+
+def _names(structure: Structure) -> tuple[str, ...]:
+    """Return the names of the coordinates with their units."""
+    units = {True: "rad", False: "m"}
+    turning = ("theta", "phi")
+    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates)
+
+
+def _pair_equations(structure: Structure, equations: Equations, speed_hz: float) -> PairEquations:
+    omega = 2.0 * np.pi * speed_hz
+    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
+    rolling = {"theta_1": 1.0, "theta_2": -p["theta_1"] / p["theta_2"]}
+    rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
+    inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
+    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
+    parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
+    return PairEquations(
+        np.ascontiguousarray(np.concatenate(parts)),
+        equations.static_force,
+        equations.static_approach,
+        float(rigid[0]),
+        float(rigid[1]),
+        equations.external_input,
+    )
+
+
+@njit(cache=True)
+def _hastened(equations: PairEquations, haste: float) -> PairEquations:
+    """Return the equations at the speed Ω_0 (1 + haste)."""
+    ratio = 1.0 + haste
+    return PairEquations(
+        equations.rows,
+        equations.static_force,
+        equations.static_approach,
+        equations.rigid_sliding_0 * ratio,
+        equations.rigid_sliding_1 * ratio,
+        equations.external_input,
+    )
+
+
+# Inlined: taking arrays out of tuples again and again costs as much as the forces (see `packed_tables`).
+@njit(cache=True, inline="always")
+def _load_pairs(
+    equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
+) -> tuple[float, float, float]:
+    """Write the table of pairs of a state; return ΣN, ΣF and Σ s F."""
+    rows = equations.rows
+    n = rows.shape[1]
+    approach, approach_rate = equations.static_approach, 0.0
+    sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
+    for i in range(n):
+        approach += rows[2 * n, i] * state[i]
+        approach_rate += rows[2 * n, i] * state[n + i]
+        sliding_0 += rows[2 * n + 1, i] * state[n + i]
+        sliding_1 += rows[2 * n + 2, i] * state[n + i]
+    write_forces(law.scalars, law.numbers, law.places, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
+    normal, friction, moment = 0.0, 0.0, 0.0
+    for i in range(pairs.shape[0]):
+        normal += pairs[i, NORMAL]
+        friction += pairs[i, FRICTION]
+        moment += pairs[i, POSITION] * pairs[i, FRICTION]
+    return normal, friction, moment
+
+
+# Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
+@njit(cache=True, inline="always")
+def pair_rate(
+    model: tuple[PairEquations, PairLaw, FloatArray], state: FloatArray, pitches: float, rate: FloatArray
+) -> None:
+    """Write ż (2n,) of a state into `rate`; the form that integrators call."""
+    equations, law, pairs = model
+    normal, friction, moment = _load_pairs(equations, law, pairs, state, pitches)
+    excess = normal - equations.static_force
+    rows = equations.rows
+    n = rows.shape[1]
+    for i in range(n):
+        rate[i] = state[n + i]
+        rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
+    # Columns outside, so that the inner loop carries no sum and runs on several rates at once; displacement and
+    # velocity of a coordinate together, which halves the traffic to memory.
+    for j in range(n):
+        displacement, velocity = state[j], state[n + j]
+        for i in range(n):
+            rate[n + i] += rows[j, i] * displacement + rows[n + j, i] * velocity
+
+
+@njit(cache=True)
+def _advance(
+    equations: PairEquations,
+    law: PairLaw,
+    pairs: FloatArray,
+    step_s: float,
+    speed_input: int,
+    pitches: FloatArray,
+    inputs: FloatArray,
+    trajectory: FloatArray,
+) -> None:
+    scratch = np.empty((3, trajectory.shape[1]))
+    pushes = np.empty((2, trajectory.shape[1] // 2 if inputs.shape[1] > 0 else 0))
+    model = (equations, law, pairs)
+    for i in range(pitches.size - 1):
+        start, end = trajectory[i], trajectory[i + 1]
+        external_push(equations.external_input, inputs[i], pushes[0])
+        external_push(equations.external_input, inputs[i + 1], pushes[1])
+        if speed_input >= 0:
+            model = (_hastened(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
+        runge_kutta_step(
+            pair_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
+        )
+
+
+@njit(cache=True)
+def _steps_apart(
+    equations: PairEquations, law: PairLaw, pairs: FloatArray, states: FloatArray, pitches: FloatArray
+) -> int:
+    count = 0
+    for i in range(states.shape[0]):
+        _load_pairs(equations, law, pairs, states[i], pitches[i])
+        touching = False
+        for j in range(pairs.shape[0]):
+            touching = touching or pairs[j, FLANK] != 0.0
+        if not touching:
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def _all_pairs(
+    equations: PairEquations,
+    law: PairLaw,
+    states: FloatArray,
+    pitches: FloatArray,
+    haste: FloatArray,
+    result: FloatArray,
+) -> None:
+    for i in range(states.shape[0]):
+        _load_pairs(_hastened(equations, haste[i]), law, result[i], states[i], pitches[i])

@@ -1,0 +1,330 @@
+"""Response: accelerations and bearing forces of a gear stage at the output rate, after the transient."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.drive.drive import Drive, Rotation
+from siggen.dynamics.drive.excitation import Excitation
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.decimation import Decimator, half_length, second_difference_taps, value_taps
+from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
+from siggen.dynamics.time.history import History
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.transient import settling_steps
+from siggen.errors import SolverFailure
+
+if TYPE_CHECKING:
+    from siggen.gears.stiffness.mesh_tables import MeshTables
+
+
+APPROACH_LIMIT_PITCHES = 0.1
+"""Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
+BLOCK_SAMPLES = 2048
+"""Output samples per block of integration; bounds the memory independently of the duration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """What the gear stage does, at the output rate; sample 0 is at time 0. A failed one has a status and empty arrays.
+
+    Attributes
+    ----------
+    acceleration_m_s2 : place/axis -> (n,), low-passed to the band of `fs_hz`
+    bearing_force_n : place/axis -> (n,), force of spring and damper on the housing, low-passed alike, mean included;
+        empty if not asked for
+    angle_rad : (n,) pinion angle at the samples
+    tacho_s : (k,) times of whole revolutions of the pinion
+    contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
+    status, reason : "ok" and "", or what went wrong, with numbers
+    internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
+    history : the samples before sample 0 of accelerations and bearing forces; (0,) arrays unless asked for
+    """
+
+    fs_hz: float
+    acceleration_m_s2: Mapping[str, FloatArray]
+    bearing_force_n: Mapping[str, FloatArray]
+    angle_rad: FloatArray
+    tacho_s: FloatArray
+    contact_loss_share: float
+    status: str
+    reason: str
+    internals: Mapping[str, FloatArray]
+    history: History
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """A motion with its time grid: `steps_per_sample` integration steps per output sample, step 0 at time 0."""
+
+    motion: Motion
+    drive: Rotation
+    fs_hz: float
+    steps_per_sample: int
+    excitation: Excitation | None = None
+
+    @property
+    def limit_m(self) -> float:
+        return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
+
+    def time_s(self, first: int, count: int) -> FloatArray:
+        return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
+
+    def pitches(self, first: int, count: int) -> FloatArray:
+        """Return the pinion angle in base pitches at `count` steps from step `first`."""
+        return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+
+    def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
+        """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
+        if self.excitation is None:
+            return no_inputs(pitches)
+        return self.excitation.inputs(self.time_s(first, pitches.size), self.drive)
+
+
+def simulate_response(
+    structure: Structure,
+    tables: MeshTables,
+    *,
+    torque_nm: float,
+    speed_hz: float,
+    start_angle_rad: float,
+    mesh_damping_ratio: float,
+    backlash_m: float,
+    fs_hz: float,
+    samples: int,
+    steps_per_sample: int,
+    integrator: str = "product",
+    internals: bool = False,
+) -> Response:
+    """Return the stationary response under the linear mesh law at constant speed and motor torque.
+
+    Parameters
+    ----------
+    torque_nm : motor torque; negative loads the back flank
+    speed_hz, start_angle_rad : pinion speed and its angle at sample 0
+    mesh_damping_ratio, backlash_m : ζ and the total normal backlash j_n; backlash 0 gives the linear model
+    fs_hz, samples, steps_per_sample : output rate, number of output samples, integration steps per output sample
+    integrator : "product" or "runge_kutta"
+    internals : whether to add mesh_force_n, mesh_stiffness_n_per_m, approach_m (half the backlash plus the dynamic
+        transmission error on the drive flank) and approach_rate_m_s
+
+    Raises
+    ------
+    ValueError
+        If an argument is outside its allowed range.
+    """
+    check_grid(fs_hz, samples, steps_per_sample)
+    motion = LinearMotion(
+        structure,
+        tables,
+        torque_nm=torque_nm,
+        mesh_damping_ratio=mesh_damping_ratio,
+        backlash_m=backlash_m,
+        step_s=1.0 / (fs_hz * steps_per_sample),
+        integrator=integrator,
+    )
+    drive = Drive(speed_hz, start_angle_rad)
+    return response_of(
+        motion, drive, fs_hz=fs_hz, samples=samples, steps_per_sample=steps_per_sample, internals=internals
+    )
+
+
+def response_of(
+    motion: Motion,
+    drive: Rotation,
+    *,
+    fs_hz: float,
+    samples: int,
+    steps_per_sample: int,
+    internals: bool = False,
+    bearing_forces: bool = True,
+    excitation: Excitation | None = None,
+    settle_s: float = 0.0,
+    history_s: float = 0.0,
+) -> Response:
+    """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
+
+    Starts from the static equilibrium and discards the transient that the motion states, or `settle_s` if that is
+    longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else.
+    Filtering bearing forces costs about a fifth of a response; without `bearing_forces` there are none. The motion must
+    hold the vectors of `excitation`.
+
+    Raises
+    ------
+    ValueError
+        If rate or counts are not positive.
+    """
+    check_grid(fs_hz, samples, steps_per_sample)
+    run = _Run(motion, drive, fs_hz, steps_per_sample, excitation)
+    try:
+        settle = settling_steps(motion.transient_s, settle_s, fs_hz * steps_per_sample)
+        history = min(round(history_s * fs_hz), settle // steps_per_sample)
+        return _simulate(run, samples, internals, bearing_forces, settle, history)
+    except SolverFailure as failure:
+        return _failed(run, failure)
+
+
+def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
+    """Refuse rates and counts that are no time grid.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not positive.
+    """
+    if not (np.isfinite(fs_hz) and fs_hz > 0.0):
+        raise ValueError(f"fs_hz: received {fs_hz}; allowed are finite rates above 0")
+    if samples < 1 or steps_per_sample < 1:
+        raise ValueError(
+            f"samples, steps_per_sample: received {samples}, {steps_per_sample}; allowed are counts from 1"
+        )
+
+
+def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, settle: int, history: int) -> Response:
+    """Step through transient and record block by block; keep only the filtered outputs and what was asked for."""
+    half, steps = half_length(run.steps_per_sample), run.steps_per_sample
+    state = run.motion.start(run.pitches(-half - settle, 1)[0])
+    begin = -half - history * steps
+    for _ in _blocks(run, state, -half - settle, begin):
+        pass
+    decimators = [_acceleration_decimator(run, history + samples)]
+    decimators += [_force_decimator(run, history + samples)] if bearing_forces else []
+    inner: list[FloatArray] = []
+    lost = 0
+    for first, states in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
+        for decimator in decimators:
+            decimator.take(states)
+        recorded = slice(max(0, -first), max(0, samples * steps - first))
+        lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
+        if internals and first + len(states) > 0:  # nothing of the history
+            inner.append(_inner_values(run, first, states, samples))
+    return _finished(run, [d.values for d in decimators], inner, lost / (samples * steps), history)
+
+
+def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tuple[int, FloatArray]]:
+    """Yield (first step, states (steps, 2n)) from step `start` up to but without `stop`; leave `state` at `stop`.
+
+    Raises
+    ------
+    SolverFailure
+        If the state is not finite or the teeth would have passed through each other.
+    """
+    block = BLOCK_SAMPLES * run.steps_per_sample
+    trajectory = np.empty((min(block, stop - start) + 1, state.size))
+    for first in range(start, stop, block):
+        count = min(block, stop - first)
+        trajectory[0] = state
+        pitches = run.pitches(first, count + 1)
+        run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
+        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
+        if beyond >= 0:
+            raise _divergence(run, first + beyond, trajectory[beyond])
+        state[:] = trajectory[count]
+        yield first, trajectory[:count]
+
+
+def _divergence(run: _Run, step: int, state: FloatArray) -> SolverFailure:
+    approach, _ = approach_of(run.motion.equations, state)
+    time = step / (run.fs_hz * run.steps_per_sample)
+    return SolverFailure(
+        "diverged",
+        f"approach {approach:.3e} m at {time:.6f} s (before 0 s: transient); allowed are finite values within "
+        f"{run.limit_m:.3e} m; raise steps_per_sample (received {run.steps_per_sample}) or the damping",
+    )
+
+
+@njit(cache=True)
+def _first_beyond(equations: Equations, states: FloatArray, limit_m: float) -> int:
+    """Return the first row whose approach is not a finite number within the limit, or -1."""
+    for i in range(states.shape[0]):
+        approach, _ = approach_of(equations, states[i])
+        if not abs(approach) <= limit_m:
+            return i
+    return -1
+
+
+def _inner_values(run: _Run, first: int, states: FloatArray, samples: int) -> FloatArray:
+    """Return the internals (k, names) at those steps of a block that are output samples."""
+    steps = np.arange(first, first + len(states))
+    chosen = (steps >= 0) & (steps % run.steps_per_sample == 0) & (steps < samples * run.steps_per_sample)
+    pitches = run.pitches(first, len(states))
+    return run.motion.internals(states[chosen], pitches[chosen], run.inputs(first, pitches)[chosen])
+
+
+def _acceleration_decimator(run: _Run, samples: int) -> Decimator:
+    """Return what turns displacements into low-passed accelerations."""
+    motions = run.motion.structure.motions.values()
+    rows = np.array([np.concatenate([motion, np.zeros_like(motion)]) for motion in motions])
+    second_rate = second_difference_taps(run.steps_per_sample) * (run.fs_hz * run.steps_per_sample) ** 2
+    return Decimator(rows, second_rate, run.steps_per_sample, samples)
+
+
+def _force_decimator(run: _Run, samples: int) -> Decimator:
+    """Return what filters bearing forces about their static values; a model without bearings has no rows."""
+    structure, steps = run.motion.structure, run.steps_per_sample
+    pairs = [np.concatenate(pair) for pair in structure.bearing_forces.values()]
+    return Decimator(np.array(pairs).reshape(-1, 2 * len(structure.coordinates)), value_taps(steps), steps, samples)
+
+
+def _finished(
+    run: _Run, values: list[FloatArray], inner: list[FloatArray], contact_loss_share: float, history: int
+) -> Response:
+    """Name the columns of accelerations and forces (history + n, channels), forces if there are any, and internals."""
+    motions, count = run.motion.structure.motions, len(values[0]) - history
+    forces = [_with_static_part(run, part) for filtered in values[1:] for part in np.split(filtered, [history])]
+    before, recorded = forces or ({}, {})
+    return Response(
+        fs_hz=run.fs_hz,
+        acceleration_m_s2=_named(motions, values[0][history:].T),
+        bearing_force_n=recorded,
+        angle_rad=_frozen(run.drive.angle_rad(np.arange(count) / run.fs_hz)),
+        tacho_s=run.drive.tacho_s(count / run.fs_hz),
+        contact_loss_share=contact_loss_share,
+        status="ok",
+        reason="",
+        internals=_named(run.motion.internal_names, np.concatenate(inner).T) if inner else {},
+        history=History(_named(motions, values[0][:history].T), before),
+    )
+
+
+def _with_static_part(run: _Run, forces: FloatArray) -> Mapping[str, FloatArray]:
+    """Name the columns of bearing forces (n, places), which were filtered about their static values."""
+    static = run.motion.equations.static_deflection
+    bearings = run.motion.structure.bearing_forces
+    columns = (column + (pair[0] * static).sum() for column, pair in zip(forces.T, bearings.values(), strict=True))
+    return _named(bearings, columns)
+
+
+def _named(names: Iterable[str], columns: Iterable[FloatArray]) -> Mapping[str, FloatArray]:
+    return {name: _frozen(column) for name, column in zip(names, columns, strict=True)}
+
+
+def _failed(run: _Run, failure: SolverFailure) -> Response:
+    """Return a response without samples that says what went wrong."""
+    empty = _frozen(np.empty(0))
+    return Response(
+        fs_hz=run.fs_hz,
+        acceleration_m_s2=dict.fromkeys(run.motion.structure.motions, empty),
+        bearing_force_n=dict.fromkeys(run.motion.structure.bearing_forces, empty),
+        angle_rad=empty,
+        tacho_s=empty,
+        contact_loss_share=0.0,
+        status=failure.status,
+        reason=failure.reason,
+        internals={},
+        history=History({}, {}),
+    )
+
+
+def _frozen(values: FloatArray) -> FloatArray:
+    """Return a contiguous read-only copy."""
+    array = np.array(values)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,26 @@
+"""The time that is simulated and discarded before the first sample."""
+
+from __future__ import annotations
+
+import math
+
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import Equations
+from siggen.dynamics.time.modes import slowest_decay_per_s
+
+DECAY_TIMES = 5.0
+"""Length of the discarded transient in decay times of the slowest mode that the mesh excites; from the static start
+less than 1e-5 of the acceleration is left then."""
+TRANSIENT_CAP_S = 5.0
+"""Longest transient that is computed; reached by modes that decay slower than 1/s, undamped ones included."""
+
+
+def transient_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
+    """Return the time [s] that is simulated and discarded before sample 0."""
+    decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)
+    return min(TRANSIENT_CAP_S, DECAY_TIMES / decay) if decay > 0.0 else TRANSIENT_CAP_S
+
+
+def settling_steps(transient_s: float, settle_s: float, rate_hz: float) -> int:
+    """Return the steps that are computed and discarded before sample 0: the transient's, or of `settle_s` if longer."""
+    return math.ceil(max(transient_s, settle_s) * rate_hz)

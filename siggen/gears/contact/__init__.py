@@ -1,0 +1,1 @@
+"""Contact of a tooth pair across the face."""

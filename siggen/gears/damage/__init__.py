@@ -1,0 +1,1 @@
+"""Damage on flanks: outlines, their union, what the contact line meets."""

@@ -1,0 +1,255 @@
+"""Chords of the damage along the profile, on lines across the face: where a contact finds land, where it finds a pit.
+
+Derived. The face is cut into slices of equal width, each seen on its middle line. On a line the damage of a flank is
+the exact union of its outlines (the rows of `pit_rows`), as intervals of the arc R_b ψ²/2 along the involute: the
+length in which the mating flank sees a pit, unlike the height x and unlike the path s, in which 1 mm of arc near the
+base circle is several. At a contact the intervals of both flanks lie on one tangent, whose coordinate grows with the
+pinion's arc and falls with the gear's; where they touch they are one pit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import asin, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray, IntArray
+from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.union import square_depth
+from siggen.gears.geometry import involute
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+
+BEYOND_TIP = 1.5
+"""Pits are followed up to this multiple of the tip's roll angle: a pit open at the tip has no edge there."""
+
+
+class FlankChords(NamedTuple):
+    """Pits of one flank on the middle line of every slice (a named tuple, since compiled code takes no dataclass).
+
+    `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `intervals` (slices,): how many;
+    `face_m` (slices,): the lines; `pits` (n, 13): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    intervals: IntArray
+    face_m: FloatArray
+    pits: FloatArray
+    base_radius_m: float
+    half_angle_rad: float
+
+
+class ContactChords(NamedTuple):
+    """What slices meet at positions, each (positions, slices).
+
+    `covered`: share of the Hertz band over pits; `edge_m`: distance to the nearest edge of the pit at the contact, 0 on
+    a land; `depth_m`: depth of the floor there, 0 on a land.
+    """
+
+    covered: FloatArray
+    edge_m: FloatArray
+    depth_m: FloatArray
+
+
+def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, slices: int) -> FlankChords:
+    """Return the chords of one flank; pits without extent in any direction are no pits.
+
+    Parameters
+    ----------
+    gear : SpurGear
+    pits : iterable of Pit or Spall
+        Pits of one tooth; their `gear` and `tooth` are not read.
+    face_width_m : float
+    slices : int
+        Equal slices across the face, at least 1.
+
+    Raises
+    ------
+    ValueError
+        If there is no slice or a pit is impossible.
+    """
+    if slices < 1:
+        raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
+    rows = pit_rows(pit for pit in pits if has_extent(pit))
+    face = face_width_m * (np.arange(slices) + 0.5) / slices
+    highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
+    low, high, count = _line_unions(face, rows, highest)
+    return FlankChords(
+        low=_arcs(gear, low),
+        high=_arcs(gear, high),
+        intervals=count,
+        face_m=face,
+        pits=rows,
+        base_radius_m=gear.base_radius_m,
+        half_angle_rad=gear.base_half_angle_rad,
+    )
+
+
+def contact_chords(
+    pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m: FloatArray, half_width_m: FloatArray
+) -> ContactChords:
+    """Return what every slice meets at contact positions s (k,) with Hertz half-widths a_H (k,) [m].
+
+    The covered share weighs the damage within the Hertz band by the pressure, a semi-ellipse: a pit much narrower than
+    the band covers next to nothing, a wide one all.
+    """
+    shape = (position_m.size, pinion.intervals.size)
+    out = ContactChords(np.zeros(shape), np.zeros(shape), np.zeros(shape))
+    room = pinion.low.shape[1] + gear.low.shape[1]
+    _fill_contact(pair.line_of_action_m, pinion, gear, position_m, half_width_m, np.empty((2, room)), out)
+    # Shares of several pits may add up to 1 less a rounding error: that is no land.
+    np.copyto(out.covered, 1.0, where=out.covered > 1.0 - 1e-12)
+    return out
+
+
+def has_extent(damage: Pit | Spall) -> bool:
+    """Whether a pit or spall has depth, height and width; one without is none at all (a limit case of the tests)."""
+    (low, high), (left, right) = damage.outline.height_range_m, damage.outline.face_range_m
+    return damage.depth_m != 0.0 and low != high and left != right
+
+
+@njit(cache=True)
+def semi_ellipse_share(offset: float) -> float:
+    """Return the part of a semi-ellipse of half-width 1 that lies below `offset`: 0 at -1, 1/2 at 0, 1 at 1."""
+    if offset <= -1.0:
+        return 0.0
+    if offset >= 1.0:
+        return 1.0
+    return 0.5 + (offset * sqrt((1.0 - offset) * (1.0 + offset)) + asin(offset)) / pi
+
+
+@njit(cache=True)
+def _line_unions(face: FloatArray, pits: FloatArray, highest: float) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return the merged intervals of height (slices, rows) on every line, clipped to 0 and `highest`."""
+    room = pits.shape[0]
+    low, high = np.zeros((face.size, room)), np.zeros((face.size, room))
+    left, right = np.empty(room), np.empty(room)
+    merged = np.zeros(face.size, np.int64)
+    for j in range(face.size):
+        filled = 0
+        for i in range(room):
+            first, last = _heights_on_line(face[j], pits, i)
+            first, last = max(first, 0.0), min(last, highest)
+            if last <= first:
+                continue
+            k = filled
+            while k > 0 and left[k - 1] > first:
+                left[k], right[k] = left[k - 1], right[k - 1]
+                k -= 1
+            left[k], right[k] = first, last
+            filled += 1
+        merged[j] = _merge(left, right, filled, low[j], high[j])
+    return low, high, merged
+
+
+@njit(cache=True)
+def _heights_on_line(face: float, pits: FloatArray, i: int) -> tuple[float, float]:
+    """Return the heights between which row i covers the line at `face`; an empty interval where it does not."""
+    if pits[i, 6] == 0.0:
+        v = (face - pits[i, 1]) / pits[i, 2]
+        reach = pits[i, 3] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
+        return pits[i, 0] - reach, pits[i, 0] + reach
+    # A trapezoid: from its lowest (0) to its highest point (1), where left side <= face <= right side, both straight.
+    first, last = 0.0, 1.0
+    for side in range(2):
+        sign = 1.0 if side == 0 else -1.0
+        at_low, at_high = sign * (face - pits[i, 9 + side]), sign * (face - pits[i, 11 + side])
+        if at_low < 0.0 and at_high < 0.0:
+            return 0.0, 0.0
+        if at_low < 0.0:
+            first = max(first, at_low / (at_low - at_high))
+        elif at_high < 0.0:
+            last = min(last, at_low / (at_low - at_high))
+    height = pits[i, 8] - pits[i, 7]
+    return (
+        pits[i, 7] if first == 0.0 else pits[i, 7] + first * height,
+        pits[i, 8] if last == 1.0 else pits[i, 7] + last * height,
+    )
+
+
+@njit(cache=True)
+def _merge(left: FloatArray, right: FloatArray, filled: int, low: FloatArray, high: FloatArray) -> int:
+    """Write the union of intervals sorted by `left` as separate intervals and return their number."""
+    count = 0
+    for k in range(filled):
+        if count and left[k] <= high[count - 1]:
+            high[count - 1] = max(high[count - 1], right[k])
+        else:
+            low[count], high[count] = left[k], right[k]
+            count += 1
+    return count
+
+
+def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
+    """Return the arc along the involute, R_b ψ²/2, at heights (slices, k) [m]."""
+    roll = involute.rolls_at_heights(height_m.ravel(), gear.base_radius_m, gear.base_half_angle_rad)
+    return np.ascontiguousarray((0.5 * gear.base_radius_m * roll**2).reshape(height_m.shape))
+
+
+@njit(cache=True)
+def _depth_at(height: float, face: float, pits: FloatArray) -> float:
+    """Return the largest depth of the pits at a point of the flank, 0 on a land."""
+    deepest = 0.0
+    for i in range(pits.shape[0]):
+        low, high = _heights_on_line(face, pits, i)
+        if low < height < high:
+            deepest = max(deepest, sqrt(square_depth(height, face, pits, i)))
+    return deepest
+
+
+@njit(cache=True)
+def _tangent_union(
+    pinion: FlankChords, gear: FlankChords, j: int, arc_1: float, arc_2: float, room: FloatArray, merged: FloatArray
+) -> int:
+    """Write the pits of both flanks on line j along the tangent at the contact, as separate intervals."""
+    filled = 0
+    for side in range(2):
+        count = pinion.intervals[j] if side == 0 else gear.intervals[j]
+        for k in range(count):
+            if side == 0:
+                low, high = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
+            else:
+                low, high = arc_2 - gear.high[j, k], arc_2 - gear.low[j, k]
+            at = filled
+            while at > 0 and room[0, at - 1] > low:
+                room[0, at], room[1, at] = room[0, at - 1], room[1, at - 1]
+                at -= 1
+            room[0, at], room[1, at] = low, high
+            filled += 1
+    return _merge(room[0], room[1], filled, merged[0], merged[1])
+
+
+@njit(cache=True)
+def _fill_contact(
+    line: float,
+    pinion: FlankChords,
+    gear: FlankChords,
+    position: FloatArray,
+    half_width: FloatArray,
+    room: FloatArray,
+    out: ContactChords,
+) -> None:
+    merged = np.empty_like(room)
+    for i in range(position.size):
+        roll_1 = position[i] / pinion.base_radius_m
+        roll_2 = (line - position[i]) / gear.base_radius_m
+        arc_1 = 0.5 * pinion.base_radius_m * roll_1 * roll_1
+        arc_2 = 0.5 * gear.base_radius_m * roll_2 * roll_2
+        height_1 = involute.height(roll_1, pinion.base_radius_m, pinion.half_angle_rad)
+        height_2 = involute.height(roll_2, gear.base_radius_m, gear.half_angle_rad)
+        for j in range(pinion.intervals.size):
+            if pinion.intervals[j] + gear.intervals[j] == 0:
+                continue
+            count = _tangent_union(pinion, gear, j, arc_1, arc_2, room, merged)
+            for k in range(count):
+                low, high = merged[0, k], merged[1, k]
+                share = semi_ellipse_share(high / half_width[i]) - semi_ellipse_share(low / half_width[i])
+                out.covered[i, j] += share
+                if low < 0.0 < high:
+                    out.edge_m[i, j] = min(-low, high)
+                    depth = _depth_at(height_1, pinion.face_m[j], pinion.pits)
+                    out.depth_m[i, j] = depth + _depth_at(height_2, gear.face_m[j], gear.pits)

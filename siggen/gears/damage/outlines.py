@@ -1,0 +1,204 @@
+"""Outlines of damage on a flank, in the plane of height and face: ellipses, rectangles, Vs and any simple polygon.
+
+Derived. Every outline becomes primitives that cover one interval of the face at each height: an ellipse is one, a
+polygon is cut at the heights of its vertices into trapezoids with straight sides. Their union is exact because no
+outline is approximated by another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from math import isfinite
+from typing import TypeAlias
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.errors import counted
+
+COLUMNS = 13
+"""Width of a row of `rows`; see there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipse:
+    """Ellipse with centre (height, face) and semi-axes across the face and along the height [m]."""
+
+    height_m: float
+    face_m: float
+    semi_axis_face_m: float
+    semi_axis_profile_m: float
+
+    @property
+    def shape(self) -> str:
+        """Name of the outline."""
+        return "ellipse"
+
+    @property
+    def height_range_m(self) -> tuple[float, float]:
+        """Lowest and highest point [m]."""
+        return self.height_m - self.semi_axis_profile_m, self.height_m + self.semi_axis_profile_m
+
+    @property
+    def face_range_m(self) -> tuple[float, float]:
+        """First and last point across the face [m]."""
+        return self.face_m - self.semi_axis_face_m, self.face_m + self.semi_axis_face_m
+
+    def problems(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (name, received, allowed) of everything that makes this no ellipse."""
+        for name in ("height_m", "face_m"):
+            if not isfinite(getattr(self, name)):
+                yield name, f"{name} {getattr(self, name)!r}", "finite"
+        for name in ("semi_axis_face_m", "semi_axis_profile_m"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value > 0.0):
+                yield name, f"{name} {value!r} m", "finite and above 0"
+
+    def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
+        """Return the one row of an ellipse; see `rows`."""
+        low, high = self.height_range_m
+        box = (self.height_m, self.face_m, self.semi_axis_face_m, self.semi_axis_profile_m)
+        return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    """Simple polygon, convex or not.
+
+    Parameters
+    ----------
+    vertices_m : tuple of (height, face)
+        Corners in order, either way round; the last is joined to the first [m].
+    shape : str
+        Name of the outline: 'rectangle', 'v' or 'polygon'; geometry follows from the vertices alone.
+    """
+
+    vertices_m: tuple[tuple[float, float], ...]
+    shape: str = "polygon"
+
+    @property
+    def height_m(self) -> float:
+        """Middle of the height range [m]."""
+        return 0.5 * sum(self.height_range_m)
+
+    @property
+    def face_m(self) -> float:
+        """Middle of the range across the face [m]."""
+        return 0.5 * sum(self.face_range_m)
+
+    @property
+    def height_range_m(self) -> tuple[float, float]:
+        """Lowest and highest point [m]."""
+        heights = [height for height, _ in self.vertices_m]
+        return min(heights), max(heights)
+
+    @property
+    def face_range_m(self) -> tuple[float, float]:
+        """First and last point across the face [m]."""
+        faces = [face for _, face in self.vertices_m]
+        return min(faces), max(faces)
+
+    def problems(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (name, received, allowed) of what makes this no simple polygon."""
+        if len(self.vertices_m) < 3:
+            yield "vertices_m", counted(len(self.vertices_m), "vertex", "vertices"), "at least 3"
+        elif not np.all(np.isfinite(self.vertices_m)):
+            bad = next(i for i, corner in enumerate(self.vertices_m) if not np.all(np.isfinite(corner)))
+            yield "vertices_m", f"vertex {bad} {self.vertices_m[bad]!r}", "finite coordinates"
+        else:
+            crossing = _meeting_edges(np.array(self.vertices_m, dtype=np.float64))
+            if crossing is not None:
+                received = f"a polygon whose edges {crossing[0]} and {crossing[1]} meet (edge i starts at vertex i)"
+                yield "vertices_m", received, "a simple polygon: edges of some length that meet at their ends only"
+
+    def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
+        """Return one row per trapezoid; see `rows`. A dish refers to the height range of the whole polygon."""
+        low, high = self.height_range_m
+        return [_trapezoid_row(t, 0.5 * (low + high), 0.5 * (high - low), depth_m, dish) for t in trapezoids(self)]
+
+
+Outline: TypeAlias = Ellipse | Polygon
+
+
+def rectangle(height_range_m: tuple[float, float], face_range_m: tuple[float, float]) -> Polygon:
+    """Return the rectangle between two heights and two places across the face."""
+    (low, high), (left, right) = height_range_m, face_range_m
+    return Polygon(((low, left), (low, right), (high, right), (high, left)), "rectangle")
+
+
+def v_outline(
+    height_range_m: tuple[float, float], face_m: float, lower_width_m: float, upper_width_m: float
+) -> Polygon:
+    """Return the V (triangle or trapezoid, symmetric about `face_m`) with widths at its lower and upper edge."""
+    low, high = height_range_m
+    corners = [
+        (low, face_m - 0.5 * lower_width_m),
+        (low, face_m + 0.5 * lower_width_m),
+        (high, face_m + 0.5 * upper_width_m),
+        (high, face_m - 0.5 * upper_width_m),
+    ]
+    return Polygon(tuple(dict.fromkeys(corners)), "v")
+
+
+def _trapezoid_row(sides: tuple[float, ...], middle: float, half: float, depth: float, dish: bool) -> tuple[float, ...]:
+    low, high, left_low, right_low, left_high, right_high = sides
+    left, right = min(left_low, left_high), max(right_low, right_high)
+    box = (middle, 0.5 * (left + right), 0.5 * (right - left), half)
+    return (*box, depth, float(dish), 1.0, low, high, left_low, right_low, left_high, right_high)
+
+
+@lru_cache(maxsize=4096)
+def trapezoids(polygon: Polygon) -> tuple[tuple[float, ...], ...]:
+    """Return a polygon without problems as trapezoids (low, high, left and right at low, left and right at high)."""
+    corners = np.array(polygon.vertices_m, dtype=np.float64)
+    after = np.roll(corners, -1, axis=0)
+    rising = after[:, 0] > corners[:, 0]
+    start, stop = np.where(rising[:, np.newaxis], corners, after), np.where(rising[:, np.newaxis], after, corners)
+    levels = np.unique(corners[:, 0])
+    out = []
+    for low, high in pairwise(levels):
+        crossing = (start[:, 0] <= low) & (stop[:, 0] >= high)
+        lower, upper = (_faces_at(start[crossing], stop[crossing], level) for level in (low, high))
+        order = np.argsort(lower + upper, kind="stable")
+        for left, right in zip(order[::2], order[1::2], strict=True):
+            out.append(tuple(float(v) for v in (low, high, lower[left], lower[right], upper[left], upper[right])))
+    return tuple(out)
+
+
+def _faces_at(start: FloatArray, stop: FloatArray, level: float) -> FloatArray:
+    """Return where edges (n, 2) pass a height (n,) [m]; their ends exactly."""
+    share = (level - start[:, 0]) / (stop[:, 0] - start[:, 0])
+    inside = start[:, 1] + share * (stop[:, 1] - start[:, 1])
+    return np.where(share == 1.0, stop[:, 1], inside)
+
+
+def _meeting_edges(corners: FloatArray) -> tuple[int, int] | None:
+    """Return two edges that meet where they must not, or an edge without length twice; None for a simple polygon."""
+    count = len(corners)
+    after = np.roll(corners, -1, axis=0)
+    edge = after - corners
+    for i in range(count):
+        follower = (i + 1) % count
+        if not np.any(edge[i]):
+            return i, i
+        turn = edge[i, 0] * edge[follower, 1] - edge[i, 1] * edge[follower, 0]
+        if turn == 0.0 and float(edge[i] @ edge[follower]) < 0.0:
+            return i, follower
+        for j in range(i + 2, count - (i == 0)):
+            if _meet(corners[i], after[i], corners[j], after[j]):
+                return i, j
+    return None
+
+
+def _meet(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> bool:
+    """Whether the closed segments ab and cd share a point."""
+    if np.any(np.maximum(a, b) < np.minimum(c, d)) or np.any(np.maximum(c, d) < np.minimum(a, b)):
+        return False
+    return _side(a, b, c) * _side(a, b, d) <= 0.0 and _side(c, d, a) * _side(c, d, b) <= 0.0
+
+
+def _side(a: FloatArray, b: FloatArray, p: FloatArray) -> float:
+    return float(np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])))

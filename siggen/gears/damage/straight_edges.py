@@ -1,0 +1,82 @@
+"""Compiled crossings of a trapezoid's straight sides with the face's ends, with other sides and with conics.
+
+Derived. A side is w = p + m (x - x_low); put into a conic it leaves a quadratic of the height.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from numba import njit
+
+from siggen.arrays import FloatArray
+
+
+@njit(cache=True)
+def _side(row: FloatArray, right: int) -> tuple[float, float]:
+    """Return p and m of the left (0) or right (1) side of a trapezoid."""
+    start = row[9 + right]
+    return start, (row[11 + right] - start) / (row[8] - row[7])
+
+
+@njit(cache=True)
+def corner_points(row: FloatArray, face_width: float, points: list[tuple[float, float]]) -> None:
+    """Append the points where the sides of a trapezoid leave the face."""
+    for right in range(2):
+        start, slope = _side(row, right)
+        if slope == 0.0:
+            continue
+        for end in (0.0, face_width):
+            x = row[7] + (end - start) / slope
+            if row[7] < x < row[8]:
+                points.append((x, end))
+
+
+@njit(cache=True)
+def side_side_points(one: FloatArray, two: FloatArray, points: list[tuple[float, float]]) -> None:
+    """Append the points where the sides of two trapezoids cross."""
+    low, high = max(one[7], two[7]), min(one[8], two[8])
+    for right in range(2):
+        start, slope = _side(one, right)
+        for other in range(2):
+            start2, slope2 = _side(two, other)
+            if slope == slope2:
+                continue
+            # About the first one's lowest point: no difference of large products.
+            x = one[7] + (start2 + slope2 * (one[7] - two[7]) - start) / (slope - slope2)
+            if low <= x <= high:
+                points.append((x, start + slope * (x - one[7])))
+
+
+@njit(cache=True)
+def side_conic_points(
+    row: FloatArray,
+    x0: float,
+    w0: float,
+    c2: float,
+    c1: float,
+    k0: float,
+    k1: float,
+    k2: float,
+    low: float,
+    high: float,
+    points: list[tuple[float, float]],
+) -> None:
+    """Append the points between two heights where the sides of a trapezoid cross a conic.
+
+    The conic is c2 v^2 + c1 v + k0 + k1 t + k2 t^2 = 0 with t = x - x0 and v = w - w0.
+    """
+    for right in range(2):
+        start, slope = _side(row, right)
+        offset = start + slope * (x0 - row[7]) - w0
+        a = c2 * slope * slope + k2
+        b = 2.0 * c2 * slope * offset + c1 * slope + k1
+        c = c2 * offset * offset + c1 * offset + k0
+        discriminant = b * b - 4.0 * a * c
+        if discriminant < 0.0 or (a == 0.0 and b == 0.0):
+            continue
+        q = -0.5 * (b + (sqrt(discriminant) if b >= 0.0 else -sqrt(discriminant)))
+        for top, bottom in ((q, a), (c, q)):
+            if bottom != 0.0 and low <= x0 + top / bottom <= high:
+                t = top / bottom
+                points.append((x0 + t, start + slope * (x0 + t - row[7])))

@@ -1,0 +1,1 @@
+"""Manufacturing errors of gears and teeth, by tolerance class."""

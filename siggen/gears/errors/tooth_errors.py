@@ -1,0 +1,58 @@
+"""Missing material of gears with manufacturing errors: one row of the tables per tooth, a place for each of them.
+
+Derived. To what all teeth of a gear miss (relief, corners) come its own slope and form, counted from the middle of the
+active flank, and the way that eccentricity moves it while it is in mesh; the offset is where the tooth stands when it
+is touched in that middle: pitch deviations times cos α, since they are arcs, and eccentricity. Beyond root end and tip
+of a flank its last deviation holds; eccentricity goes on. Offsets shift the back flank too, as teeth that stand in a
+wrong place do; for the radial part of an eccentricity (its share sin α) this is an approximation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.gears.errors.error_shapes import FLANK_POINTS
+from siggen.gears.errors.gear_errors import GearErrors, eccentric_m
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+
+
+def with_errors(missing: MissingMaterial, pair: GearPair, pinion: GearErrors, gear: GearErrors) -> MissingMaterial:
+    """Return the missing material of the same teeth with errors.
+
+    Errors of size zero change no bit of any force. Tables may have rows per kind already; then every tooth keeps that
+    of its kind.
+    """
+    return replace(
+        missing,
+        pinion=_with_errors(missing, missing.pinion, pair, "pinion", pinion),
+        gear=_with_errors(missing, missing.gear, pair, "gear", gear),
+    )
+
+
+def _with_errors(
+    missing: MissingMaterial, teeth: ToothTables, pair: GearPair, which: str, errors: GearErrors
+) -> ToothTables:
+    position = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
+    middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
+    standing = eccentric_m(pair, which, errors, middle)
+    profile = _profiles(pair, which, errors, position) - _profiles(pair, which, errors, middle)
+    profile += eccentric_m(pair, which, errors, position) - standing
+    cosine = float(np.cos(pair.member(which).pressure_angle_rad))
+    return ToothTables(
+        profile_m=teeth.profile_m[teeth.kind_of_tooth] + profile,
+        kind_of_tooth=np.arange(len(profile), dtype=np.int32),
+        offset_m=teeth.offset_m + cosine * errors.pitch_m + standing[:, 0],
+    )
+
+
+def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatArray) -> FloatArray:
+    """Return slope and form of every tooth (z, k) at positions s (k,) [m]; the gear's flank runs against s."""
+    place = (position_m - pair.contact_start_m) / (pair.contact_end_m - pair.contact_start_m)
+    place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
+    points = np.linspace(0.0, 1.0, FLANK_POINTS)
+    form = np.stack([np.interp(place, points, row) for row in errors.form_m])
+    return errors.slope_m[:, None] * place[None, :] + form

@@ -1,0 +1,1 @@
+"""Involute, tooth root, gear pair, path of contact and what tip relief takes away."""

@@ -1,0 +1,264 @@
+"""A pair of spur gears in mesh, and what makes a pair impossible.
+
+Equations: reference, standard literature (involute gearing; ISO 21771). Positions s along the line of action count
+from the pinion's base tangent point, so that the roll angles of the two flanks at the contact are s/R_b1 and (T -
+s)/R_b2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import acos, cos, isfinite, pi, radians, tan
+
+from siggen.gears.geometry.involute import inverse_involute, involute_function
+from siggen.gears.geometry.spur_gear import SpurGear
+
+__all__ = ["GearPair", "GeometryProblem", "SpurGear", "geometry_problems"]
+
+MIN_TEETH = 5
+MAX_PRESSURE_ANGLE_RAD = radians(45.0)
+
+
+@dataclass(frozen=True, slots=True)
+class GearPair:
+    """A driving pinion and a driven gear of equal face width and material.
+
+    Parameters
+    ----------
+    pinion, gear : SpurGear
+    face_width_m : float
+        Common face width L [m].
+    youngs_modulus_pa : float
+        Young's modulus of both gears [Pa].
+    poisson_ratio : float
+    centre_distance_m : float or None
+        Working centre distance [m]; None for the one without backlash.
+    """
+
+    pinion: SpurGear
+    gear: SpurGear
+    face_width_m: float
+    youngs_modulus_pa: float
+    poisson_ratio: float
+    centre_distance_m: float | None = None
+
+    @property
+    def tight_pressure_angle_rad(self) -> float:
+        """Pressure angle of the mesh without backlash, inv = inv alpha_0 + 2 (X1 + X2) tan(alpha_0)/(z1 + z2) [rad]."""
+        pinion, gear = self.pinion, self.gear
+        shift = pinion.profile_shift + gear.profile_shift
+        if shift == 0.0:
+            return pinion.pressure_angle_rad
+        teeth = pinion.teeth + gear.teeth
+        angle = pinion.pressure_angle_rad
+        return inverse_involute(involute_function(angle) + 2.0 * shift * tan(angle) / teeth)
+
+    @property
+    def working_pressure_angle_rad(self) -> float:
+        """Working pressure angle alpha_w [rad]."""
+        if self.centre_distance_m is None:
+            return self.tight_pressure_angle_rad
+        return acos(self._base_radii_m / self.centre_distance_m)
+
+    @property
+    def working_centre_distance_m(self) -> float:
+        """Centre distance in mesh, (R_b1 + R_b2)/cos(alpha_w) [m]."""
+        if self.centre_distance_m is None:
+            return self._base_radii_m / cos(self.tight_pressure_angle_rad)
+        return self.centre_distance_m
+
+    @property
+    def line_of_action_m(self) -> float:
+        """Length T of the line of action between the base tangent points [m]."""
+        return self._base_radii_m * tan(self.working_pressure_angle_rad)
+
+    @property
+    def contact_start_m(self) -> float:
+        """Position s_A where the gear's tip enters contact [m]."""
+        return self.line_of_action_m - self.gear.base_radius_m * self.gear.tip_roll_rad
+
+    @property
+    def contact_end_m(self) -> float:
+        """Position s_E where the pinion's tip leaves contact [m]."""
+        return self.pinion.base_radius_m * self.pinion.tip_roll_rad
+
+    @property
+    def pitch_point_m(self) -> float:
+        """Position s_P of the pitch point [m]."""
+        return self.pinion.base_radius_m * tan(self.working_pressure_angle_rad)
+
+    @property
+    def base_pitch_m(self) -> float:
+        """Base pitch p_b = 2 pi R_b1/z1 [m]."""
+        return 2.0 * pi * self.pinion.base_radius_m / self.pinion.teeth
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio (s_E - s_A)/p_b."""
+        return (self.contact_end_m - self.contact_start_m) / self.base_pitch_m
+
+    @property
+    def active_flank(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Roll angles (first, last) of the flank that meets the mate: of the pinion, of the gear [rad]."""
+        length = self.line_of_action_m
+        pinion = (self.contact_start_m / self.pinion.base_radius_m, self.pinion.tip_roll_rad)
+        gear = ((length - self.contact_end_m) / self.gear.base_radius_m, self.gear.tip_roll_rad)
+        return pinion, gear
+
+    @property
+    def _base_radii_m(self) -> float:
+        return self.pinion.base_radius_m + self.gear.base_radius_m
+
+    def member(self, which: str) -> SpurGear:
+        """Return the gear named 'pinion' or 'gear'.
+
+        Raises
+        ------
+        ValueError
+            For any other name.
+        """
+        if which not in ("pinion", "gear"):
+            raise ValueError(f"received gear {which!r}; allowed: 'pinion', 'gear'")
+        return self.pinion if which == "pinion" else self.gear
+
+
+@dataclass(frozen=True, slots=True)
+class GeometryProblem:
+    """One reason why a pair cannot be built or meshed: its name, where, what came, what is allowed."""
+
+    name: str
+    where: str
+    received: str
+    allowed: str
+
+    def __str__(self) -> str:
+        """One line: where, name, what was received, what is allowed."""
+        return f"{self.where}: {self.name}: received {self.received}; {self.allowed}"
+
+
+def geometry_problems(pair: GearPair) -> tuple[GeometryProblem, ...]:
+    """Return everything that makes a pair impossible; empty for a usable one.
+
+    Later groups of checks need the earlier ones to hold, so they are skipped once a group has failed. Undercut alone
+    is no problem: only undercut that reaches the flank in contact is. Never raises.
+    """
+    for group in (_numbers, _teeth, _centres, _contact):
+        problems = tuple(group(pair))
+        if problems:
+            return problems
+    return ()
+
+
+def _numbers(pair: GearPair) -> Iterator[GeometryProblem]:
+    for which, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+        if not (isinstance(gear.teeth, int) and gear.teeth >= MIN_TEETH):
+            yield GeometryProblem("teeth", which, repr(gear.teeth), f"allowed: a whole number of at least {MIN_TEETH}")
+        yield from _positive(which, "module_m", gear.module_m)
+        yield from _positive(which, "addendum_coefficient", gear.addendum_coefficient)
+        yield from _positive(which, "clearance_coefficient", gear.clearance_coefficient)
+        yield from _positive(which, "bore_radius_m", gear.bore_radius_m)
+        if not 0.0 < gear.pressure_angle_rad < MAX_PRESSURE_ANGLE_RAD:
+            received = f"{gear.pressure_angle_rad!r} rad"
+            yield GeometryProblem("pressure_angle_rad", which, received, "allowed: above 0 and below 45 degrees")
+        if not abs(gear.profile_shift) <= 2.0:
+            yield GeometryProblem("profile_shift", which, repr(gear.profile_shift), "allowed: -2 to 2")
+    yield from _positive("pair", "face_width_m", pair.face_width_m)
+    yield from _positive("pair", "youngs_modulus_pa", pair.youngs_modulus_pa)
+    if not 0.0 <= pair.poisson_ratio < 0.5:
+        yield GeometryProblem("poisson_ratio", "pair", repr(pair.poisson_ratio), "allowed: at least 0 and below 0.5")
+    if pair.centre_distance_m is not None:
+        yield from _positive("pair", "centre_distance_m", pair.centre_distance_m)
+    for name in ("module_m", "pressure_angle_rad"):
+        first, second = getattr(pair.pinion, name), getattr(pair.gear, name)
+        if first != second:
+            yield GeometryProblem(name, "pair", f"{first!r} and {second!r}", "allowed: the same on pinion and gear")
+
+
+def _positive(where: str, name: str, value: float) -> Iterator[GeometryProblem]:
+    if not (isfinite(value) and value > 0.0):
+        yield GeometryProblem(name, where, repr(value), "allowed: finite and above 0")
+
+
+def _teeth(pair: GearPair) -> Iterator[GeometryProblem]:
+    for which, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+        if gear.bore_radius_m >= gear.root_radius_m:
+            allowed = f"allowed: below the root radius {gear.root_radius_m:.6g} m"
+            yield GeometryProblem("bore_radius_m", which, f"{gear.bore_radius_m:.6g} m", allowed)
+        if gear.base_half_angle_rad <= 0.0 or gear.tip_radius_m <= max(gear.base_radius_m, gear.root_radius_m):
+            allowed = (
+                f"allowed: a tip above the base radius {gear.base_radius_m:.6g} m and a tooth of some thickness there"
+            )
+            yield GeometryProblem("no involute flank", which, f"profile_shift {gear.profile_shift!r}", allowed)
+        elif gear.tip_half_thickness_m <= 0.0:
+            received = f"half tip thickness {gear.tip_half_thickness_m:.6g} m with profile_shift {gear.profile_shift!r}"
+            yield GeometryProblem(
+                "pointed tip", which, received, "allowed: above 0; lower the profile shift or the addendum"
+            )
+        elif gear.base_radius_m * gear.base_half_angle_rad >= gear.root_radius_m > 0.0:
+            received = f"root radius {gear.root_radius_m:.6g} m"
+            allowed = f"allowed: above the half tooth thickness {gear.base_radius_m * gear.base_half_angle_rad:.6g} m"
+            yield GeometryProblem("root radius", which, received, allowed)
+        room = 0.5 * pi * gear.module_m
+        if gear.rack_round_offset_m > room:
+            received = (
+                f"clearance_coefficient {gear.clearance_coefficient!r}, round at {gear.rack_round_offset_m:.6g} m"
+            )
+            allowed = f"allowed: a rack tip round centred within half a pitch, {room:.6g} m; lower it or the addendum"
+            yield GeometryProblem("rack tip", which, received, allowed)
+
+
+def _centres(pair: GearPair) -> Iterator[GeometryProblem]:
+    shift = pair.pinion.profile_shift + pair.gear.profile_shift
+    angle = pair.pinion.pressure_angle_rad
+    room = involute_function(angle) + 2.0 * shift * tan(angle) / (pair.pinion.teeth + pair.gear.teeth)
+    if room <= 0.0:
+        yield GeometryProblem(
+            "profile_shift", "pair", f"sum {shift:.6g}", "allowed: a sum that leaves a positive working pressure angle"
+        )
+        return
+    base = pair.pinion.base_radius_m + pair.gear.base_radius_m
+    tight = base / cos(pair.tight_pressure_angle_rad)
+    given = pair.centre_distance_m
+    # Rounding of a centre distance that a user typed from the formula must not count as jamming.
+    if given is not None and given < tight * (1.0 - 1e-9):
+        yield GeometryProblem(
+            "centre_distance_m", "pair", f"{given:.9g} m", f"allowed: at least {tight:.9g} m (no backlash)"
+        )
+        return
+    distance = pair.working_centre_distance_m
+    for which, own, mate in (("pinion", pair.pinion, pair.gear), ("gear", pair.gear, pair.pinion)):
+        clearance = distance - own.tip_radius_m - mate.root_radius_m
+        if clearance <= 0.0:
+            received = f"tip clearance {clearance:.6g} m"
+            yield GeometryProblem(
+                "tip touches root", which, received, "allowed: above 0; lower the profile shift or the addendum"
+            )
+
+
+def _contact(pair: GearPair) -> Iterator[GeometryProblem]:
+    if pair.contact_ratio < 1.0:
+        yield GeometryProblem("contact ratio", "pair", f"{pair.contact_ratio:.6g}", "allowed: at least 1")
+    for which, gear, active in zip(("pinion", "gear"), (pair.pinion, pair.gear), pair.active_flank, strict=True):
+        first = active[0]
+        if first <= 0.0:
+            received = f"contact {-first * gear.base_radius_m:.6g} m below the base circle"
+            allowed = "allowed: contact above the base circle only; more teeth or shift"
+            yield GeometryProblem("interference", which, received, allowed)
+        if first > 0.0 or gear.undercut:
+            yield from _flank_start(which, gear, first)
+
+
+def _flank_start(which: str, gear: SpurGear, first: float) -> Iterator[GeometryProblem]:
+    try:
+        start = gear.involute_start_roll_rad
+    except ValueError as error:
+        yield GeometryProblem(
+            "undercut", which, f"{gear.teeth} teeth, profile_shift {gear.profile_shift!r}", str(error)
+        )
+        return
+    if first < start:
+        name = "undercut" if gear.undercut else "interference"
+        received = f"contact from {first * gear.base_radius_m:.6g} m along the line of action"
+        allowed = f"allowed: from the start of the involute, {start * gear.base_radius_m:.6g} m, onwards"
+        yield GeometryProblem(name, which, received, allowed)

@@ -1,0 +1,86 @@
+"""Missing material of the teeth along the line of action, tooth by tooth, over the path of contact and a little beyond.
+
+Derived. Everything counts positive where material is missing and belongs to the tooth that misses it: parabolic tip
+relief, the corner of the tip outside the path of contact, and one constant per tooth for its place on the gear
+(cumulative pitch error). Relief keeps its value at the tip where the corner is in contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.gears.geometry.corner_contact import tip_gap_m
+from siggen.gears.geometry.gear_pair import GearPair
+
+CORNER_REACH_PITCHES = 0.15
+"""How far before and after the path of contact corners are followed: gaps there are ten times a usual deflection."""
+
+
+@dataclass(frozen=True, slots=True)
+class TipRelief:
+    """Parabolic relief of both gears: `amount_m` at the tip, from `length_m` along the line of action before it."""
+
+    amount_m: float
+    length_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToothTables:
+    """What the teeth of one gear miss.
+
+    `profile_m` (kinds, points) [m] over the positions of the pair, `kind_of_tooth` (z,) its row for each tooth,
+    `offset_m` (z,) [m] what a tooth misses everywhere.
+    """
+
+    profile_m: FloatArray
+    kind_of_tooth: NDArray[np.int32]
+    offset_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class MissingMaterial:
+    """Tables of both gears on a uniform grid of positions from `start_m` to `end_m`, at or beyond s_A and s_E."""
+
+    start_m: float
+    end_m: float
+    pinion: ToothTables
+    gear: ToothTables
+
+
+def missing_material(
+    pair: GearPair, relief: TipRelief | None = None, *, corner_contact: bool = True, points: int = 2049
+) -> MissingMaterial:
+    """Return the missing material of gears whose teeth are all alike.
+
+    Without corner contact the tables end with the path of contact: a pair that enters is loaded at once.
+
+    Raises
+    ------
+    ValueError
+        If the relief is negative or longer than a base pitch, or there are fewer than 2 points.
+    """
+    if points < 2:
+        raise ValueError(f"received {points} table points; allowed: at least 2")
+    if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
+        allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
+        raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
+    reach_m = CORNER_REACH_PITCHES * pair.base_pitch_m if corner_contact else 0.0
+    start_m, end_m = pair.contact_start_m - reach_m, pair.contact_end_m + reach_m
+    position_m = np.linspace(start_m, end_m, points)
+    return MissingMaterial(
+        start_m, end_m, _teeth(pair, "pinion", relief, position_m), _teeth(pair, "gear", relief, position_m)
+    )
+
+
+def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> ToothTables:
+    to_tip_m = pair.contact_end_m - position_m if which == "pinion" else position_m - pair.contact_start_m
+    profile = tip_gap_m(pair, which, position_m)
+    if relief is not None:
+        share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
+        profile = profile + relief.amount_m * share**2
+    teeth = pair.member(which).teeth
+    return ToothTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))

@@ -1,0 +1,1 @@
+"""Compliance of teeth, gear bodies and contacts, and the mesh stiffness that follows."""

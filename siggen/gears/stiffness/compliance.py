@@ -1,0 +1,139 @@
+"""Compliance of one tooth under a load normal to its flank: bending, shear, axial compression and foundation.
+
+Source: paper A, section 2.2 (potential energy method); equations: reference, standard literature (Yang-Lin, Tian), in
+roll-angle form. With alpha_1 = psi_c - alpha_2 (signed: negative near the base circle), d = x(psi_c), h_c = h(psi_c):
+
+    1/k_b = int [cos(alpha_1) (d - x) - sin(alpha_1) h_c]^2/(E I) dx
+    1/k_s = 1.2 cos^2(alpha_1) int dx/(G A)        1/k_a = sin^2(alpha_1) int dx/(E A)
+
+The calibrated tooth scales all four parts of the healthy rack-cut tooth by the finite-element factor of
+`siggen.gears.stiffness.calibration`; what pits add to the beam is not scaled, since the factor was made on healthy
+teeth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from siggen.arrays import FloatArray
+from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.kinks import section_kinks
+from siggen.gears.geometry import involute
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.beams import beam_integrals, first_roll
+from siggen.gears.stiffness.calibration import calibration_factor
+from siggen.gears.stiffness.foundation import foundation_compliance
+from siggen.gears.stiffness.pitted_beams import pit_integrals
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+SHEAR_FACTOR = 1.2
+ROLL_TOLERANCE = 1e-9
+"""Contacts this far (relative to the tip's roll) outside the flank count as its end: rounding of positions, no more."""
+PIECE_RAD = 0.02
+"""Longest piece of the pits' integrals: short enough for 16 nodes when a contact stops just below a kink."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToothCompliance:
+    """Compliances of one tooth at each contact, (k,) [m/N]."""
+
+    bending: FloatArray
+    shear: FloatArray
+    axial: FloatArray
+    foundation: FloatArray
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of the four, (k,) [m/N]."""
+        return self.bending + self.shear + self.axial + self.foundation
+
+
+def tooth_compliance(
+    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[Pit | Spall] = ()
+) -> ToothCompliance:
+    """Return the compliances of one tooth loaded at roll angles (k,).
+
+    Parameters
+    ----------
+    pair : GearPair
+    which : str
+        'pinion' or 'gear'.
+    roll : (k,)
+        Roll angles of the contact, in any order [rad].
+    options : StiffnessOptions
+    pits : iterable of Pit or Spall
+        Pits of this tooth; their `gear` and `tooth` are not read.
+
+    Raises
+    ------
+    ValueError
+        If a roll angle is off the involute of the beam, or a pit leaves no section.
+
+    Source: paper A, section 2.2; with 'calibrated' derived (finite elements, healthy tooth).
+    """
+    gear = pair.member(which)
+    rows = pit_rows(pits)
+    angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
+    beam = _beam_compliances(pair, gear, angles, beam_integrals(gear, options.shape, angles, pair.face_width_m))
+    if options.foundation == "none":
+        foundation = np.zeros(angles.size)
+    else:
+        foundation = foundation_compliance(
+            gear, angles, options.root_reading, pair.youngs_modulus_pa, pair.face_width_m
+        )
+    if options.beam == "calibrated":
+        factor = calibration_factor(gear, angles)
+        beam, foundation = factor * beam, factor * foundation
+    if rows.size:
+        beam = beam + _beam_compliances(pair, gear, angles, _pit_gain(pair, gear, options.shape, angles, rows))
+    for array in (beam, foundation):
+        array.setflags(write=False)
+    return ToothCompliance(beam[0], beam[1], beam[2], foundation)
+
+
+def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, which: str) -> FloatArray:
+    first, last = first_roll(gear, beam), gear.tip_roll_rad
+    slack = ROLL_TOLERANCE * last
+    if not bool(np.all((roll >= first - slack) & (roll <= last + slack))):
+        span = f"{np.min(roll):.6g} to {np.max(roll):.6g}"
+        raise ValueError(
+            f"contact at roll {span} rad is off the {which}'s flank; allowed: {first:.6g} to {last:.6g} rad"
+        )
+    return np.clip(roll, first, last)
+
+
+def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, rows: FloatArray) -> FloatArray:
+    start = first_roll(gear, beam)
+    breaks = section_breaks(gear, rows, pair.face_width_m, start)
+    gain = pit_integrals(roll, breaks, rows, gear.base_radius_m, gear.base_half_angle_rad, pair.face_width_m)
+    if not np.all(np.isfinite(gain)):
+        raise ValueError(
+            "pits consume a whole section of the tooth; allowed: depth below the local half tooth thickness"
+        )
+    return gain
+
+
+def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start: float) -> FloatArray:
+    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 13), (k,) [rad]."""
+    kinks = involute.rolls_at_heights(section_kinks(rows, face_width_m), gear.base_radius_m, gear.base_half_angle_rad)
+    inside = kinks[(kinks > start) & (kinks < gear.tip_roll_rad)]
+    return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))
+
+
+def _beam_compliances(pair: GearPair, gear: SpurGear, roll: FloatArray, integrals: FloatArray) -> FloatArray:
+    """Return bending, shear and axial compliance (3, k) [m/N] of integrals (J0, J1, J2, JA), (4, k)."""
+    slant = roll - gear.base_half_angle_rad
+    along, across = np.sin(slant), np.cos(slant)
+    lever = across * gear.height_m(roll) - along * gear.half_thickness_m(roll)
+    young = pair.youngs_modulus_pa
+    shear_modulus = young / (2.0 * (1.0 + pair.poisson_ratio))
+    j0, j1, j2, ja = integrals
+    bending = (lever * lever * j0 - 2.0 * lever * across * j1 + across * across * j2) / young
+    # Differences of large terms: a square's integral is never negative, rounding can be.
+    bending = np.maximum(bending, 0.0)
+    return np.stack([bending, SHEAR_FACTOR * across**2 * ja / shear_modulus, along**2 * ja / young])

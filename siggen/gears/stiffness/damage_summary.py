@@ -1,0 +1,110 @@
+"""How much damage there is on a gear pair, in numbers a label can carry.
+
+Derived from `siggen.gears.stiffness.sections`; areas and lengths along the profile are measured on the involute, R_b
+psi dpsi.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from siggen.gears.damage.flank_damage import (
+    Damage,
+    Pit,
+    Spall,
+    damaged_teeth,
+    flank_heights,
+    lost_contacts,
+    pits_of,
+    profile_arc_m,
+)
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.sections import largest_contact_length_loss, union_area_m2
+
+
+@dataclass(frozen=True, slots=True)
+class DamageSummary:
+    """Extent of a damage.
+
+    Parameters
+    ----------
+    count : int
+        Number of pits and spalls, as listed.
+    union_area_m2 : float
+        Area of the union on all teeth, face width times arc along the involute [m2].
+    area_share : float
+        Area share of the most damaged flank; a flank is the involute from its rack-cut start to the tip times the
+        face width.
+    largest_face_length_m : float
+        Longest single pit or spall across the face (of a polygon: its range), clipped to the face [m].
+    largest_profile_length_m : float
+        Longest single pit's or spall's arc along the involute, clipped to the flank [m].
+    contact_length_loss_m : float
+        Largest loss of contact length of any flank at any height [m].
+    through_face : bool
+        Whether the damage takes the whole face width somewhere on the path of contact, on one flank or on two that
+        meet: there no contact length remains.
+    sagitta_m : float
+        How far the mating flank could sink into the longest profile arc l if it went through the face: l^2/(8 R_e)
+        (derived: chord of the relative curvature), R_e = s (T - s)/T at the contact position s of the middle of the
+        arc, T the line of action's length; a middle off the path of contact counts at the path's nearer end [m].
+    """
+
+    count: int
+    union_area_m2: float
+    area_share: float
+    largest_face_length_m: float
+    largest_profile_length_m: float
+    contact_length_loss_m: float
+    through_face: bool
+    sagitta_m: float
+
+
+def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
+    """Return the extent of a damage without problems; all zero for none."""
+    width = pair.face_width_m
+    area = share = loss = 0.0
+    for which in ("pinion", "gear"):
+        gear = pair.member(which)
+        for tooth in damaged_teeth(damage, which):
+            pits = pits_of(damage, which, tooth)
+            own = union_area_m2(gear, pits, width)
+            area += own
+            share = max(share, own / (width * flank_arc_m(gear)))
+            loss = max(loss, largest_contact_length_loss(gear, pits, width))
+    longest = max(damage, key=lambda pit: profile_arc_m(pair.member(pit.gear), pit.outline), default=None)
+    return DamageSummary(
+        count=len(damage),
+        union_area_m2=area,
+        area_share=share,
+        largest_face_length_m=max((_face_length(pit, width) for pit in damage), default=0.0),
+        largest_profile_length_m=profile_arc_m(pair.member(longest.gear), longest.outline) if longest else 0.0,
+        contact_length_loss_m=loss,
+        through_face=any(lost_contacts(pair, damage)),
+        sagitta_m=_sagitta_m(pair, longest) if longest else 0.0,
+    )
+
+
+def flank_arc_m(gear: SpurGear) -> float:
+    """Return the arc of the involute from its rack-cut start to the tip, R_b (psi_tip^2 - psi_start^2)/2 [m]."""
+    return 0.5 * gear.base_radius_m * (gear.tip_roll_rad**2 - gear.involute_start_roll_rad**2)
+
+
+def _face_length(pit: Pit | Spall, width: float) -> float:
+    low, high = pit.outline.face_range_m
+    return min(high, width) - max(low, 0.0)
+
+
+def _sagitta_m(pair: GearPair, pit: Pit | Spall) -> float:
+    gear = pair.member(pit.gear)
+    low, high = gear.roll_at_height(np.clip(pit.outline.height_range_m, *flank_heights(gear)))
+    # The arc is R_b psi^2/2: its middle has the mean square of the roll angles.
+    travel = gear.base_radius_m * sqrt(0.5 * (low * low + high * high))
+    line = pair.line_of_action_m
+    position = travel if pit.gear == "pinion" else line - travel
+    s = min(max(position, pair.contact_start_m), pair.contact_end_m)
+    return profile_arc_m(gear, pit.outline) ** 2 * line / (8.0 * s * (line - s))

@@ -1,0 +1,257 @@
+"""Stiffness of one tooth pair along the line of action, and of the whole mesh over the pinion's angle.
+
+Source: paper A, section 2.2 (structure); contact laws: `siggen.gears.stiffness.hertz`, once per pair. The map from
+angle to contact is linear in the roll angle: s = s_A + R_b1 (theta - 2 pi n/z1) for the n-th pair since angle 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from siggen.arrays import FloatArray, IntArray
+from siggen.gears.damage.flank_damage import Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
+from siggen.gears.damage.union import lengths_covered
+from siggen.gears.damage.whole_loss import WHOLE_FACE
+from siggen.gears.geometry import involute
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
+from siggen.gears.stiffness.coupled_pairs import coupled_sum
+from siggen.gears.stiffness.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+__all__ = [
+    "PairCompliance",
+    "StiffnessOptions",
+    "ToothCompliance",
+    "contact_compliance",
+    "mesh_stiffness",
+    "pair_compliance",
+    "pair_stiffness",
+    "tooth_compliance",
+]
+
+
+LINEAR = StiffnessOptions()
+"""The options of a contact that does not depend on the force."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairCompliance:
+    """Compliance of a tooth pair at each contact in its parts: contact (k,) [m/N] and both teeth."""
+
+    contact: FloatArray
+    pinion: ToothCompliance
+    gear: ToothCompliance
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of all parts, (k,) [m/N]."""
+        return self.contact + self.pinion.total + self.gear.total
+
+
+def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the roll angles (k,) of pinion and gear flank at contact positions s (k,) [rad].
+
+    Raises
+    ------
+    ValueError
+        If a position is not finite or not on the path of contact.
+    """
+    start, end = pair.contact_start_m, pair.contact_end_m
+    slack = ROLL_TOLERANCE * end
+    if not bool(np.all((position_m >= start - slack) & (position_m <= end + slack))):
+        span = f"{np.min(position_m):.6g} to {np.max(position_m):.6g}"
+        raise ValueError(f"position_m {span} m is off the path of contact; allowed: {start:.6g} to {end:.6g} m")
+    clipped = np.clip(position_m, start, end)
+    return clipped / pair.pinion.base_radius_m, (pair.line_of_action_m - clipped) / pair.gear.base_radius_m
+
+
+def contact_compliance(
+    pair: GearPair,
+    position_m: ArrayLike,
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
+    options: StiffnessOptions = LINEAR,
+    *,
+    through_face: bool = False,
+) -> FloatArray:
+    """Return 1/k_h of a tooth pair at contact positions (k,) [m/N].
+
+    The contact length is what the pits of both flanks together leave of the face.
+
+    Parameters
+    ----------
+    pair : GearPair
+    position_m : (k,)
+        Contact positions from the pinion's base tangent point, in any order [m].
+    pinion_pits, gear_pits : iterables of Pit
+        Pits of the two teeth in contact; their `gear` and `tooth` are not read.
+    options : StiffnessOptions
+        Contact law and its force; the tooth's options are not read.
+    through_face : bool
+        Whether a contact may lose its whole length; its compliance is infinite there.
+
+    Raises
+    ------
+    ValueError
+        If a position is off the path of contact, or the whole contact length is lost where that is not allowed.
+
+    Source: `siggen.gears.stiffness.hertz`; the remaining length as contact length: paper A, section 2.2.
+    """
+    position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
+    rows_pinion, rows_gear = pit_rows(pinion_pits), pit_rows(gear_pits)
+    width = pair.face_width_m
+    lost = np.zeros(position.size)
+    if rows_pinion.size or rows_gear.size:
+        roll_pinion, roll_gear = rolls_at(pair, position)
+        pinion, gear = pair.pinion, pair.gear
+        height_pinion = involute.heights(roll_pinion, pinion.base_radius_m, pinion.base_half_angle_rad)
+        height_gear = involute.heights(roll_gear, gear.base_radius_m, gear.base_half_angle_rad)
+        lost = lengths_covered(height_pinion, rows_pinion, height_gear, rows_gear, width)
+        worst = float(np.max(lost, initial=0.0))
+        if worst >= width * (1.0 - WHOLE_FACE) and not through_face:
+            raise ValueError(
+                f"pits take {worst:.6g} m of contact length; allowed: less than the face width {width:.6g} m"
+            )
+    open_face = lost >= width * (1.0 - WHOLE_FACE)
+    return np.where(open_face, np.inf, _law(pair, position, np.where(open_face, width, width - lost), options))
+
+
+def _law(pair: GearPair, position_m: FloatArray, length_m: FloatArray, options: StiffnessOptions) -> FloatArray:
+    if options.hertz_force_n is None:
+        return linear_compliance(pair, length_m)
+    if options.hertz == "power_law":
+        return power_law_compliance(pair, length_m, options.hertz_force_n)
+    return weber_banaschek_compliance(pair, *rolls_at(pair, position_m), length_m, options.hertz_force_n)
+
+
+def pair_compliance(
+    pair: GearPair,
+    position_m: ArrayLike,
+    options: StiffnessOptions,
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
+    *,
+    through_face: bool = False,
+) -> PairCompliance:
+    """Return the compliance of one tooth pair in its parts, (k,) each [m/N].
+
+    Arguments and errors are those of `pair_stiffness`, which is the inverse of the sum.
+
+    Source: paper A, section 2.2 (springs in series).
+    """
+    position = np.atleast_1d(np.asarray(position_m, dtype=np.float64))
+    pinion_pits, gear_pits = tuple(pinion_pits), tuple(gear_pits)
+    roll_pinion, roll_gear = rolls_at(pair, position)
+    return PairCompliance(
+        contact=contact_compliance(pair, position, pinion_pits, gear_pits, options, through_face=through_face),
+        pinion=tooth_compliance(pair, "pinion", roll_pinion, options, pinion_pits),
+        gear=tooth_compliance(pair, "gear", roll_gear, options, gear_pits),
+    )
+
+
+def pair_stiffness(
+    pair: GearPair,
+    position_m: ArrayLike,
+    options: StiffnessOptions,
+    pinion_pits: Iterable[Pit | Spall] = (),
+    gear_pits: Iterable[Pit | Spall] = (),
+    *,
+    through_face: bool = False,
+) -> FloatArray:
+    """Return the stiffness of one tooth pair at contact positions s (k,) [N/m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    position_m : (k,)
+        Contact positions from the pinion's base tangent point, s_A to s_E, in any order [m].
+    options : StiffnessOptions
+    pinion_pits, gear_pits : iterables of Pit or Spall
+        Pits of the two teeth in contact; their `gear` and `tooth` are not read.
+    through_face : bool
+        Whether a contact may lose its whole length; the pair has no stiffness there.
+
+    Raises
+    ------
+    ValueError
+        If a position is off the path of contact, or the pits leave no section, or no contact where that is not allowed.
+
+    Source: paper A, section 2.2.
+    """
+    return 1.0 / pair_compliance(pair, position_m, options, pinion_pits, gear_pits, through_face=through_face).total
+
+
+def mesh_stiffness(
+    pair: GearPair,
+    angle_rad: ArrayLike,
+    options: StiffnessOptions,
+    damage: Damage = (),
+    *,
+    through_face: bool = False,
+) -> FloatArray:
+    """Return the mesh stiffness over the pinion's angle (k,) [N/m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    angle_rad : (k,)
+        Pinion angle since the pair of pinion tooth 0 and gear tooth 0 entered contact; any value [rad]. Pair n of the
+        global count is pinion tooth n mod z1 and gear tooth n mod z2, at s = s_A + R_b1 (angle - 2 pi n/z1). Zones
+        are closed.
+    options : StiffnessOptions
+    damage : tuple of Pit or Spall
+        On any teeth of both gears.
+    through_face : bool
+        Whether a contact may lose its whole length; such a pair adds nothing.
+
+    Raises
+    ------
+    ValueError
+        If an angle is not finite, or the pits leave no section, or no contact where that is not allowed.
+
+    Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer); with coupling 'body'
+    derived (`siggen.gears.stiffness.coupled_pairs`).
+    """
+    angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
+    if not np.all(np.isfinite(angle)):
+        raise ValueError("angle_rad holds values that are not finite; allowed: finite angles")
+    index, count, position = pairs_in_contact(pair, angle)
+    pinion_bad, gear_bad = damaged_teeth(damage, "pinion"), damaged_teeth(damage, "gear")
+    pinion_tooth, gear_tooth = count % pair.pinion.teeth, count % pair.gear.teeth
+    # -1 stands for any healthy tooth: all such pairs are evaluated in one go.
+    pinion_key = np.where(np.isin(pinion_tooth, pinion_bad), pinion_tooth, -1)
+    gear_key = np.where(np.isin(gear_tooth, gear_bad), gear_tooth, -1)
+    total, stiffness = np.zeros(angle.size), np.empty(index.size)
+    for first, second in sorted(set(zip(pinion_key.tolist(), gear_key.tolist(), strict=True))):
+        chosen = (pinion_key == first) & (gear_key == second)
+        pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
+        stiffness[chosen] = pair_stiffness(
+            pair, position[chosen], options, pinion_pits, gear_pits, through_face=through_face
+        )
+        np.add.at(total, index[chosen], stiffness[chosen])
+    if options.coupling == "none":
+        return total
+    return coupled_sum(pair, options, (index, count, position), stiffness, angle.size)
+
+
+def pairs_in_contact(pair: GearPair, angle_rad: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return (index into `angle_rad`, global pair count n, position s [m]) of every pair in contact, each (m,)."""
+    start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
+    travel = angle_rad * pair.pinion.base_radius_m
+    newest = np.floor(travel / pitch).astype(np.int64)
+    indices, counts, positions = [], [], []
+    # One pair more on either side: at a zone edge rounding may put the floor on the wrong pair.
+    for back in range(-1, ceil(pair.contact_ratio) + 2):
+        count = newest - back
+        position = start + (travel - count * pitch)
+        inside = (position >= start) & (position <= end)
+        indices.append(np.flatnonzero(inside))
+        counts.append(count[inside])
+        positions.append(position[inside])
+    return np.concatenate(indices), np.concatenate(counts), np.concatenate(positions)

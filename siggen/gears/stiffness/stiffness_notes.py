@@ -1,0 +1,102 @@
+"""Where a stiffness model is asked about gears that it was not made for, in sentences for the user.
+
+Limits: fit range of Sainsot 2004, range of the finite-element calibration, and derived ones (tooth that a beam leaves
+out or invents; contact width against tooth thickness).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.body_coupling import outside_coupling
+from siggen.gears.stiffness.calibration import outside_calibration
+from siggen.gears.stiffness.foundation import outside_foundation_fit
+from siggen.gears.stiffness.hertz import centre_line_depth, contact_half_width
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+POISSON_RANGE = (0.25, 0.35)
+"""Around 0.3, for which the foundation's fit and the finite elements were made."""
+WIDE_CONTACT = 0.25
+"""Half width over depth to the centre line at which the Weber-Banaschek contact is 1 % off (measured)."""
+
+
+def stiffness_notes(pair: GearPair, options: StiffnessOptions) -> tuple[str, ...]:
+    """Return what to know about a pair's stiffness model, one sentence each; empty where the models hold.
+
+    Parameters
+    ----------
+    pair : GearPair
+        A pair without geometry problems.
+    options : StiffnessOptions
+
+    Returns
+    -------
+    tuple of str
+        Each names the gear, the quantity and the limits. Outside them the numbers are extrapolations, not errors.
+
+    Source: derived; limits of the sources named in this module's docstring.
+    """
+    return (
+        *_gear_notes("pinion", pair.pinion, options),
+        *_gear_notes("gear", pair.gear, options),
+        *_pair(pair, options),
+    )
+
+
+def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
+    name = f"{which} ({gear.teeth} teeth)"
+    if options.beam == "calibrated":
+        # The factor was made against the extrapolated foundation, so the fit range is no limit of the product.
+        for sentence in outside_calibration(gear):
+            yield f"{name}: {sentence}; the nearest calibrated gear's factor is used"
+    elif options.foundation == "sainsot":
+        for sentence in outside_foundation_fit(gear, options.root_reading):
+            yield f"{name}: {sentence}; the polynomials extrapolate"
+    if options.coupling == "body" and options.beam != "calibrated":
+        for sentence in outside_coupling(gear):
+            yield f"{name}: {sentence}; the local part of the nearest gear inside is used"
+    if options.shape != "rack_trochoid":
+        yield from (f"{name}: {sentence}" for sentence in _misplaced_root(gear, options))
+
+
+def _misplaced_root(gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
+    gap_mm = 1e3 * (gear.root_radius_m - gear.base_radius_m)
+    if options.beam == "base_circle" and gap_mm > 0.0:
+        yield (
+            f"beam: base_circle starts {gap_mm:.3g} mm below the root circle and bends tooth that does not exist; "
+            f"root_circle, rack_trochoid and calibrated do not"
+        )
+    if gear.undercut:
+        yield f"beam: {options.beam} does not know undercut; rack_trochoid does"
+
+
+def _pair(pair: GearPair, options: StiffnessOptions) -> Iterator[str]:
+    low, high = POISSON_RANGE
+    if options.foundation == "sainsot" and not low <= pair.poisson_ratio <= high:
+        yield (
+            f"pair: Poisson's ratio is {pair.poisson_ratio:g}; the gear body's compliance is that of 0.3 "
+            f"(good for {low:g} to {high:g})"
+        )
+    if options.hertz == "weber_banaschek" and options.hertz_force_n is not None:
+        ratio = _widest_contact(pair, options.hertz_force_n)
+        if ratio > WIDE_CONTACT:
+            yield (
+                f"pair: at {options.hertz_force_n:g} N the contact is {ratio:.2g} of the tooth's half thickness wide "
+                f"(half width); weber_banaschek holds up to {WIDE_CONTACT:g}"
+            )
+
+
+def _widest_contact(pair: GearPair, force_n: float) -> float:
+    """Return the largest a_H/h_i over the path of contact of healthy flanks."""
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, 65)
+    rolls = {
+        "pinion": position / pair.pinion.base_radius_m,
+        "gear": (pair.line_of_action_m - position) / pair.gear.base_radius_m,
+    }
+    width = contact_half_width(pair, rolls["pinion"], rolls["gear"], np.full(65, pair.face_width_m), force_n)
+    depth = np.minimum(*(centre_line_depth(pair, which, rolls[which]) for which in ("pinion", "gear")))
+    return float(np.max(width / depth))

@@ -1,0 +1,1 @@
+"""One simulated record: channels, labels, internals and rows of damage."""

@@ -1,0 +1,117 @@
+"""What is added to one channel of one record by its surroundings and its electronics, and the labels of it.
+
+Frequencies belong to the gearbox and are the same for all its sensors; levels and phases belong to the record. Nothing
+is drawn from the state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Inverter, Mains, PinkNoise, Sensor, Tones, at
+from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.spectral_filter import record_of
+from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
+from siggen.specimen.instrument import ChannelInstrument
+
+
+@dataclass(frozen=True, slots=True)
+class Draws:
+    """Where the numbers of a channel come from.
+
+    Attributes
+    ----------
+    specimen, shared : name -> uniform of the gearbox, or of the record
+    record : name -> generator of this channel and record
+    """
+
+    specimen: Callable[[str], float]
+    shared: Callable[[str], float]
+    record: Callable[[str], np.random.Generator]
+
+
+@dataclass(frozen=True, slots=True)
+class Disturbance:
+    """What is added to a channel behind its amplifier (n,), None for nothing, and the labels of its parts."""
+
+    signal_m_s2: FloatArray | None
+    labels: dict[str, object]
+
+
+def channel_disturbance(
+    channel: ChannelInstrument, draws: Draws, *, fs_hz: float, length: int, samples: int
+) -> Disturbance:
+    """Return everything that does not come from the gears but white noise.
+
+    Vibrations of other machines pass the sensor as those of the gears do; hum and 1/f noise arise behind it.
+    """
+    sensor, name = channel.sensor, channel.name
+    signal = np.zeros(samples)
+    labels: dict[str, object] = {}
+    if sensor.pink_noise is not None:
+        pink, density = _pink(sensor.pink_noise, channel, draws, fs_hz, length)
+        signal += record_of(pink, length, samples)
+        labels[f"pink_noise_{name}_m_s2_per_sqrt_hz"] = density
+    for part, lines in _lines(sensor, draws):
+        response = np.ones(lines.frequency_hz.size, dtype=complex)
+        if part != "mains":
+            response *= channel.gain
+        if part != "mains" and channel.sensor_response is not None:
+            response *= _between(channel.sensor_response, lines.frequency_hz * length / fs_hz)
+        signal += lines_signal(lines, response, fs_hz, samples)
+        labels[f"{part}_{name}_m_s2"] = lines.rms_m_s2
+    return Disturbance(signal if labels else None, labels)
+
+
+def _pink(
+    section: PinkNoise, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
+) -> tuple[ComplexArray, float]:
+    rng = draws.record("pink_noise")
+    density = at(section.density_m_s2_per_sqrt_hz, rng.random())
+    corner_hz = at(section.corner_hz, rng.random())
+    spectrum = noise_spectrum(density, length, fs_hz, rng, pink_corner_hz=corner_hz)
+    return (spectrum if channel.high_pass is None else spectrum * channel.high_pass), density
+
+
+def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
+    """Yield part -> its lines, for every part that the sensor has."""
+    if sensor.mains is not None:
+        yield "mains", _mains(sensor.mains, draws)
+    if sensor.tones is not None:
+        yield "tones", _tones(sensor.tones, draws)
+    if sensor.inverter is not None:
+        yield "inverter", _inverter(sensor.inverter, draws)
+
+
+def _mains(section: Mains, draws: Draws) -> Lines:
+    rng = draws.record("mains")
+    amplitude = at(section.amplitude_m_s2, rng.random())
+    return harmonic_lines(
+        at(section.frequency_hz, draws.specimen("mains.frequency_hz")), amplitude, section.harmonics, rng
+    )
+
+
+def _tones(section: Tones, draws: Draws) -> Lines:
+    rng = draws.record("tones")
+    uniforms = [draws.specimen(f"tones.{tone}.frequency_hz") for tone in range(section.count)]
+    amplitudes = [at(section.amplitude_m_s2, float(u)) for u in rng.random(section.count)]
+    return single_lines(np.array([at(section.frequency_hz, u) for u in uniforms]), np.array(amplitudes), rng)
+
+
+def _inverter(section: Inverter, draws: Draws) -> Lines:
+    rng = draws.record("inverter")
+    amplitude = at(section.amplitude_m_s2, rng.random())
+    carrier_hz = at(section.carrier_hz, draws.specimen("inverter.carrier_hz"))
+    # the electrical frequency belongs to the record: all sensors see the same motor
+    modulation_hz = at(section.modulation_hz, draws.shared("inverter.modulation_hz"))
+    return carrier_lines(carrier_hz, modulation_hz, amplitude, section.sidebands, rng)
+
+
+def _between(values: ComplexArray, bins: FloatArray) -> ComplexArray:
+    """Return a response (k,) at fractions of its bins, linearly between them."""
+    whole = np.arange(values.size)
+    return np.interp(bins, whole, values.real) + 1j * np.interp(bins, whole, values.imag)

@@ -1,0 +1,70 @@
+"""What no sensor sees of one record as a table, and which of these quantities a set stores."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+
+from siggen.checks.quantity_names import available_quantities, quantity_problems
+from siggen.columns.record import Column
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.record.channels import measured_channels
+from siggen.record.quantities import internal_quantities, quantity_column
+from siggen.record.simulation import record_response, specimen_state
+
+
+def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
+    """Return one row per sample: time, angle, what the sensors stored, and what they cannot see.
+
+    Parameters
+    ----------
+    config : Config
+    record_id : int
+    internals : bool
+        Without, only what the sensors stored.
+
+    Raises
+    ------
+    SolverFailure
+        If the record cannot be simulated; says why.
+    """
+    record = planned_record(config, record_id)
+    specimen = draw_specimen(config, record.specimen_id)
+    state = specimen_state(config, specimen, record.state_id)
+    response, point = record_response(config, specimen, state, record, internals=internals)
+    stored, _ = measured_channels(config, specimen, record, response)
+    columns: dict[str, np.ndarray] = {
+        "time_s": np.arange(config.samples) / config.fs_hz,
+        "angle_rad": response.angle_rad,
+        **{f"accel_{channel}_m_s2": signal for channel, signal in stored.items()},
+        **(internal_quantities(specimen, response) if internals else {}),
+    }
+    facts = {
+        "record_id": str(record_id),
+        "identity": config.identity,
+        "state": config.states[record.state_id].name,
+        "speed_hz": repr(point.speed_hz),
+        "torque_nm": repr(point.torque_nm),
+        "fs_hz": repr(config.fs_hz),
+    }
+    return pa.table(columns).replace_schema_metadata(facts)
+
+
+def stored_quantities(config: Config) -> tuple[Column, ...]:
+    """Return the columns of `internals/` that a configuration asks for; none without the section `internals`.
+
+    Raises
+    ------
+    ConfigError
+        If the section names quantities that the model does not have.
+    """
+    if config.internals is None:
+        return ()
+    problems = quantity_problems(config)
+    if problems:
+        raise ConfigError(problems)
+    asked = available_quantities(config) if config.internals.stores_all else config.internals.quantities
+    return tuple(quantity_column(name) for name in dict.fromkeys(asked))

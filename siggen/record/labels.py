@@ -1,0 +1,65 @@
+"""Labels of a record: what is damaged, by how much, and at which speed and load it was recorded."""
+
+from __future__ import annotations
+
+from siggen.config import State
+from siggen.dynamics.time.response import Response
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.damage_summary import damage_summary
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
+from siggen.planning.specimen import OperatingPoint
+
+
+def _faulty_gear(pinion_teeth: list[int], gear_teeth: list[int]) -> str:
+    if pinion_teeth and gear_teeth:
+        return "both"
+    if pinion_teeth:
+        return "pinion"
+    return "gear" if gear_teeth else "none"
+
+
+def damage_labels(
+    state: State, pair: GearPair, damage: Damage, options: StiffnessOptions, sink_depth_m: float = 0.0
+) -> dict[str, object]:
+    """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses.
+
+    mesh_stiffness_loss is by the stiffness model (shorter contact, weaker sections) however the damage acts on the
+    motion, so sets compare. For damage through the face it counts a pair without contact length as one that carries
+    nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage.
+    """
+    teeth = {gear: sorted({p.tooth for p in damage if p.gear == gear}) for gear in ("pinion", "gear")}
+    summary = damage_summary(pair, damage)
+    return {
+        "state": state.name,
+        "fault": state.fault,
+        "severity": state.severity,
+        "faulty_gear": _faulty_gear(teeth["pinion"], teeth["gear"]),
+        "faulty_teeth_pinion": teeth["pinion"],
+        "faulty_teeth_gear": teeth["gear"],
+        "damage_count": summary.count,
+        "damaged_area_mm2": 1e6 * summary.union_area_m2,
+        "damaged_area_share": summary.area_share,
+        "damage_face_length_mm": 1e3 * summary.largest_face_length_m,
+        "damage_profile_length_mm": 1e3 * summary.largest_profile_length_m,
+        "contact_length_loss_mm": 1e3 * summary.contact_length_loss_m,
+        "mesh_stiffness_loss": largest_stiffness_loss(pair, damage, options),
+        "through_face": summary.through_face,
+        "sink_depth_um": 1e6 * sink_depth_m,
+    }
+
+
+def operating_labels(pair: GearPair, point: OperatingPoint, response: Response) -> dict[str, object]:
+    """Return teeth, commanded speed and torque, and the frequencies that the record really has."""
+    turned = response.angle_rad[-1] - response.angle_rad[0]
+    shaft_hz = float(turned / (6.283185307179586 * (len(response.angle_rad) - 1) / response.fs_hz))
+    return {
+        "teeth_pinion": pair.pinion.teeth,
+        "teeth_gear": pair.gear.teeth,
+        "speed_hz": point.speed_hz,
+        "torque_nm": point.torque_nm,
+        "pinion_shaft_hz": shaft_hz,
+        "gear_shaft_hz": shaft_hz * pair.pinion.teeth / pair.gear.teeth,
+        "mesh_hz": shaft_hz * pair.pinion.teeth,
+    }

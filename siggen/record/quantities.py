@@ -1,0 +1,69 @@
+"""What no sensor sees, by name: clean accelerations, bearing forces, mesh force and stiffness, tooth pairs, motions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.checks.quantity_names import acceleration_name, bearing_force_name
+from siggen.columns.record import Column
+from siggen.config import constant
+from siggen.dynamics.mesh.contact_names import is_of_contact_alone
+from siggen.dynamics.time.response import Response
+from siggen.planning.specimen import Specimen
+
+UNITS = {
+    "_n_s_per_m": "N s/m", "_n_per_m": "N/m", "_nm": "N m", "_n": "N", "_m_s2": "m/s^2", "_m_s": "m/s", "_m": "m",
+    "_rad": "rad", "_pa": "Pa",
+}  # fmt: skip
+"""Unit by the ending of a name, longer endings first."""
+
+MEANINGS = {
+    "mesh_force_n": "force of all tooth pairs along the line of action, positive on the drive flank",
+    "mesh_stiffness_n_per_m": "sum of the stiffnesses of the pairs in contact",
+    "mesh_damping_n_s_per_m": "damping of the pairs in contact",
+    "approach_m": "R_b1 theta_1 - R_b2 theta_2 and the gears' shifts along the line of action; 0 in the middle of the "
+    "backlash (mesh law linear) or where perfect drive flanks touch (pairs)",
+    "approach_rate_m_s": "rate of the approach",
+    "transmission_error_m": "dynamic transmission error on the line of action, shifts of the gears included: "
+    "approach_m beyond the backlash it closed (mesh law linear), approach_m itself (pairs)",
+    "friction_force_n": "friction of all pairs across the line of action",
+    "friction_moment_pinion_nm": "moment of the friction about the pinion's axis",
+    "friction_moment_gear_nm": "moment of the friction about the gear's axis",
+    "pinion_angle_rad": "angle of the pinion within its revolution, from 0 to 2 pi",
+}
+
+
+def internal_quantities(specimen: Specimen, response: Response) -> dict[str, FloatArray]:
+    """Return name -> (n,) at the samples of a response that holds its internals."""
+    return {
+        "pinion_angle_rad": np.mod(response.angle_rad, 2.0 * np.pi),
+        **{acceleration_name(place): a for place, a in response.acceleration_m_s2.items()},
+        **{bearing_force_name(place): f for place, f in response.bearing_force_n.items()},
+        **response.internals,
+        "transmission_error_m": _transmission_error(response.internals["approach_m"], specimen),
+    }
+
+
+def quantity_column(name: str) -> Column:
+    """Return name, unit and meaning of a quantity as a column."""
+    import pyarrow as pa
+
+    unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+    meaning = MEANINGS.get(name) or name.replace("_", " ")
+    if is_of_contact_alone(name):
+        meaning += "; NaN while the pair does not touch on its drive flank"
+    return Column(name, pa.float32(), unit, meaning)
+
+
+def _transmission_error(approach_m: FloatArray, specimen: Specimen) -> FloatArray:
+    """Return the dynamic transmission error on the line of action: the approach beyond the backlash that it closed.
+
+    x_m = R_b1 θ_1 - R_b2 θ_2 + y_1 - y_2, with what bearings give way along the line of action (reference: standard
+    literature). The linear mesh law counts the approach from the middle of the backlash, tooth pairs from the touching
+    drive flank: there both are one quantity.
+    """
+    if specimen.dynamics.mesh.law == "pairs":
+        return approach_m
+    half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
+    return approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m)

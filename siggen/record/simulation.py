@@ -1,0 +1,215 @@
+"""The one composition of plan, damage, stiffness, dynamics and sensing: planned records become records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
+from math import gcd, pi
+
+import numpy as np
+
+from siggen.columns.record import Record, RecordFailure
+from siggen.config import Config
+from siggen.dynamics.time.response import Response, response_of
+from siggen.errors import SolverFailure
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.planning.plan import PlannedRecord, has_internals, planned_record
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.record.channels import measured_channels
+from siggen.record.damage_rows import damage_rows
+from siggen.record.labels import damage_labels, operating_labels
+from siggen.record.quantities import internal_quantities
+from siggen.seeding import Stage, generator
+from siggen.specimen.contact import mean_line_load_n_per_m, tooth_tables
+from siggen.specimen.damage import state_damage
+from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
+from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
+from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
+from siggen.specimen.structure import structure
+
+__all__ = [
+    "damage_rows",
+    "limits_of",
+    "record_response",
+    "simulate",
+    "simulate_specimen",
+    "specimen_state",
+    "start_angle_rad",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenState:
+    """Everything that all records of one specimen and state share; built once for them."""
+
+    pair: GearPair
+    options: StiffnessOptions
+    damage: Damage
+    mesh: SpecimenMesh
+    labels: dict[str, object]
+
+
+def specimen_state(config: Config, specimen: Specimen, state_id: int) -> SpecimenState:
+    """Return gears, damage, tables and structure of one specimen in one state.
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built (named in the reason).
+    """
+    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
+    with limits_of("impossible_damage"):
+        damage = state_damage(config, specimen.specimen_id, pair, state_id)
+        load = mean_line_load_n_per_m(config.operating_points, pair)
+        errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
+        lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
+        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
+        labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
+    with limits_of("outside_model"):
+        missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+        missing = erroneous_teeth(missing, pair, errors)
+        assembled = structure(specimen.dynamics, pair, specimen.sensors)
+        labels |= error_labels(config, errors)
+    return SpecimenState(
+        pair,
+        options,
+        damage,
+        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n),
+        labels,
+    )
+
+
+@contextmanager
+def limits_of(status: str) -> Iterator[None]:
+    """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
+    try:
+        yield
+    except ValueError as error:
+        raise SolverFailure(status, str(error)) from error
+
+
+def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
+    """Return the pinion angle at the first sample [rad], uniform over the hunting period of the two gears."""
+    owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
+    revolutions = pair.gear.teeth // gcd(pair.pinion.teeth, pair.gear.teeth)
+    return float(generator(config.seed, Stage.START, *owner).random() * 2 * pi * revolutions)
+
+
+def record_response(
+    config: Config,
+    specimen: Specimen,
+    state: SpecimenState,
+    record: PlannedRecord,
+    *,
+    internals: bool = False,
+    driven: RecordDrive | None = None,
+) -> tuple[Response, OperatingPoint]:
+    """Return the clean response of one record and its operating point; `driven` is drawn unless it is at hand.
+
+    Raises
+    ------
+    SolverFailure
+        If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
+    """
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    steps = specimen.dynamics.steps_per_sample
+    with limits_of("outside_model"):
+        driven = _driven(config, specimen, state, record) if driven is None else driven
+        response = response_of(
+            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
+            driven.rotation,
+            fs_hz=config.fs_hz,
+            samples=config.samples,
+            steps_per_sample=steps,
+            internals=internals,
+            bearing_forces=internals or needs_forces(config),
+            excitation=driven.excitation,
+            settle_s=settle_s(config),
+            history_s=history_s(config),
+        )
+    if response.status != "ok":
+        raise SolverFailure(response.status, response.reason)
+    return response, point
+
+
+def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    angle_rad = start_angle_rad(config, state.pair, record)
+    return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
+
+
+def _simulated(
+    config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
+) -> Record:
+    with_internals = has_internals(config, planned)
+    with limits_of("outside_model"):
+        driven = _driven(config, specimen, state, planned)
+    response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
+    channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
+    labels = {
+        **state.labels,
+        **operating_labels(state.pair, point, response),
+        **variation_labels(config, driven),
+        "start_angle_rad": float(response.angle_rad[0]),
+        "contact_loss_share": response.contact_loss_share,
+        "status": response.status,
+        **channel_labels,
+    }
+    found = internal_quantities(specimen, response) if with_internals else {}
+    internals = {name: values.astype(np.float32) for name, values in found.items()}
+    return Record(planned, labels, channels, response.tacho_s, internals if with_internals else None)
+
+
+def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
+    specimen = draw_specimen(config, records[0].specimen_id)
+    instrument = specimen_instrument(config, specimen)
+    state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
+    for record in records:
+        try:
+            yield _simulated(config, specimen, instrument, state_of(record.state_id), record)
+        except SolverFailure as failure:
+            yield RecordFailure(record.record_id, failure.status, failure.reason)
+
+
+def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Simulate records of one specimen; stiffness tables are built once per state.
+
+    Parameters
+    ----------
+    config : Config
+    record_ids : sequence of int, all of one specimen, ascending
+
+    Returns
+    -------
+    list of Record or RecordFailure, in the order of `record_ids`
+
+    Raises
+    ------
+    ValueError
+        If the records belong to more than one specimen.
+    """
+    records = [planned_record(config, i) for i in record_ids]
+    if len({r.specimen_id for r in records}) != 1:
+        raise ValueError(
+            f"records of one specimen expected, received specimens {sorted({r.specimen_id for r in records})}"
+        )
+    return list(_results(config, records))
+
+
+def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Simulate any records; a record is a pure function of (config, record_id), so order and grouping do not matter."""
+    by_specimen: dict[int, list[int]] = {}
+    for record_id in record_ids:
+        by_specimen.setdefault(planned_record(config, record_id).specimen_id, []).append(record_id)
+    done = {
+        record_id: result
+        for ids in by_specimen.values()
+        for record_id, result in zip(ids, simulate_specimen(config, ids), strict=True)
+    }
+    return [done[i] for i in record_ids]

@@ -1,0 +1,258 @@
+"""A finished set against its manifest: every byte, and a sample of records simulated again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from siggen.columns.internals import FOLDER as INTERNALS_FOLDER
+from siggen.columns.record import signal_column
+from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate
+from siggen.dataset.environment import environment
+from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, MANIFEST, METADATA_FOLDER, RUN, read_manifest, unsealed
+from siggen.dataset.reading import Dataset, as_internals, as_record
+from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
+from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
+from siggen.dataset.storage import LocalFolder, Storage, sha256
+from siggen.engines.processes import ProcessEngine
+from siggen.engines.protocol import Engine
+from siggen.engines.serial import SerialEngine
+from siggen.errors import ConfigError, DatasetError, VerificationError, counted
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SIDECAR_FOLDER)
+
+EXACT = "bit for bit"
+CLOSE = "within one step of the converter"
+
+LABEL_TOLERANCE = 1e-6
+"""Relative difference that other instructions and versions may make in a label: well above rounding, below meaning."""
+
+PULSE_TOLERANCE_S = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """A file or record that is not what the manifest promises."""
+
+    what: str
+    problem: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What was compared, how, and what differs.
+
+    Attributes
+    ----------
+    files, bytes
+        Read and hashed.
+    records
+        Ids of the records that were simulated again, ascending.
+    comparison
+        How they were compared, or why none was.
+    mismatches
+        Empty for a set that is what it promises to be.
+    """
+
+    path: str
+    files: int
+    bytes: int
+    records: tuple[int, ...]
+    comparison: str
+    mismatches: tuple[Mismatch, ...]
+
+
+def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = None, workers: int = 1) -> Verification:
+    """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
+
+    Records are compared bit for bit if versions and CPU family are those that made them; elsewhere signals may
+    differ by one step of the converter.
+
+    Parameters
+    ----------
+    path : path
+    sample : int
+        Number of records; which ones follows from the manifest, so a verification can be repeated.
+    simulate : callable, optional
+        By default the physics of `siggen.record.simulation`.
+    workers : int
+        Worker processes; 0 simulates in this process.
+
+    Raises
+    ------
+    DatasetError
+        If there is no finished set.
+    """
+    storage = LocalFolder(path)
+    if not storage.exists(MANIFEST):
+        read_manifest(storage)  # says what is there instead
+    try:
+        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+    except VerificationError as error:
+        return Verification(storage.location, 1, storage.size(MANIFEST), (), "none", (Mismatch(MANIFEST, str(error)),))
+    mismatches = [
+        *_file_mismatches(storage, manifest["files"]),
+        *_strangers(storage, manifest["files"]),
+        *_run(storage),
+    ]
+    records: tuple[int, ...] = ()
+    comparison = "none asked for"
+    if sample and mismatches:
+        comparison = "none, since files differ"
+    elif sample:
+        records, comparison, different = _simulate_again(storage, sample, simulate, workers)
+        mismatches += different
+    total = sum(facts["bytes"] for facts in manifest["files"].values())
+    return Verification(storage.location, len(manifest["files"]) + 2, total, records, comparison, tuple(mismatches))
+
+
+def _file_mismatches(storage: Storage, files: Mapping[str, Mapping[str, Any]]) -> Iterator[Mismatch]:
+    for name, facts in sorted(files.items()):
+        if not storage.exists(name):
+            yield Mismatch(name, "missing")
+        elif storage.size(name) != facts["bytes"]:
+            yield Mismatch(name, f"{storage.size(name)} bytes instead of {facts['bytes']}")
+        elif sha256(storage, name) != facts["sha256"]:
+            yield Mismatch(name, "content differs (SHA-256)")
+
+
+def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismatch]:
+    for folder in OWN_FOLDERS:
+        yield from (Mismatch(name, "not part of the set") for name in storage.names(folder) if name not in files)
+
+
+def _run(storage: Storage) -> Iterator[Mismatch]:
+    """Check run.json by its own digest; it may be left out when a set is published."""
+    if storage.exists(RUN):
+        try:
+            unsealed(RUN, storage.get(RUN))
+        except VerificationError as error:
+            yield Mismatch(RUN, str(error))
+
+
+def _simulate_again(
+    storage: Storage, sample: int, simulate: Simulate | None, workers: int
+) -> tuple[tuple[int, ...], str, list[Mismatch]]:
+    dataset = Dataset(storage)
+    try:
+        config = _config(storage, dataset.manifest)
+    except (ConfigError, DatasetError) as error:
+        why = f"this version of siggen reads the configuration otherwise ({error})"
+        return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
+    ids = _sample(dataset, sample)
+    here = environment()
+    exact = {record_id: _environment(dataset.manifest, record_id) == here for record_id in ids}
+    engine: Engine = ProcessEngine(workers) if workers else SerialEngine()
+    tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
+    mismatches = []
+    function = ChunkSimulation(config, simulate or _physics(), dataset.internal_columns)
+    with closing(engine.map(function, tasks)) as results:
+        for index, result in results:
+            record_id, batch = ids[index], result.batch()
+            if result.failures:
+                problem = f"now fails: {result.failures[0].status} ({result.failures[0].reason})"
+            else:
+                problem = _difference(config, dataset.record(record_id), as_record(batch), exact=exact[record_id])
+                problem = problem or _internal_difference(dataset, record_id, result, exact=exact[record_id])
+            mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
+    comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
+    return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
+
+
+def _physics() -> Simulate:
+    from siggen.record.simulation import simulate_specimen
+
+    return simulate_specimen
+
+
+def _config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
+    """Return the set's configuration; its identity must be the one that this version computes, too."""
+    from siggen.config import parse, parse_yaml
+
+    parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG))
+    if parsed.config is None:
+        raise ConfigError(parsed.problems, CONFIG)
+    if parsed.config.identity != manifest["identity"]:
+        raise DatasetError("its identity differs")
+    return parsed.config
+
+
+def _sample(dataset: Dataset, count: int) -> list[int]:
+    ids = sorted(dataset.labels(columns=["record_id"])["record_id"].to_pylist())
+    return sorted(Random(dataset.manifest["identity"]).sample(ids, min(count, len(ids))))
+
+
+def _environment(manifest: Mapping[str, Any], record_id: int) -> Mapping[str, str] | None:
+    for shard in manifest["shards"]:
+        if in_ranges(record_id, shard["records"]):
+            found: Mapping[str, str] = manifest["environments"][shard["environment"]]
+            return found
+    return None
+
+
+def _difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, Any], *, exact: bool) -> str:
+    """Return in what two versions of a record differ, or an empty string."""
+    steps = {} if exact else _steps_m_s2(config)
+    for name, before in stored.items():
+        now = again[name]
+        if isinstance(before, np.ndarray):
+            tolerance = steps.get(name, 0.0 if exact else PULSE_TOLERANCE_S)
+            if before.shape != now.shape:
+                return f"{name} has {counted(len(now), 'value')} instead of {len(before)}"
+            largest = float(np.max(np.abs(before.astype(float) - now), initial=0.0))
+            if largest > tolerance or (exact and before.tobytes() != now.tobytes()):
+                return f"{name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
+        elif not _same_label(before, now, exact=exact):
+            return f"{name} is {now} instead of {before}"
+    return ""
+
+
+def _internal_difference(dataset: Dataset, record_id: int, result: ChunkResult, *, exact: bool) -> str:
+    """Return in which internal quantity two versions of a record differ, or an empty string."""
+    batch = result.internals_batch()
+    stored = dataset.record_internals(record_id) if dataset.internal_columns else None
+    again = as_internals(batch) if batch is not None and batch.num_rows else None
+    if stored is None or again is None:
+        return "" if stored is again else "its internal quantities are stored but not asked for, or missing"
+    for name, now in again.items():
+        before, after = stored[name].astype(float), now.astype(float)
+        apart = np.isnan(after)  # pairs that do not touch
+        if (np.isnan(before) != apart).any():
+            return f"internal quantity {name} differs in where it is NaN"
+        largest = float(np.abs(before - after)[~apart].max(initial=0.0))
+        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(after[~apart]).max(initial=0.0))
+        if largest > tolerance or (exact and stored[name].tobytes() != now.tobytes()):
+            return f"internal quantity {name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
+    return ""
+
+
+def _same_label(before: object, now: object, *, exact: bool) -> bool:
+    if exact or not isinstance(before, float) or not isinstance(now, float):
+        return before == now
+    return before == now or abs(before - now) <= LABEL_TOLERANCE * max(1.0, abs(before))
+
+
+def _steps_m_s2(config: Config) -> dict[str, float]:
+    """Return the converter's step of every signal column; without one, the rounding of float32 at full range."""
+    from siggen.sensing.measurement import power_of_two_from
+
+    steps: dict[str, float] = {}
+    for sensor in config.sensors:
+        bits = 24 if sensor.bits is None else sensor.bits
+        step = power_of_two_from(2.0 * sensor.range_m_s2 / 2.0**bits)
+        steps |= {signal_column(f"{sensor.name}_{axis}"): step for axis in sensor.axes}
+    return steps
+
+
+def problem_lines(mismatches: Sequence[Mismatch]) -> list[str]:
+    """Return one line per mismatch."""
+    return [f"{mismatch.what}: {mismatch.problem}" for mismatch in mismatches]

@@ -1,0 +1,1 @@
+"""One drawn gearbox in SI: the only place where configuration and physics meet."""

@@ -1,0 +1,115 @@
+"""Manufacturing errors of one specimen: what is drawn for its two gears, the tables it leads to, and its labels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config, Manufacture, at
+from siggen.gears.errors.error_shapes import Draws, error_shapes
+from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors
+from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
+from siggen.gears.errors.tooth_errors import with_errors
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.seeding import Stage, named_generator
+
+
+@dataclass(frozen=True, slots=True)
+class MadeGear:
+    """One gear as it was made: its class and tolerances, how much of them it uses, its errors, what a machine finds."""
+
+    accuracy_class: int
+    tolerance_share: float
+    tolerances: FlankTolerances
+    errors: GearErrors
+    found: FlankDeviations
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenErrors:
+    """Both gears, and how far their flanks are apart at the far end of the face when they touch at the near one [m]."""
+
+    pinion: MadeGear
+    gear: MadeGear
+    lead_misalignment_m: float
+
+    def lead_m(self, slices: int) -> FloatArray:
+        """Return what is missing in the middle of every slice of the face (slices,) [m], of mean 0: F_β (w/L - 1/2)."""
+        return self.lead_misalignment_m * ((np.arange(slices) + 0.5) / slices - 0.5)
+
+
+def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenErrors | None:
+    """Return the errors of a specimen in a state; None for perfect gears.
+
+    Every draw has a name, so neither other keys nor the other gear shift it.
+
+    Raises
+    ------
+    ValueError
+        If a gear lies outside the range of ISO 1328-1.
+    """
+    section = config.manufacture
+    if section is None:
+        return None
+    owner = (specimen_id, state_id if section.draw == "state" else 0)
+
+    def draws(name: str) -> np.random.Generator:
+        return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
+
+    pinion, gear = (_made(section, pair, which, draws) for which in ("pinion", "gear"))
+    return SpecimenErrors(pinion, gear, _lead_misalignment_m(section, (pinion, gear), draws))
+
+
+def erroneous_teeth(missing: MissingMaterial, pair: GearPair, errors: SpecimenErrors | None) -> MissingMaterial:
+    """Return the missing material of the same teeth with their errors."""
+    return missing if errors is None else with_errors(missing, pair, errors.pinion.errors, errors.gear.errors)
+
+
+def error_labels(config: Config, errors: SpecimenErrors | None) -> dict[str, object]:
+    """Return the labels of `siggen.columns.manufacture_columns`."""
+    if errors is None or config.manufacture is None:
+        return {}
+    labels: dict[str, object] = {"manufacture_draw": config.manufacture.draw}
+    for which, made in (("pinion", errors.pinion), ("gear", errors.gear)):
+        largest = made.found.largest
+        labels |= {
+            f"accuracy_class_{which}": made.accuracy_class,
+            f"tolerance_share_{which}": made.tolerance_share,
+            f"pitch_deviation_{which}_um": 1e6 * largest["pitch_m"],
+            f"cumulative_pitch_{which}_um": 1e6 * largest["cumulative_pitch_m"],
+            f"runout_{which}_um": 1e6 * largest["runout_m"],
+            f"profile_slope_{which}_um": 1e6 * largest["profile_slope_m"],
+            f"profile_form_{which}_um": 1e6 * largest["profile_form_m"],
+            f"profile_deviation_{which}_um": 1e6 * largest["profile_m"],
+        }
+    return labels | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
+
+
+def _made(section: Manufacture, pair: GearPair, which: str, draws: Draws) -> MadeGear:
+    def uniform(name: str) -> float:
+        return float(draws(f"{which}.{name}").random())
+
+    number = section.accuracy_class if which == "pinion" else section.gear_class
+    accuracy_class, share = round(at(number, uniform("accuracy_class"))), at(section.tolerance_share, uniform("share"))
+    tolerances = flank_tolerances(pair.member(which), pair.face_width_m, accuracy_class)
+    of_teeth = draws(f"{which}.waves").random(pair.member(which).teeth)
+    waves = np.array([at(section.profile_waves, float(u)) for u in of_teeth])
+    shapes = error_shapes(waves, lambda name: draws(f"{which}.{name}"))
+    errors = gear_errors(
+        pair, which, shapes, tolerances.times(share), at(section.runout_share, uniform("runout_share"))
+    )
+    return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors))
+
+
+def _lead_misalignment_m(section: Manufacture, gears: tuple[MadeGear, MadeGear], draws: Draws) -> float:
+    """Return the drawn misalignment with its sign, as likely the one as the other."""
+    if section.lead_misalignment_um == "iso_1328":
+        ends = (2.0 * float(draws(f"{which}.helix").random()) - 1.0 for which in ("pinion", "gear"))
+        slopes = (made.tolerance_share * made.tolerances.helix_slope_m for made in gears)
+        return sum(end * slope for end, slope in zip(ends, slopes, strict=True))
+    size = 1e-6 * at(section.lead_misalignment_um, float(draws("lead_misalignment_um").random()))  # type: ignore[arg-type]
+    # The zero makes 0.0 of -0.0.
+    return (size if draws("lead_end").random() < 0.5 else -size) + 0.0

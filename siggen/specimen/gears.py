@@ -1,0 +1,80 @@
+"""From the units of the configuration (mm, degrees, GPa) to the SI objects of the physics."""
+
+from __future__ import annotations
+
+import math
+
+from siggen.config import Config, Gears, Stiffness, Wheel, constant, corners
+from siggen.gears.damage.flank_damage import axial_height
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness.stiffness_notes import stiffness_notes
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+
+def gear_pair(gears: Gears) -> GearPair:
+    """Return the gear pair of a drawn section `gears`.
+
+    Raises
+    ------
+    TypeError
+        If a number of the section is still a distribution.
+    """
+    distance_mm = gears.centre_distance_mm
+    return GearPair(
+        pinion=_spur_gear(gears, gears.pinion),
+        gear=_spur_gear(gears, gears.gear),
+        face_width_m=constant(gears.face_width_mm) / 1e3,
+        youngs_modulus_pa=constant(gears.youngs_modulus_gpa) * 1e9,
+        poisson_ratio=constant(gears.poisson_ratio),
+        centre_distance_m=None if distance_mm is None else constant(distance_mm) / 1e3,
+    )
+
+
+def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
+    """Return the options of the stiffness model that a section `stiffness` names."""
+    return StiffnessOptions(
+        stiffness.beam,
+        stiffness.foundation,
+        stiffness.foundation_angle,
+        stiffness.hertz,
+        stiffness.hertz_force_n,
+        stiffness.coupled_by,
+    )
+
+
+def model_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know about the stiffness model of a set, at the bounds of its gears, each sentence once."""
+    options = stiffness_options(config.stiffness)
+    notes = (note for corner in corners(config.gears) for note in stiffness_notes(gear_pair(corner), options))
+    return tuple(dict.fromkeys(notes))
+
+
+def _spur_gear(gears: Gears, wheel: Wheel) -> SpurGear:
+    return SpurGear(
+        teeth=wheel.teeth,
+        module_m=constant(gears.module_mm) / 1e3,
+        pressure_angle_rad=math.radians(constant(gears.pressure_angle_deg)),
+        profile_shift=constant(wheel.profile_shift),
+        addendum_coefficient=constant(gears.addendum_coefficient),
+        clearance_coefficient=constant(gears.clearance_coefficient),
+        bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
+    )
+
+
+def pit_height_m(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:
+    """Return the axial height above the base circle of a flank point given as in the configuration [m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    which : str
+        'pinion' or 'gear'.
+    height_mm : float or str
+        Height as measured [mm], or 'pitch' for the pitch point of the mesh (roll angle tan(alpha_w), derived).
+    reading : str
+        'axial', 'radial' or 'arc'.
+    """
+    gear = pair.member(which)
+    if isinstance(height_mm, str):
+        return float(gear.height_m(math.tan(pair.working_pressure_angle_rad)))
+    return axial_height(gear, height_mm / 1e3, reading)

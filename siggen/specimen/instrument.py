@@ -1,0 +1,178 @@
+"""The instrument of one specimen: for every channel the way from bearing forces and model to the amplifier."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Config, MeasuredPath, ModalPath, Number, Resonance, Sensor, at, constant
+from siggen.dynamics.time.decimation import PASS_EDGE
+from siggen.planning.specimen import Specimen
+from siggen.seeding import Stage, named_uniforms
+from siggen.sensing.modal_path import modal_accelerance
+from siggen.sensing.sensor_response import high_pass_response, resonance_response
+from siggen.sensing.spectral_filter import filter_length, frequencies
+from siggen.specimen.housing import DIRECTIONS, SpecimenHousing, specimen_housing
+from siggen.specimen.measured_path import INPUTS, decoded_response
+
+CHAIN_HISTORY_S = 0.02
+"""History for the resonances of sensors without a path; those above 1 kHz with 1 % damping have 0.1 % left after it."""
+BAND_HZ = 100.0
+"""Frequency from which the rms accelerance of a path is taken, up to 0.45 of the sampling rate."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelInstrument:
+    """One axis of one sensor.
+
+    Attributes
+    ----------
+    name, sensor, gain : of the channel
+    motions : place/axis of the model's motion -> factor on it; several with cross-axis sensitivity
+    accelerance : (inputs, k) m/s² per N from the bearing forces, before the sensor; None without a path
+    sensor_response : (k,) of mounting, sensor and coupling, high_pass: (k,) of the coupling alone; None without
+    path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
+    """
+
+    name: str
+    sensor: Sensor
+    gain: float
+    motions: Mapping[str, float]
+    accelerance: ComplexArray | None
+    sensor_response: ComplexArray | None
+    high_pass: ComplexArray | None
+    path_modes: int
+    path_rms_m_s2_per_n: float
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it stores the motion of the model as it is."""
+        return self.accelerance is None and self.sensor_response is None and len(self.motions) == 1
+
+
+@dataclass(frozen=True, slots=True)
+class Instrument:
+    """All channels of one specimen, and the length of the records that they filter."""
+
+    length: int
+    fs_hz: float
+    channels: tuple[ChannelInstrument, ...]
+
+    @property
+    def has_path(self) -> bool:
+        """Whether a channel needs the bearing forces."""
+        return any(channel.accelerance is not None for channel in self.channels)
+
+
+def settle_s(config: Config) -> float:
+    """Return the time before the first sample over which the housing's modes settle [s]."""
+    return 0.0 if config.housing is None else config.housing.settle_s
+
+
+def history_s(config: Config) -> float:
+    """Return the history that the instrument needs [s]; it does not change the records of plain channels."""
+    filtered = any(s.mounting or s.resonance or s.high_pass_hz is not None for s in config.sensors)
+    return max(settle_s(config), CHAIN_HISTORY_S if filtered else 0.0)
+
+
+def needs_forces(config: Config) -> bool:
+    """Return whether a sensor has a path."""
+    return any(sensor.path is not None for sensor in config.sensors)
+
+
+def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
+    """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
+    length = filter_length(round(history_s(config) * config.fs_hz), config.samples)
+    housing = specimen_housing(config, specimen.specimen_id)
+    uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
+    grid = frequencies(length, config.fs_hz)
+    channels = []
+    for sensor in specimen.sensors:
+        gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
+        for axis, gain in zip(sensor.axes, gains, strict=True):
+            draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
+            channels.append(_channel(sensor, axis, constant(gain), draw, housing, grid))
+    return Instrument(length, config.fs_hz, tuple(channels))
+
+
+@dataclass(frozen=True, slots=True)
+class _Draw:
+    """Draws the numbers of one axis by their names."""
+
+    uniform: Callable[[str], float]
+    path: str
+
+    def __call__(self, number: Number, name: str) -> float:
+        return at(number, self.uniform(f"{self.path}.{name}"))
+
+
+def _channel(
+    sensor: Sensor, axis: str, gain: float, draw: _Draw, housing: SpecimenHousing | None, grid: FloatArray
+) -> ChannelInstrument:
+    weights = _weights(sensor, axis, draw)
+    accelerance = None
+    if sensor.path is not None:
+        one_by_one = (weight * _accelerance(sensor, d, draw, housing, grid) for d, weight in weights.items())
+        accelerance = np.sum(list(one_by_one), axis=0)
+    seen = {d: w for d, w in weights.items() if sensor.sees_model and d != "axial"}
+    modal = isinstance(sensor.path, ModalPath) and housing is not None
+    return ChannelInstrument(
+        name=f"{sensor.name}_{axis}",
+        sensor=sensor,
+        gain=gain,
+        motions={f"{sensor.motion_place}/{direction}": weight for direction, weight in seen.items()},
+        accelerance=accelerance,
+        sensor_response=_sensor_response(sensor, draw, grid),
+        high_pass=None if sensor.high_pass_hz is None else _high_pass(sensor, draw, grid),
+        path_modes=housing.modes.frequency_hz.size if modal and housing is not None else 0,
+        path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
+    )
+
+
+def _weights(sensor: Sensor, axis: str, draw: _Draw) -> dict[str, float]:
+    """Return direction -> sensitivity: 1 along the axis, and what leaks in from across it at a drawn angle."""
+    leak = draw(sensor.cross_axis, "cross_axis")
+    if leak == 0.0:
+        return {axis: 1.0}
+    first, second = (direction for direction in DIRECTIONS if direction != axis)
+    angle = 2.0 * pi * draw.uniform(f"{draw.path}.cross_axis.angle")
+    return {axis: 1.0, first: leak * cos(angle), second: leak * sin(angle)}
+
+
+def _accelerance(
+    sensor: Sensor, direction: str, draw: _Draw, housing: SpecimenHousing | None, grid: FloatArray
+) -> ComplexArray:
+    """Return the accelerance (inputs, k) from the bearing forces to one direction at a sensor."""
+    match sensor.path:
+        case ModalPath() as path if housing is not None:
+            shape = housing.at_sensor(sensor, direction)
+            found = modal_accelerance(housing.modes, housing.at_bearings(INPUTS), shape, grid)
+            return found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us"))
+        case MeasuredPath(response=str() as text):
+            return decoded_response(text).accelerance(direction, INPUTS, grid)
+    raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")
+
+
+def _sensor_response(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray | None:
+    resonances = {"mounting": sensor.mounting, "resonance": sensor.resonance}
+    parts = [_resonance(section, draw, name, grid) for name, section in resonances.items() if section is not None]
+    parts += [] if sensor.high_pass_hz is None else [_high_pass(sensor, draw, grid)]
+    return np.prod(parts, axis=0) if parts else None
+
+
+def _resonance(section: Resonance, draw: _Draw, name: str, grid: FloatArray) -> ComplexArray:
+    natural_hz = draw(section.frequency_hz, f"{name}.frequency_hz")
+    return resonance_response(grid, natural_hz, draw(section.damping_ratio, f"{name}.damping_ratio"))
+
+
+def _high_pass(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray:
+    return high_pass_response(grid, draw(sensor.high_pass_hz or 0.0, "high_pass_hz"))
+
+
+def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:
+    band = (grid >= BAND_HZ) & (grid <= PASS_EDGE * 2.0 * grid[-1])
+    return float(np.sqrt((np.abs(accelerance[:, band]) ** 2).mean()))

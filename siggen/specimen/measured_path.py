@@ -1,0 +1,228 @@
+"""Measured frequency responses: from files into the configuration, so that a set stays a function of it alone.
+
+A file has the column frequency_hz, and for every axis of the sensor and every bearing force two columns named
+<axis>_from_<place>_<direction>_<part>_<unit>: real and imag in m_s2_per_n, or magnitude in m_s2_per_n and phase in rad
+or deg.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+import re
+import zipfile
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.config import MeasuredPath
+from siggen.config.problems import received_text
+from siggen.errors import Problem
+from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
+
+UNIT = "m_s2_per_n"
+UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}
+"""Units that the parts of a complex number may have."""
+COLUMN = re.compile(
+    r"^(vertical|horizontal|axial)_from_((?:pinion|gear)_bearing)_(vertical|horizontal)_(real|imag|magnitude|phase)_?(.*)$"
+)
+FREQUENCY = "frequency_hz"
+INPUTS = tuple(f"{place}/{axis}" for place in ("pinion_bearing", "gear_bearing") for axis in ("vertical", "horizontal"))
+"""Bearing forces of every model that has bearings."""
+MOST_NUMBERS = 400_000
+"""Numbers that a response may have: they become part of the configuration, 11 bytes each."""
+
+
+class ResponseRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
+    """What was received instead of a usable response, and what is allowed."""
+
+    def __init__(self, received: str, allowed: str) -> None:
+        self.received, self.allowed = received, allowed
+        super().__init__(f"{received}; {allowed}")
+
+
+def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, Any], list[Problem]]:
+    """Return a configuration's mapping with the numbers of the response files it names, and what is wrong with them.
+
+    Parameters
+    ----------
+    raw : mapping, left as it is
+    folder : Path from which the paths of the files count
+    """
+    sensors = raw.get("sensors")
+    if not isinstance(sensors, (list, tuple)):
+        return raw, []
+    problems: list[Problem] = []
+    filled = []
+    for index, sensor in enumerate(sensors):
+        try:
+            filled.append(_filled(sensor, folder))
+        except ResponseRefusal as refused:
+            problems.append(Problem(f"sensors.{index}.path.file", refused.received, refused.allowed))
+            filled.append(sensor)
+    return {**raw, "sensors": filled}, problems
+
+
+def _filled(sensor: Any, folder: Path) -> Any:
+    path = sensor.get("path") if isinstance(sensor, Mapping) else None
+    if not isinstance(path, Mapping) or path.get("kind") != "measured" or path.get("response") is not None:
+        return sensor
+    return {**sensor, "path": {**path, **_read(path, folder)}}
+
+
+def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what makes the measured responses of valid sections unusable for their records."""
+    housing, fs_hz = sections.get("housing"), sections.get("fs_hz")
+    if housing is None or fs_hz is None:
+        return
+    for index, sensor in sections.get("sensors", {}).items():
+        if not isinstance(sensor.path, MeasuredPath) or sensor.path.response is None:
+            continue
+        where = f"sensors.{index}.path.file"
+        try:
+            response = decoded_response(sensor.path.response)
+        except ResponseRefusal as refused:
+            yield Problem(f"sensors.{index}.path.response", refused.received, refused.allowed)
+            continue
+        wrong = [Problem(where, *text) for text in grid_problems(response.frequency_hz, fs_hz)]
+        yield from wrong or _curves_problems(response, sensor.axes, housing.settle_s, where)
+
+
+def _curves_problems(
+    response: FrequencyResponse, axes: tuple[str, ...], memory_s: float, where: str
+) -> Iterator[Problem]:
+    for key in ((axis, name) for axis in axes for name in INPUTS):
+        label = f"{key[0]}_from_{key[1].replace('/', '_')}"
+        if key not in response.curves:
+            allowed = "allowed: two columns for every axis and bearing force; zeros where nothing passes"
+            yield Problem(where, f"no columns {label}_...", allowed)
+            continue
+        for received, allowed in curve_problems(response, *key, memory_s):
+            yield Problem(where, f"{received} in {label}", allowed)
+
+
+def _read(path: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Return file, sha256 and response of a path section whose numbers are still in the file."""
+    name = path.get("file")
+    if not isinstance(name, str):
+        raise ResponseRefusal(received_text(name), "allowed: the path of a CSV, Parquet or npz file")
+    try:
+        content = (folder / name).read_bytes()
+    except OSError as error:
+        raise ResponseRefusal(
+            f"'{name}', which cannot be read ({error.strerror})", f"allowed: a file in {folder}"
+        ) from None
+    digest = hashlib.sha256(content).hexdigest()
+    expected = path.get("sha256")
+    if expected is not None and expected != digest:
+        raise ResponseRefusal(
+            f"'{name}' with SHA-256 {digest}", f"allowed: the file with {expected}, or leave sha256 out"
+        )
+    text = encoded_response(_response(_columns(content, Path(name).suffix.lower())))
+    # the folder is no part of the set: the same measurement elsewhere gives the same identity
+    return {"file": Path(name).name, "sha256": digest, "response": text}
+
+
+def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
+    import pyarrow as pa
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    source = io.BytesIO(content)
+    try:
+        match ending:
+            case ".npz":
+                return {name: _numbers(name, values) for name, values in np.load(source, allow_pickle=False).items()}
+            case ".csv":
+                table = pyarrow.csv.read_csv(source)
+            case ".parquet":
+                table = pyarrow.parquet.read_table(source)
+            case _:
+                raise ResponseRefusal(f"the ending '{ending}'", "allowed: .csv, .parquet, .npz")
+    except (pa.ArrowInvalid, ValueError, OSError, zipfile.BadZipFile) as error:
+        raise ResponseRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
+    return {name: _numbers(name, table[name].to_numpy()) for name in table.column_names}
+
+
+def _numbers(name: str, values: NDArray[Any]) -> FloatArray:
+    if values.ndim != 1 or values.dtype.kind not in "iuf":
+        raise ResponseRefusal(
+            f"column {name} of type {values.dtype}, shape {values.shape}", "allowed: a column of numbers"
+        )
+    return values.astype(np.float64)
+
+
+def _response(columns: Mapping[str, FloatArray]) -> FrequencyResponse:
+    if FREQUENCY not in columns:
+        raise ResponseRefusal(f"the columns {', '.join(columns)}"[:200], f"allowed: a column {FREQUENCY}")
+    if sum(values.size for values in columns.values()) > MOST_NUMBERS:
+        raise ResponseRefusal(f"{sum(v.size for v in columns.values())} numbers", f"allowed: at most {MOST_NUMBERS}")
+    parts: dict[tuple[str, str], dict[str, FloatArray]] = {}
+    for name, values in columns.items():
+        if name == FREQUENCY:
+            continue
+        key, part, unit = _meaning(name)
+        if values.size != columns[FREQUENCY].size:
+            raise ResponseRefusal(
+                f"{values.size} numbers in {name}", f"allowed: {columns[FREQUENCY].size}, as frequencies"
+            )
+        parts.setdefault(key, {})[part] = np.radians(values) if unit == "deg" else values
+    return FrequencyResponse(columns[FREQUENCY], {key: _complex(key, found) for key, found in parts.items()})
+
+
+def _meaning(column: str) -> tuple[tuple[str, str], str, str]:
+    """Return (direction, input), part and unit that a column's name says."""
+    found = COLUMN.match(column)
+    if found is None:
+        allowed = f"allowed: {FREQUENCY}, and columns such as vertical_from_pinion_bearing_vertical_real_{UNIT}"
+        raise ResponseRefusal(f"the column {column}", allowed)
+    direction, place, axis, part, unit = found.groups()
+    if unit not in UNITS[part]:
+        units = " or ".join(UNITS[part])
+        raise ResponseRefusal(
+            f"the column {column} with {f'the unit {unit}' if unit else 'no unit'}", f"allowed: {units}"
+        )
+    return (direction, f"{place}/{axis}"), part, unit
+
+
+def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[np.complex128]:
+    match sorted(parts):
+        case ["imag", "real"]:
+            return parts["real"] + 1j * parts["imag"]
+        case ["magnitude", "phase"]:
+            return parts["magnitude"] * np.exp(1j * parts["phase"])
+    received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{key[1].replace('/', '_')}"
+    raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")
+
+
+def encoded_response(response: FrequencyResponse) -> str:
+    """Return a response as a text: one line that names its curves, and its numbers in base64."""
+    curves = [response.frequency_hz, *(part for c in response.curves.values() for part in (c.real, c.imag))]
+    names = [f"{direction} {name}" for direction, name in response.curves]
+    numbers = np.ascontiguousarray(curves, dtype="<f8").tobytes()
+    return ",".join(names) + ":" + base64.b64encode(numbers).decode()
+
+
+@lru_cache(maxsize=8)
+def decoded_response(text: str) -> FrequencyResponse:
+    """Return the response that a text stands for.
+
+    Raises
+    ------
+    ResponseRefusal
+        If it is none.
+    """
+    try:
+        head, _, body = text.partition(":")
+        keys = [(name.split(" ")[0], name.split(" ")[1]) for name in head.split(",")]
+        numbers = np.frombuffer(base64.b64decode(body, validate=True), "<f8").reshape(1 + 2 * len(keys), -1)
+    except (ValueError, IndexError):
+        raise ResponseRefusal("a text that holds no response", "allowed: what siggen filled in itself") from None
+    curves = {key: numbers[1 + 2 * i] + 1j * numbers[2 + 2 * i] for i, key in enumerate(keys)}
+    return FrequencyResponse(numbers[0], curves)

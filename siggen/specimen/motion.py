@@ -1,0 +1,119 @@
+"""The motion of a drawn specimen at an operating point: its structure under the mesh law that it is configured with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.config import Dynamics, constant
+from siggen.dynamics.friction.contact_kinematics import effective_modulus
+from siggen.dynamics.mesh.damping import DampingLaw
+from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.mesh.pair_internals import PairContact
+from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.mesh.slice_law import SliceLaw
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
+from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.planning.specimen import OperatingPoint
+from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.drive import RecordDrive
+from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenMesh:
+    """What all records of one specimen and state share: structure and tables of its teeth."""
+
+    pair: GearPair
+    structure: Structure
+    tables: MeshTables
+    missing: MissingMaterial
+    slices: SliceLaw | None = None
+    coupling_m_per_n: NDArray[np.float64] | None = None
+
+
+def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
+    """Return the missing material of the teeth of a drawn `dynamics` section."""
+    mesh = dynamics.mesh
+    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), constant(mesh.tip_relief_length) * pair.base_pitch_m)
+    return missing_material(pair, relief, corner_contact=mesh.corner_contact == "on", points=points)
+
+
+def specimen_motion(
+    dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, step_s: float, driven: RecordDrive | None = None
+) -> Motion:
+    """Return the motion, made for steps of `step_s` seconds; with friction the load holds the mean speed.
+
+    What is `driven` by more than a constant torque takes its inputs; None: constant speed and torque.
+    """
+    excitation = None if driven is None else driven.excitation
+    vectors = None if excitation is None else excitation.vectors
+    if dynamics.mesh.law == "linear":
+        return LinearMotion(
+            mesh.structure,
+            mesh.tables,
+            torque_nm=point.torque_nm,
+            mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
+            backlash_m=1e-6 * constant(dynamics.backlash_um),
+            step_s=step_s,
+            integrator=dynamics.method,
+            input_vectors=vectors,
+        )
+    rubbing = dynamics.rubbing != "off"
+    return PairMotion(
+        locked_load(mesh.structure) if rubbing else mesh.structure,
+        _law(dynamics, mesh, point),
+        torque_nm=point.torque_nm,
+        speed_hz=point.speed_hz,
+        reference_stiffness_n_per_m=mean_mesh_stiffness(mesh.tables),
+        step_s=step_s,
+        input_vectors=vectors,
+        speed_input=-1 if driven is None else driven.speed_input,
+        contact=_contact(dynamics, mesh.pair, point),
+    )
+
+
+def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairContact:
+    modulus, friction = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio), dynamics.friction
+    if dynamics.rubbing != "mixed_ehl":
+        return PairContact(modulus, pair.face_width_m)
+    oil = lubricated_mesh(friction, pair, point)
+    return PairContact(modulus, pair.face_width_m, oil, composite_roughness_m(friction))
+
+
+def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
+    section = dynamics.mesh
+    film = SqueezeFilm(
+        constant(section.oil_viscosity_pa_s), mesh.pair.face_width_m, 1e-6 * constant(section.film_floor_um)
+    )
+    return pair_law(
+        mesh.tables,
+        mesh.missing,
+        line_of_action_m=mesh.pair.line_of_action_m,
+        damping_ratio=_damping_ratio(dynamics),
+        equivalent_mesh_mass_kg=mesh.structure.equivalent_mesh_mass_kg,
+        backlash_m=1e-6 * constant(dynamics.backlash_um),
+        friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=damage_is_geometry(dynamics)),
+        film=film if section.squeeze_film == "on" else None,
+        slices=mesh.slices,
+        coupling_m_per_n=mesh.coupling_m_per_n,
+    )
+
+
+def _damping_ratio(dynamics: Dynamics) -> float | DampingLaw:
+    section = dynamics.mesh
+    if section.damping == "constant":
+        return constant(dynamics.mesh_damping_ratio)
+    return DampingLaw(
+        structure=constant(section.structure_damping_ratio),
+        film=constant(section.film_damping_ratio),
+        asperities=constant(section.asperity_damping_ratio),
+    )

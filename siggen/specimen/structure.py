@@ -1,0 +1,103 @@
+"""The gearbox of a drawn specimen as the dynamics sees it: inertias, bearings, couplings and casing in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+
+from siggen.config import Caps as CapsSection
+from siggen.config import Casing as CasingSection
+from siggen.config import Coupling as CouplingSection
+from siggen.config import Dynamics, Rotor, Sensor, constant
+from siggen.dynamics.structure.bearing_caps import Caps
+from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
+from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
+from siggen.dynamics.structure.structure import Rotor as RotorNumbers
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+
+STEEL_DENSITY_KG_M3 = 7850.0
+
+ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
+
+
+def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()) -> Structure:
+    """Return the structure of a drawn `dynamics` section; a gear without given mass is a steel disc with its bore.
+
+    Parameters
+    ----------
+    dynamics : Dynamics, without distributions
+    pair : GearPair
+    sensors : Sensor, those on the casing become points of it
+    """
+    stage = SpurStage(
+        working_pressure_angle_rad=pair.working_pressure_angle_rad,
+        pinion=_rotor(dynamics.pinion, pair.pinion, pair.face_width_m),
+        gear=_rotor(dynamics.gear, pair.gear, pair.face_width_m),
+        motor_inertia_kg_m2=constant(dynamics.motor_inertia_kg_m2),
+        load_inertia_kg_m2=constant(dynamics.load_inertia_kg_m2),
+        input_coupling=_coupling(dynamics.input_coupling),
+        output_coupling=_coupling(dynamics.output_coupling),
+    )
+    if dynamics.model == "casing":
+        return casing_structure(stage, _casing(dynamics.casing, pair, sensors))
+    return ASSEMBLIES[dynamics.model](stage)
+
+
+def disc_mass_kg(gear: SpurGear, face_width_m: float) -> float:
+    """Return the mass [kg] of a steel disc of the gear's pitch circle with its bore."""
+    return STEEL_DENSITY_KG_M3 * pi * (gear.pitch_radius_m**2 - gear.bore_radius_m**2) * face_width_m
+
+
+def disc_inertia_kg_m2(gear: SpurGear, face_width_m: float) -> float:
+    """Return the moment of inertia [kg m^2] of the same disc about its axis."""
+    return 0.5 * disc_mass_kg(gear, face_width_m) * (gear.pitch_radius_m**2 + gear.bore_radius_m**2)
+
+
+def _rotor(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
+    mass, inertia = section.mass_kg, section.inertia_kg_m2
+    return RotorNumbers(
+        base_radius_m=gear.base_radius_m,
+        mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
+        inertia_kg_m2=disc_inertia_kg_m2(gear, face_width_m) if inertia is None else constant(inertia),
+        bearing=Bearing(
+            stiffness_x_n_per_m=constant(section.bearing_stiffness_x_n_per_m),
+            stiffness_y_n_per_m=constant(section.bearing_stiffness_y_n_per_m),
+            damping_x_n_s_per_m=constant(section.bearing_damping_x_n_s_per_m),
+            damping_y_n_s_per_m=constant(section.bearing_damping_y_n_s_per_m),
+        ),
+    )
+
+
+def _coupling(section: CouplingSection) -> Coupling:
+    return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))
+
+
+def _casing(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
+    bolts, pinion = section.bolts, section.pinion_position_mm
+    return Casing(
+        mass_kg=constant(section.mass_kg),
+        inertia_kg_m2=constant(section.inertia_kg_m2),
+        bolts=Bolts(
+            shear_stiffness_n_per_m=constant(bolts.shear_stiffness_n_per_m),
+            axial_stiffness_n_per_m=constant(bolts.axial_stiffness_n_per_m),
+            damping_ratio=constant(bolts.damping_ratio),
+            places_m=tuple(_metres(place) for place in bolts.positions_mm),
+        ),
+        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
+        sensor_places_m={s.name: _metres(s.position_mm) for s in sensors if s.position_mm is not None},
+        caps=None if section.caps is None else _caps(section.caps),
+    )
+
+
+def _caps(section: CapsSection) -> Caps:
+    return Caps(
+        mass_kg=constant(section.mass_kg),
+        horizontal_stiffness_n_per_m=constant(section.horizontal_stiffness_n_per_m),
+        vertical_stiffness_n_per_m=constant(section.vertical_stiffness_n_per_m),
+        damping_ratio=constant(section.damping_ratio),
+    )
+
+
+def _metres(position_mm: tuple[float, float]) -> Point:
+    return 1e-3 * position_mm[0], 1e-3 * position_mm[1]

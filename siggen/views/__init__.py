@@ -1,0 +1,1 @@
+"""What commands tabulate and draw, each with its figure."""

@@ -1,0 +1,86 @@
+"""The picture of `siggen errors`: cumulative pitch and profiles of both gears within their tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from siggen.views.picture_file import save_figure
+from siggen.views.tooth_deviations import GearChart
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def error_figure(charts: Sequence[GearChart]) -> Figure:
+    """Return the figure: a row per gear, cumulative pitch on the left, the profiles of all teeth on the right."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 3.4 * len(charts)), layout="constrained")
+    axes = figure.subplots(len(charts), 2, squeeze=False)
+    for row, chart in zip(axes, charts, strict=True):
+        _draw_pitch(row[0], chart)
+        _draw_profiles(row[1], chart)
+    figure.suptitle("deviations about the shaft's axis, positive where material is missing", fontsize=10)
+    return figure
+
+
+def save_error_figure(charts: Sequence[GearChart], path: Path) -> None:
+    """Draw the charts into a file.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib is missing or the file cannot be drawn.
+    """
+    save_figure(lambda: error_figure(charts), path, dpi=120)
+
+
+def _draw_pitch(axis: Axes, chart: GearChart) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    cumulative = 1e6 * chart.made.found.cumulative_pitch_m
+    middle = 0.5 * float(cumulative.max() + cumulative.min())
+    _band(axis, middle, 1e6 * chart.made.tolerances.cumulative_pitch_m, chart, "$F_p$")
+    axis.bar(range(cumulative.size), cumulative, color="tab:blue", width=0.8)
+    largest = {name: 1e6 * value for name, value in chart.made.found.largest.items()}
+    limits = chart.made.tolerances
+    axis.set_title(
+        f"{chart.gear}, class {chart.made.accuracy_class}: $F_p$ {largest['cumulative_pitch_m']:.1f} of "
+        f"{1e6 * limits.cumulative_pitch_m:.1f} µm, $f_p$ {largest['pitch_m']:.1f} of {1e6 * limits.pitch_m:.1f} µm, "
+        f"$F_r$ {largest['runout_m']:.1f} of {1e6 * limits.runout_m:.1f} µm",
+        fontsize=9,
+    )
+    axis.set_xlabel("tooth")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.set_ylabel("cumulative pitch [µm]")
+    axis.legend(loc="upper right", fontsize=8)
+
+
+def _draw_profiles(axis: Axes, chart: GearChart) -> None:
+    import numpy as np
+
+    _band(axis, 0.0, 1e6 * chart.made.tolerances.profile_m, chart, r"$F_\alpha$")
+    place = np.linspace(0.0, 1.0, chart.profile_um.shape[1])
+    for profile in chart.profile_um:
+        axis.plot(place, profile - 0.5 * (profile.max() + profile.min()), lw=0.6, color="tab:blue", alpha=0.6)
+    largest, limits = chart.made.found.largest, chart.made.tolerances
+    parts = (
+        (r"$F_\alpha$", "profile_m"),
+        (r"$f_{H\alpha}$", "profile_slope_m"),
+        (r"$f_{f\alpha}$", "profile_form_m"),
+    )
+    text = ", ".join(f"{name} {1e6 * largest[key]:.1f} of {1e6 * getattr(limits, key):.1f} µm" for name, key in parts)
+    axis.set_title(f"{len(chart.profile_um)} profiles: {text}", fontsize=9)
+    axis.set_xlabel("root end to tip of the active flank")
+    axis.set_ylabel("profile about its middle [µm]")
+    axis.legend(loc="upper right", fontsize=8)
+
+
+def _band(axis: Axes, middle_um: float, height_um: float, chart: GearChart, name: str) -> None:
+    share = chart.made.tolerance_share
+    for part, colour, label in ((1.0, "0.93", f"{name} allowed"), (share, "0.82", f"{share:.0%} of it, to be used")):
+        half = 0.5 * part * height_um
+        axis.axhspan(middle_um - half, middle_um + half, color=colour, lw=0, label=label, zorder=0)

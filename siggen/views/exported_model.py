@@ -1,0 +1,175 @@
+"""One record's equations of motion as plain arrays, so that anybody can integrate the same record with other tools.
+
+Every key is described in docs/exported_model.md. Numbers and tables of a mesh law stand under `law.`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from siggen.config import Config
+from siggen.dataset.storage import LocalFolder
+from siggen.dynamics.mesh.law_tables import law_tables
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.decimation import half_length
+from siggen.dynamics.time.equations import Equations
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.transient import settling_steps
+from siggen.errors import UsageError
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.simulation import limits_of, specimen_state, start_angle_rad
+from siggen.specimen.drive import record_drive
+from siggen.specimen.instrument import settle_s
+from siggen.specimen.motion import specimen_motion
+
+FORMAT_VERSION = 1
+"""Raised when a key changes its meaning or goes away; new keys leave it."""
+
+ENDING = ".npz"
+
+Model = Mapping[str, Any]
+"""Key -> array or plain value, see docs/exported_model.md."""
+
+
+def exported_model(config: Config, record_id: int) -> Model:
+    """Return the model of one record: structure, mesh law, static state, start state and time grid.
+
+    Parameters
+    ----------
+    config : Config
+    record_id : int
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built; says why.
+    UsageError
+        If speed, torque or other forces vary: the format holds a constant speed and torque alone.
+    """
+    record = planned_record(config, record_id)
+    specimen = draw_specimen(config, record.specimen_id)
+    state = specimen_state(config, specimen, record.state_id)
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    steps = specimen.dynamics.steps_per_sample
+    with limits_of("outside_model"):
+        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps))
+        angle = start_angle_rad(config, state.pair, record)
+        driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
+        if driven.excitation is not None:
+            raise UsageError(
+                "export-model: received a configuration with variation, dynamics.unbalance or dynamics.bearing_tones; "
+                "allowed are constant speed and torque, without other forces: a model would lack them"
+            )
+        grid = _time_grid(config, motion, point.speed_hz, angle, steps)
+        start = motion.start(grid["start_pitches"])
+    return {
+        "format": "siggen exported model",
+        "format_version": FORMAT_VERSION,
+        "siggen_version": version("siggen"),
+        "identity": config.identity,
+        "configuration": json.dumps(config.canonical(), sort_keys=True),
+        "record_id": record_id,
+        "state": config.states[record.state_id].name,
+        **_structure(motion.structure),
+        **_static_part(motion.equations),
+        "torque_nm": point.torque_nm,
+        "integrator": specimen.dynamics.method,
+        **grid,
+        "start_state": start,
+        "law": specimen.dynamics.mesh.law,
+        **_law(motion.law),
+    }
+
+
+def write_model(model: Model, path: Path) -> None:
+    """Write a model as a compressed NumPy archive; the file appears as a whole or not at all.
+
+    Raises
+    ------
+    UsageError
+        If the path does not end with .npz or cannot be written.
+    """
+    check_model_file(path)
+    try:
+        with LocalFolder(path.parent).draft(path.name) as draft, draft.open("wb") as file:
+            arrays: dict[str, Any] = {name: np.asarray(value) for name, value in model.items()}
+            np.savez_compressed(file, **arrays)
+    except OSError as error:
+        raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error
+
+
+def check_model_file(path: Path) -> None:
+    """Refuse a path that no model can go to; call it before long work.
+
+    Raises
+    ------
+    UsageError
+        If the ending is unknown or the path is a folder.
+    """
+    if path.suffix.lower() != ENDING:
+        raise UsageError(f"{path}: received the ending {path.suffix!r}; allowed is {ENDING}")
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder; name a file in it, such as {path / 'model.npz'}")
+
+
+def _structure(structure: Structure) -> dict[str, Any]:
+    """Return matrices and vectors; a structure without bearings has no rows of bearing forces."""
+    empty = np.empty((0, len(structure.coordinates)))
+    forces = list(structure.bearing_forces.values())
+    return {
+        "coordinates": np.array(structure.coordinates),
+        "mass": structure.mass,
+        "damping": structure.damping,
+        "stiffness": structure.stiffness,
+        "mesh_vector": structure.mesh_vector,
+        "sliding_vectors": structure.sliding_vectors,
+        "torque_vector": structure.torque_vector,
+        "equivalent_mesh_mass_kg": structure.equivalent_mesh_mass_kg,
+        "motion_names": np.array(list(structure.motions)),
+        "motion_rows": np.array(list(structure.motions.values())),
+        "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
+        "bearing_force_stiffness_rows": np.array([k for k, _ in forces]) if forces else empty,
+        "bearing_force_damping_rows": np.array([c for _, c in forces]) if forces else empty,
+    }
+
+
+def _static_part(equations: Equations) -> dict[str, Any]:
+    return {
+        "static_deflection": equations.static_deflection,
+        "static_force_n": equations.static_force,
+        "static_approach_m": equations.static_approach,
+        "reference_stiffness_n_per_m": equations.reference_stiffness,
+    }
+
+
+def _time_grid(config: Config, motion: Motion, speed_hz: float, angle_rad: float, steps: int) -> dict[str, Any]:
+    """Return rate, steps and the phase of the mesh; the transient lies before time 0."""
+    step_s = 1.0 / (config.fs_hz * steps)
+    settling = settling_steps(motion.transient_s, settle_s(config), config.fs_hz * steps)
+    start_s = -(half_length(steps) + settling) * step_s
+    per_radian = motion.teeth / (2.0 * np.pi)
+    return {
+        "fs_hz": config.fs_hz,
+        "samples": config.samples,
+        "steps_per_sample": steps,
+        "step_s": step_s,
+        "speed_hz": speed_hz,
+        "start_angle_rad": angle_rad,
+        "start_s": start_s,
+        "start_pitches": (angle_rad + 2.0 * np.pi * speed_hz * start_s) * per_radian,
+        "pitches_per_rad": per_radian,
+    }
+
+
+def _law(law: Any) -> dict[str, Any]:
+    """Return numbers and tables of a law: a named tuple of them, or tooth pairs in packed form."""
+    named = law_tables(law) if isinstance(law, PairLaw) else law._asdict()
+    return {f"law.{name}": value for name, value in named.items()}

@@ -1,0 +1,169 @@
+"""Damaged flanks of one specimen as they are drawn: outlines along the profile's arc, contact zones, area, table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from siggen.arrays import FloatArray
+from siggen.columns.record import damage_schema
+from siggen.config import Config
+from siggen.errors import UsageError
+from siggen.gears.damage.flank_damage import Damage, damaged_teeth, pits_of
+from siggen.gears.geometry.contact_zones import contact_zones
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.stiffness.damage_summary import flank_arc_m
+from siggen.gears.stiffness.sections import union_area_m2
+from siggen.planning.plan import record_ids_of
+from siggen.planning.specimen import draw_specimen
+from siggen.record.damage_rows import damage_rows
+from siggen.specimen.damage import state_damage
+from siggen.specimen.gears import gear_pair
+from siggen.views.damage_outline import outline_mm
+
+
+@dataclass(frozen=True, slots=True)
+class FlankZone:
+    """A stretch of the flank in which `pairs` tooth pairs carry the load, arcs above the base circle [mm]."""
+
+    low_mm: float
+    high_mm: float
+    pairs: int
+
+
+@dataclass(frozen=True, slots=True)
+class FlankView:
+    """One damaged flank; every height is the arc along the involute above the base circle, so that areas are true.
+
+    Attributes
+    ----------
+    state, gear : names
+    tooth : index from 0
+    face_width_mm, foot_mm, start_mm, pitch_mm, tip_mm : face width; arcs of the rack-cut involute's foot, of the start
+        of the active profile, of the pitch line and of the tip
+    zones : zones of contact, upwards
+    outlines_mm : one (n, 2) per damage, face coordinate and arc
+    depths_mm : largest depth of each damage
+    area_mm2, area_share : of the union of all damage; share of the involute flank from its foot to the tip
+    """
+
+    state: str
+    gear: str
+    tooth: int
+    face_width_mm: float
+    foot_mm: float
+    start_mm: float
+    pitch_mm: float
+    tip_mm: float
+    zones: tuple[FlankZone, ...]
+    outlines_mm: tuple[FloatArray, ...]
+    depths_mm: tuple[float, ...]
+    area_mm2: float
+    area_share: float
+
+
+def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) -> list[FlankView]:
+    """Return all damaged flanks of a specimen, state by state; of one state if it is named.
+
+    Parameters
+    ----------
+    config : Config
+    specimen_id : int
+    state : name of a state, or None for all
+
+    Raises
+    ------
+    UsageError
+        If there is no such state.
+    ValueError
+        If a height in the configuration lies below the base circle of the drawn gear.
+
+    Source: outlines as in paper A, section 2.1; arcs R_b psi^2/2, derived.
+    """
+    pair = gear_pair(draw_specimen(config, specimen_id).gears)
+    return [
+        view
+        for index in _state_ids(config, state)
+        for view in _views(pair, config.states[index].name, state_damage(config, specimen_id, pair, index))
+    ]
+
+
+def flank_damage_table(config: Config, specimen_id: int = 0, state: str | None = None) -> pa.Table:
+    """Return one row per damage of a specimen, state by state: the state's name, then the columns of `damage/`.
+
+    Lengths are in mm. Parameters as in `flank_views`.
+
+    Raises
+    ------
+    UsageError
+        If there is no such state.
+    """
+    schema = damage_schema(config).remove_metadata()
+    fields = [pa.field("state", pa.string(), nullable=False), *(f for f in schema if f.name != "record_id")]
+    # Operating points and repeats of a state share its damage: the first record of each state stands for all.
+    first, per_state = record_ids_of(config, specimen_id)[0], len(config.operating_points) * config.repeats
+    rows = [
+        {"state": config.states[index].name, **row}
+        for index in _state_ids(config, state)
+        for row in damage_rows(config, first + index * per_state)
+    ]
+    return pa.Table.from_pylist(rows, schema=pa.schema(fields))
+
+
+def _state_ids(config: Config, state: str | None) -> list[int]:
+    names = [s.name for s in config.states]
+    if state is not None and state not in names:
+        raise UsageError(f"received the state '{state}'; allowed: {', '.join(names)}")
+    return [index for index, name in enumerate(names) if state in (None, name)]
+
+
+def _views(pair: GearPair, state: str, damage: Damage) -> Iterator[FlankView]:
+    for which in ("pinion", "gear"):
+        for tooth in damaged_teeth(damage, which):
+            yield _view(pair, state, which, tooth, pits_of(damage, which, tooth))
+
+
+def _view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) -> FlankView:
+    gear = pair.member(which)
+    area_m2 = union_area_m2(gear, damage, pair.face_width_m)
+    zones = _flank_zones(pair, which)
+    return FlankView(
+        state=state,
+        gear=which,
+        tooth=tooth,
+        face_width_mm=1e3 * pair.face_width_m,
+        foot_mm=_arc_mm(gear, gear.involute_start_roll_rad),
+        start_mm=zones[0].low_mm,
+        pitch_mm=_arc_mm(gear, float(np.tan(pair.working_pressure_angle_rad))),
+        tip_mm=_arc_mm(gear, gear.tip_roll_rad),
+        zones=zones,
+        outlines_mm=tuple(_along_the_arc(gear, outline_mm(one)) for one in damage),
+        depths_mm=tuple(1e3 * one.depth_m for one in damage),
+        area_mm2=1e6 * area_m2,
+        area_share=area_m2 / (pair.face_width_m * flank_arc_m(gear)),
+    )
+
+
+def _flank_zones(pair: GearPair, which: str) -> tuple[FlankZone, ...]:
+    gear, length = pair.member(which), pair.line_of_action_m
+    found = []
+    for zone in contact_zones(pair):
+        ends = (zone.start_m, zone.end_m) if which == "pinion" else (length - zone.end_m, length - zone.start_m)
+        low, high = (_arc_mm(gear, end / gear.base_radius_m) for end in ends)
+        found.append(FlankZone(low, high, zone.pairs))
+    return tuple(sorted(found, key=lambda zone: zone.low_mm))
+
+
+def _along_the_arc(gear: SpurGear, outline: FloatArray) -> FloatArray:
+    """Return an outline with heights along the tooth's centre line turned into arcs; clipped at base circle and tip."""
+    highest_mm = 1e3 * float(gear.height_m(gear.tip_roll_rad))
+    roll = gear.roll_at_height(np.clip(outline[:, 1], 0.0, highest_mm) / 1e3)
+    return np.stack([outline[:, 0], 500.0 * gear.base_radius_m * roll**2], axis=1)
+
+
+def _arc_mm(gear: SpurGear, roll: float) -> float:
+    return 500.0 * gear.base_radius_m * roll**2

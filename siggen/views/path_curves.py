@@ -1,0 +1,77 @@
+"""Transfer paths of one specimen as curves over frequency, with the mesh harmonics they will meet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.errors import UsageError
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.sensing.modal_path import HousingModes
+from siggen.sensing.spectral_filter import frequencies
+from siggen.specimen.housing import specimen_housing
+from siggen.specimen.instrument import ChannelInstrument, specimen_instrument
+from siggen.specimen.measured_path import INPUTS
+
+
+@dataclass(frozen=True, slots=True)
+class PathCurves:
+    """Channels with a path over frequencies (k,), modes of the housing, mesh frequencies [Hz] by operating point."""
+
+    specimen_id: int
+    frequency_hz: FloatArray
+    channels: tuple[ChannelInstrument, ...]
+    modes: HousingModes | None
+    mesh_hz: tuple[float, ...]
+    mesh_harmonics: int
+
+    @property
+    def table(self) -> pa.Table:
+        """One row per frequency, two columns per channel and bearing force."""
+        columns = {"frequency_hz": self.frequency_hz}
+        for channel in self.channels:
+            for name, curve in zip(INPUTS, _rows(channel), strict=True):
+                stem = f"{channel.name}_from_{name.replace('/', '_')}"
+                columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
+        return pa.table(columns)
+
+    def peak(self, channel: ChannelInstrument) -> tuple[float, float]:
+        """Return the largest accelerance [m/s²/N] from any bearing force, and its frequency [Hz]."""
+        largest = np.abs(_rows(channel)).max(axis=0)
+        place = int(largest.argmax())
+        return float(largest[place]), float(self.frequency_hz[place])
+
+
+def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
+    """Return the transfer paths of one specimen.
+
+    Raises
+    ------
+    UsageError
+        If no sensor has a path.
+    """
+    specimen = draw_specimen(config, specimen_id)
+    instrument = specimen_instrument(config, specimen)
+    channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)
+    if not channels:
+        raise UsageError("no sensor has a path; give one `path: {kind: modal}` and add a section housing")
+    housing = specimen_housing(config, specimen_id)
+    points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
+    return PathCurves(
+        specimen_id=specimen_id,
+        frequency_hz=frequencies(instrument.length, config.fs_hz),
+        channels=channels,
+        modes=None if housing is None or not any(c.path_modes for c in channels) else housing.modes,
+        mesh_hz=tuple(point.speed_hz * specimen.gears.pinion.teeth for point in points),
+        mesh_harmonics=config.mesh_harmonics,
+    )
+
+
+def _rows(channel: ChannelInstrument) -> NDArray[np.complex128]:
+    assert channel.accelerance is not None
+    return channel.accelerance

@@ -1,0 +1,198 @@
+"""Mesh stiffness curves of one specimen in all its states, over the engagement of the damaged teeth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.checks.loading import load_config
+from siggen.config import Config
+from siggen.gears.damage.flank_damage import Damage, pits_of
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
+from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.planning.specimen import Specimen, draw_specimen
+from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.damage import state_damage
+from siggen.specimen.gears import gear_pair, stiffness_options
+
+TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessCurve:
+    """Mesh stiffness of one state against the pinion angle; angle 0: the first damaged tooth enters contact.
+
+    Attributes
+    ----------
+    state : name of the state
+    angle_rad : (k,)
+    mesh_stiffness_n_per_m : (k,)
+    parts_m_per_n : name of a part -> (k,) compliance of the pair of the first damaged tooth, NaN where it is not in
+        contact; the parts of both teeth from the root to the contact, in the order in which they are drawn
+    """
+
+    state: str
+    angle_rad: FloatArray
+    mesh_stiffness_n_per_m: FloatArray
+    parts_m_per_n: Mapping[str, FloatArray]
+
+
+def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
+    """Return first and last engagement, counted from angle 0, that meets damage; (0, 0) without any.
+
+    Engagement n is pinion tooth n mod z1 with gear tooth n mod z2; damage of the pinion counts before that of the
+    gear.
+    """
+    teeth = sorted({p.tooth for p in damage if p.gear == "pinion"}) or sorted({p.tooth for p in damage})
+    count = pair.pinion.teeth if any(p.gear == "pinion" for p in damage) else pair.gear.teeth
+    if not teeth:
+        return 0, 0
+    # Neighbours may run over the index 0: start behind the widest gap, so that they stay together.
+    gaps = [(b - a) % count for a, b in zip(teeth, [*teeth[1:], teeth[0] + count], strict=True)]
+    start = int(np.argmax(gaps)) + 1
+    ordered = [*teeth[start:], *(t + count for t in teeth[:start])]
+    return ordered[0], ordered[-1]
+
+
+def stiffness_curves(
+    config: Config, specimen_id: int = 0, points_per_pitch: int = 400, pitches: int | None = None
+) -> list[StiffnessCurve]:
+    """Return the curve of every state of one specimen, from one pitch before the damage to two pitches behind it.
+
+    Parameters
+    ----------
+    config : Config
+    specimen_id : int
+    points_per_pitch : int, samples over one angular pitch of the pinion
+    pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
+
+    Raises
+    ------
+    ValueError
+        If there are no points or pitches, or the drawn damage cannot be computed by the stiffness model (the message
+        names it).
+
+    Source: paper A, section 2.2, by `siggen.gears.stiffness.mesh_stiffness`.
+    """
+    if points_per_pitch < 1 or (pitches is not None and pitches < 1):
+        raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
+    specimen = draw_specimen(config, specimen_id)
+    pair = gear_pair(specimen.gears)
+    damages = [state_damage(config, specimen_id, pair, i) for i in range(len(config.states))]
+    first, last = damaged_engagements(pair, max(damages, key=len))
+    count = last - first + 3 if pitches is None else pitches
+    steps = np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
+    angle = steps * 2 * pi / pair.pinion.teeth
+    return [
+        _curve(specimen, pair, state.name, damage, angle, first)
+        for state, damage in zip(config.states, damages, strict=True)
+    ]
+
+
+def _curve(
+    specimen: Specimen, pair: GearPair, state: str, damage: Damage, angle: FloatArray, engagement: int
+) -> StiffnessCurve:
+    options = stiffness_options(specimen.stiffness)
+    offset = engagement * 2 * pi / pair.pinion.teeth
+    open_face = damage_is_geometry(specimen.dynamics)
+    stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
+    return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement, open_face))
+
+
+def _parts(
+    pair: GearPair, options: StiffnessOptions, damage: Damage, angle: FloatArray, engagement: int, open_face: bool
+) -> dict[str, FloatArray]:
+    """Return the compliances of one engagement's pair over the angle since it entered contact, (k,) each [m/N].
+
+    With `open_face` the contact's may be infinite: damage through the face leaves none.
+    """
+    position = pair.contact_start_m + pair.pinion.base_radius_m * angle
+    inside = (angle >= 0.0) & (position <= pair.contact_end_m)
+    on_pinion = pits_of(damage, "pinion", engagement % pair.pinion.teeth)
+    on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
+    found = pair_compliance(pair, position[inside], options, on_pinion, on_gear, through_face=open_face)
+    parts = {
+        f"{name}_{part}": getattr(getattr(found, name), part) for name in ("pinion", "gear") for part in TOOTH_PARTS
+    }
+    return {name: _spread(inside, values) for name, values in {**parts, "contact": found.contact}.items()}
+
+
+def _spread(inside: NDArray[np.bool_], values: FloatArray) -> FloatArray:
+    out = np.full(inside.size, np.nan)
+    out[inside] = values
+    return out
+
+
+def curve_table(curves: list[StiffnessCurve], *, parts: bool = False) -> pa.Table:
+    """Return the curves as a table: the angle in degrees, and one column `<state>_n_per_m` for every state.
+
+    With `parts` also `<state>_<part>_m_per_n` for every part of the compliance of the first damaged tooth's pair,
+    null where that pair is not in contact.
+    """
+    columns = {"angle_deg": pa.array(np.degrees(curves[0].angle_rad))}
+    columns |= {f"{curve.state}_n_per_m": pa.array(curve.mesh_stiffness_n_per_m) for curve in curves}
+    if parts:
+        for curve in curves:
+            for name, values in curve.parts_m_per_n.items():
+                columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
+    return pa.table(columns)
+
+
+def worst_table_error(config: Config, specimen_id: int = 0) -> float:
+    """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
+
+    Where damage acts through the contact's slices, which have tables of their own, that of healthy teeth.
+
+    Source: `siggen.gears.stiffness.mesh_tables.table_error`, half-way between the points of the tables that simulations
+    use.
+    """
+    specimen = draw_specimen(config, specimen_id)
+    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
+    damages: dict[Damage, None] = {(): None}
+    if not damage_is_geometry(specimen.dynamics):
+        damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
+    points = specimen.stiffness.table_points
+    return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
+
+
+def table_error_text(config: Config, specimen_id: int = 0) -> str:
+    """Return in words how exactly the tables of one specimen's stiffness are interpolated."""
+    whose = "healthy teeth" if damage_is_geometry(config.dynamics) else "teeth in all states"
+    try:
+        error = f"within {100.0 * worst_table_error(config, specimen_id):.2g} %"
+    except ValueError as refusal:
+        error = f"nowhere: {refusal}"
+    return (
+        f"tables of {config.stiffness.table_points} points, as simulations use them, interpolate the stiffness of "
+        f"{whose} of specimen {specimen_id} {error}"
+    )
+
+
+def mesh_stiffness_curves(
+    config: Config | Path | str, specimen_id: int = 0
+) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Return state -> (angle in degrees (k,), mesh stiffness in N/m (k,)) of one specimen.
+
+    Parameters
+    ----------
+    config : Config, or path of a YAML file
+    specimen_id : int
+
+    Raises
+    ------
+    ConfigError
+        If the file holds no usable configuration.
+    ValueError
+        If the drawn damage cannot be computed by the stiffness model.
+    """
+    usable = config if isinstance(config, Config) else load_config(config)
+    return {c.state: (np.degrees(c.angle_rad), c.mesh_stiffness_n_per_m) for c in stiffness_curves(usable, specimen_id)}

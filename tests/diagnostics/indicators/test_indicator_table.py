@@ -1,0 +1,237 @@
+"""All indicators of a set: complete, the same by any number of workers, and refused where records are no good."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from diagnostics.indicators.channel_indicators import IndicatorSettings
+from diagnostics.indicators.definition import base_name
+from diagnostics.indicators.definitions import BY_NAME, DEFINITIONS
+from diagnostics.indicators.features import record_features
+from diagnostics.indicators.indicator_table import IndicatorTable, indicator_table, record_indicators
+from diagnostics.indicators.na4 import na4
+from diagnostics.indicators.na4_star import na4_star
+from diagnostics.indicators.nb4 import dominant_harmonic, nb4
+from diagnostics.indicators.own_indicator import Gears, OwnIndicator, register, unregister
+from diagnostics.records.record_problems import clipped_share
+from diagnostics.records.recording import Recording, recordings
+from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.shaft_signals import record_shafts, shaft_signals
+from siggen.errors import DatasetError, UsageError
+
+
+@pytest.fixture(scope="module")
+def table(small: Any) -> IndicatorTable:
+    return indicator_table(small)
+
+
+@pytest.fixture(scope="module")
+def small(make_dataset: Any) -> Any:
+    return make_dataset(("train", "test", "test"))
+
+
+def column(table: IndicatorTable, name: str) -> np.ndarray:
+    return table.matrix.values[:, table.matrix.names.index(name)]
+
+
+def test_every_definition_has_columns_and_every_column_a_definition(table: IndicatorTable) -> None:
+    assert {base_name(name) for name in table.matrix.names} == set(BY_NAME)
+    assert len(BY_NAME) == len(DEFINITIONS)
+    channels = {name.split("__")[1] for name in table.matrix.names}
+    assert channels == set(table.channels)
+
+
+def test_what_the_table_of_features_has_too_is_the_same(small: Any, table: IndicatorTable) -> None:
+    record = next(recordings(small))
+    features = record_features(record.channels, record.tacho_s, record.fs_hz, (18, 47)).values
+    shared = set(features) & set(table.matrix.names)
+    assert len(shared) > 40
+    for name in shared:
+        np.testing.assert_equal(column(table, name)[0], features[name])
+
+
+def test_indicators_with_a_history_are_those_of_the_signals_themselves(small: Any, table: IndicatorTable) -> None:
+    averages, residuals, lines = [], [], []
+    for record in list(recordings(small))[:3]:  # the healthy, slight and severe record of the first specimen
+        grid = angle_grid(record.tacho_s, 18 * 128)
+        steps = resample_to_angle(record.channels["bearing_vertical"], record.fs_hz, grid)
+        shaft = record_shafts(grid, (18, 47), 128, 6)[0]
+        found = shaft_signals(steps, shaft, 128, 2, 1)
+        averages.append(found.average)
+        residuals.append(found.parts.residual)
+        lines.append(found.lines)
+    harmonic = dominant_harmonic(lines[0], 18, 5)
+    for count in (1, 2, 3):
+        expected = (na4(residuals[:count]), na4_star(residuals[:count], 1), nb4(averages[:count], 18, harmonic, 6))
+        for name, value in zip(("na4", "na4_star", "nb4"), expected, strict=True):
+            assert column(table, f"{name}_pinion__bearing_vertical")[count - 1] == pytest.approx(value)
+
+
+@pytest.mark.slow
+def test_number_of_workers_changes_nothing(small: Any, table: IndicatorTable) -> None:
+    again = indicator_table(small, workers=2)
+    np.testing.assert_array_equal(again.matrix.values, table.matrix.values)
+    assert again.matrix.names == table.matrix.names
+
+
+def test_angle_from_the_mesh_lines_gives_nearly_the_same_average(small: Any, table: IndicatorTable) -> None:
+    found = indicator_table(small, settings=IndicatorSettings(speed_range_hz=(25.0, 36.0)))
+    name = "average_rms_pinion__bearing_vertical"
+    # a hundredth of a tooth pitch of angle error at mesh harmonic 3 costs 2 % of its amplitude
+    np.testing.assert_allclose(column(found, name), column(table, name), rtol=0.02)
+
+
+def test_angle_comes_from_the_channel_whose_mesh_lines_are_clearest(small: Any) -> None:
+    record = next(recordings(small))
+    noise = np.random.default_rng(1).standard_normal(12_800)
+    settings = IndicatorSettings(speed_range_hz=(25.0, 36.0))
+    clear = record.channels["bearing_vertical"]
+    both = record_indicators(replace(record, channels={"a": noise, "b": clear}), settings=settings)
+    alone = record_indicators(replace(record, channels={"b": clear}), settings=settings)
+    assert not both.problems
+    assert both.values["fm4_pinion__b"] == alone.values["fm4_pinion__b"]
+
+
+def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> None:
+    record = next(recordings(small))
+    noise = np.random.default_rng(1).standard_normal(12_800)
+    found = record_indicators(
+        replace(record, channels={"a": noise}), settings=IndicatorSettings(speed_range_hz=(25.0, 36.0))
+    )
+    assert str(found.problems[0]).startswith("record 0: no mesh line stands above the noise")
+
+
+def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -> None:
+    arrow = table.arrow()
+    assert arrow.num_rows == 9
+    assert {"specimen_id", "notes", "revolutions_gear", "fm4_pinion__bearing_vertical"} <= set(arrow.column_names)
+    assert b"samples_per_tooth" in arrow.schema.metadata[b"diagnostics.indicators"]
+
+
+def peak(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    return float(np.abs(signal).max()) * gears.teeth_pinion * tacho_s.size
+
+
+def test_own_indicator_stands_beside_the_others(small: Any) -> None:
+    register("own_peak")(peak)
+    try:
+        found = indicator_table(small, [OwnIndicator("other", peak)])
+    finally:
+        unregister("own_peak")
+    record = next(recordings(small))
+    expected = float(np.abs(record.channels["bearing_horizontal"]).max()) * 18 * record.tacho_s.size
+    assert column(found, "own_peak__bearing_horizontal")[0] == pytest.approx(expected)
+    assert column(found, "other__bearing_horizontal")[0] == pytest.approx(expected)
+
+
+def broken(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+    return float(signal[10**9])
+
+
+def test_own_indicator_that_fails_stops_the_set_or_is_undefined_and_noted(small: Any) -> None:
+    own = [OwnIndicator("broken", broken), OwnIndicator("other", peak)]
+    with pytest.raises(DatasetError, match=r"(?s)record 0, channel bearing_vertical: indicator 'broken' failed: Index"):
+        indicator_table(small, own)
+    found = indicator_table(small, own, leave_out=True)
+    assert np.isnan(column(found, "broken__bearing_vertical")).all()
+    assert np.isfinite(column(found, "other__bearing_vertical")).all()
+    assert np.isfinite(column(found, "rms__bearing_vertical")).all()
+    assert len(found.problems) == 2 * len(found.notes)
+    assert all("'broken' failed" in note for note in found.notes)
+    with pytest.raises(UsageError, match="came twice"):
+        indicator_table(small, [OwnIndicator("same", peak), OwnIndicator("same", peak)])
+
+
+def test_function_that_other_processes_cannot_find_is_refused_before_any_starts(small: Any) -> None:
+    with pytest.raises(UsageError, match=r"'local' cannot go to other processes.*--workers 1"):
+        indicator_table(small, [OwnIndicator("local", lambda signal, tacho, gears: 1.0)], workers=2)
+
+
+def test_own_indicator_cannot_change_what_the_next_one_sees(small: Any) -> None:
+    def greedy(signal: np.ndarray, tacho_s: np.ndarray, gears: Gears) -> float:
+        signal[:], tacho_s[:] = 0.0, 0.0
+        return 0.0
+
+    record = next(recordings(small))
+    alone = record_indicators(record, [OwnIndicator("other", peak)]).values
+    after = record_indicators(record, [OwnIndicator("greedy", greedy), OwnIndicator("other", peak)]).values
+    assert {name: after[name] for name in alone} == pytest.approx(alone, nan_ok=True)
+
+
+def changed(record: Recording, channel: str = "bearing_vertical", **changes: Any) -> Recording:
+    signal = np.array(record.channels[channel])
+    if "samples" in changes:
+        samples = changes.pop("samples")
+        signal[10 : 10 + len(samples)] = samples
+    if "clip" in changes:
+        limit = changes.pop("clip")
+        signal = np.clip(signal, -limit, limit)
+    if "constant" in changes:
+        signal[:] = changes.pop("constant")
+    if "labels" in changes:
+        changes["labels"] = {**record.labels, **changes["labels"]}
+    return replace(record, channels={**record.channels, channel: signal}, **changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"samples": [np.nan, np.inf]}, "2 of 12800 samples are not finite"),
+        ({"constant": 0.5}, "constant (0.5)"),
+        ({"clip": 2.0}, "stand clipped at -2 or 2"),
+        ({"labels": {"teeth_gear": None}}, "teeth_pinion, teeth_gear: received 18, nan"),
+        ({"fs_hz": float("nan")}, "sampling rate: received nan"),
+        ({"tacho_s": np.array([0.1, 0.13, 0.17])}, "at least 2 revolutions need 6"),
+        ({"tacho_s": np.array([0.2, 0.1, 0.3, 0.4])}, "not finite and increasing"),
+    ],
+)
+def test_record_that_cannot_be_used_is_left_out_with_its_reason(small: Any, changes: dict[str, Any], text: str) -> None:
+    found = record_indicators(changed(next(recordings(small)), **changes))
+    assert [problem for problem in found.problems if text in str(problem) and "record 0" in str(problem)]
+    assert text in found.notes
+    assert not any(name.endswith("__bearing_vertical") for name in found.values)
+    whole = "labels" in changes or "fs_hz" in changes or "tacho_s" in changes
+    assert whole != any(name.endswith("__bearing_horizontal") for name in found.values)
+
+
+def test_unusable_record_stops_the_set_unless_it_is_left_out(small: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    good = list(recordings(small))
+    broken = [changed(good[0], samples=[np.nan]), *good[1:]]
+    monkeypatch.setattr("diagnostics.indicators.indicator_table.recordings", lambda dataset, states=None: iter(broken))
+    with pytest.raises(
+        DatasetError, match=r"(?s)memory_set: 1 problems.*record 0, channel bearing_vertical.*--leave-out"
+    ):
+        indicator_table(small)
+    found = indicator_table(small, leave_out=True)
+    assert math.isnan(column(found, "rms__bearing_vertical")[0])
+    assert math.isnan(column(found, "na4_pinion__bearing_vertical")[1])  # its history has a gap
+    assert math.isfinite(column(found, "rms__bearing_horizontal")[0])
+    assert [problem.record_id for problem in found.problems] == [0]
+
+
+def test_two_samples_at_the_peak_are_no_clipping() -> None:
+    signal = np.array([0.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0])
+    assert clipped_share(signal) == pytest.approx(3 / 8)
+    assert clipped_share(np.sin(np.arange(100.0))) == 0.0
+    # runs of three and more at either end, and of two, which does not count
+    assert clipped_share(np.array([2.0, 2, 2, 0, 1, 2, 2, 0, 0, 0, 0])) == pytest.approx(7 / 11)
+
+
+def test_named_states_and_the_healthy_one_are_a_ladder_of_their_own(small: Any, table: IndicatorTable) -> None:
+    ladder = indicator_table(small, states=("severe",))
+    assert set(ladder.matrix.labels["state"].tolist()) == {"healthy", "severe"}
+    severe = table.matrix.labels["state"] == "severe"
+    both = [name for name in ladder.matrix.names if not name.startswith(("na4", "nb4"))]
+    of_ladder = ladder.matrix.labels["state"] == "severe"
+    for name in both:
+        np.testing.assert_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
+    # the slight state is not in the history any more
+    name = next(name for name in ladder.matrix.names if name.startswith("na4_pinion"))
+    assert not np.array_equal(column(ladder, name)[of_ladder], column(table, name)[severe])
+    with pytest.raises(UsageError, match="no state rusty; it has healthy, slight, severe"):
+        indicator_table(small, states=("rusty",))

@@ -1,0 +1,141 @@
+"""The classifier on indicators finds what is there, and nothing where nothing is."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_table
+from diagnostics.indicators.features import FeatureSettings
+from diagnostics.statistics.evaluation import scores
+from diagnostics.statistics.separability import separability
+from diagnostics.training.baselines import (
+    DEFAULT_STRENGTH,
+    permutation_control,
+    permuted_target,
+    rms_features,
+    state_index,
+    train_classifier,
+)
+from diagnostics.training.classifier_file import load_classifier, save_classifier, untrusted_types
+from diagnostics.training.splits import SpecimenSplit, specimen_split
+from siggen.errors import UsageError
+
+
+@pytest.fixture(scope="module")
+def matrix(features: pa.Table) -> FeatureMatrix:
+    return feature_matrix(features)
+
+
+@pytest.fixture(scope="module")
+def split(matrix: FeatureMatrix) -> SpecimenSplit:
+    return specimen_split(matrix.labels)
+
+
+def test_plain_modulation_is_found_on_unseen_specimens(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0)
+    assert found.specimens == 8
+    assert found.macro_auroc.value > 0.9
+
+
+def test_level_alone_does_not_show_it(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    # the level of these records is drawn without regard to the state; 24 test records scatter by about 0.1 around 0.5
+    alone = matrix.columns(rms_features(matrix.names))
+    assert alone.names == ("rms__bearing_vertical", "rms__bearing_horizontal")
+    assert scores(train_classifier(alone, split).predict(alone.rows(split.test)), seed=0).macro_auroc.value < 0.8
+
+
+def test_permuted_labels_give_chance(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    # a run scatters by about 0.13 (24 correlated test records); the mean of ten by 0.04, three of which are allowed
+    assert permutation_control(matrix, split, seed=1, repeats=10).mean() == pytest.approx(0.5, abs=0.12)
+
+
+def test_the_control_cannot_see_leakage(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    leaky = replace(split, train=split.train | split.test)
+    # the tolerance of the test above: test records in training give chance too, so the page may not call it a guard
+    assert permutation_control(matrix, leaky, seed=1, repeats=10).mean() == pytest.approx(0.5, abs=0.12)
+    known = scores(train_classifier(matrix, leaky).predict(matrix.rows(split.test)), seed=0).macro_auroc.value
+    assert known > 0.99
+
+
+def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(
+    matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
+    truth = state_index(matrix, split.classes)
+    shuffled = permuted_target(truth, split, seed=1, repeat=0)
+    np.testing.assert_array_equal(shuffled[split.test], truth[split.test])
+    np.testing.assert_array_equal(np.bincount(shuffled[split.train]), np.bincount(truth[split.train]))
+    assert (shuffled != truth).any()
+
+
+def test_without_any_effect_the_scores_are_chance(effectless: Any) -> None:
+    matrix = feature_matrix(feature_table(effectless))
+    split = specimen_split(matrix.labels)
+    found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0).macro_auroc
+    assert found.value == pytest.approx(0.5, abs=0.3)  # one run on 24 records: 0.5 +- 0.1, three of which are allowed
+    strongest = separability(matrix, seed=0, resamples=50)[0]
+    assert strongest.strength < 0.4  # the best of 312 by chance, where a real effect reaches 0.5
+
+
+def test_test_specimens_do_not_touch_the_fit(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    changed = matrix.values.copy()
+    changed[split.test] = 1e6
+    other = train_classifier(replace(matrix, values=changed), split)
+    np.testing.assert_array_equal(other.pipeline[-1].coef_, train_classifier(matrix, split).pipeline[-1].coef_)
+
+
+def test_undefined_values_are_imputed_even_where_a_feature_is_never_defined(
+    matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
+    holes = matrix.values.copy()
+    holes[:, 3] = math.nan
+    holes[::5, 7] = math.nan
+    found = train_classifier(replace(matrix, values=holes), split).predict(matrix.rows(split.test))
+    np.testing.assert_allclose(found.probability.sum(axis=1), 1.0)
+
+
+def test_without_validation_specimens_it_says_so(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    model = train_classifier(matrix, replace(split, validation=np.zeros_like(split.validation)))
+    assert model.strength == DEFAULT_STRENGTH
+    assert "no validation specimens" in model.note
+
+
+def test_separability_sorts_by_strength_and_follows_the_area(matrix: FeatureMatrix) -> None:
+    found = separability(matrix, seed=0, resamples=50)
+    assert found[0].strength == max(entry.strength for entry in found)
+    entry = next(e for e in found if e.feature == "difference_rms_pinion__bearing_vertical")
+    assert entry.auc["severe"].value > 0.95
+    assert entry.spearman.value > 0.8
+    assert set(entry.auc) == {"slight", "severe"}
+
+
+def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
+    model = train_classifier(matrix, split)
+    path = save_classifier(model, FeatureSettings(), "identity", tmp_path)
+    assert untrusted_types(path) == ()
+    again = load_classifier(tmp_path)
+    test = matrix.rows(split.test)
+    np.testing.assert_array_equal(again.predict(test).probability, model.predict(test).probability)
+    assert json.loads((tmp_path / "feature_names.json").read_text())["features"] == list(matrix.names)
+
+
+def test_a_file_with_unknown_types_is_not_loaded(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
+    import skops.io
+
+    save_classifier(train_classifier(matrix, split), FeatureSettings(), "identity", tmp_path)
+    skops.io.dump(shutil.rmtree, tmp_path / "classifier.skops")
+    with pytest.raises(UsageError, match="rmtree"):
+        load_classifier(tmp_path)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"no readable classifier\.skops"):
+        load_classifier(tmp_path)

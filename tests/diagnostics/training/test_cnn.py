@@ -1,0 +1,157 @@
+"""The network: windows, determinism, files, and that it can learn at all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from diagnostics.indicators.feature_table import feature_matrix
+from diagnostics.loader.windows import OrderRecords, WindowSettings, drawn_windows, order_records, record_windows
+from diagnostics.training.baselines import state_index
+from diagnostics.training.splits import SpecimenSplit, specimen_split
+from siggen.errors import DatasetError, UsageError
+
+
+@pytest.fixture(scope="module")
+def records(dataset: Any) -> OrderRecords:
+    return order_records(dataset)
+
+
+@pytest.fixture(scope="module")
+def split(features: pa.Table) -> SpecimenSplit:
+    return specimen_split(feature_matrix(features).labels)
+
+
+@pytest.fixture(scope="module")
+def target(features: pa.Table, split: SpecimenSplit) -> np.ndarray:
+    return state_index(feature_matrix(features), split.classes)
+
+
+def test_windows_hold_eight_revolutions_and_start_on_a_revolution(records: OrderRecords) -> None:
+    found = record_windows(records, 0)
+    assert records.settings.samples == 8 * 18 * 16
+    assert found.shape == (6, 2, records.settings.samples)  # 29 revolutions: starts 0, 4 ... 20
+    np.testing.assert_array_equal(found[1], records.signals[0][:, 4 * 288 : 12 * 288])
+
+
+def test_drawn_windows_are_pieces_of_their_record(records: OrderRecords) -> None:
+    found = drawn_windows(records, np.array([3, 5]), 2, np.random.default_rng(0))
+    signal = records.signals[5]
+    matches = [np.array_equal(found[2], signal[:, s : s + 2304]) for s in range(signal.shape[1] - 2303)]
+    assert sum(matches) == 1
+
+
+def test_a_record_shorter_than_a_window_is_refused(dataset: Any) -> None:
+    with pytest.raises(DatasetError, match=r"holds 2[89] whole pinion revolutions; a window of the network needs 40"):
+        order_records(dataset, WindowSettings(teeth=18, revolutions=40))
+
+
+def test_same_seed_same_network_and_files_keep_it(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, tmp_path: Path
+) -> None:
+    import onnxruntime
+    import torch
+
+    from diagnostics.training.cnn import TrainingSettings, train_network
+    from diagnostics.training.cnn_files import describe_network, export_onnx, load_network, save_network
+
+    short = TrainingSettings(most_epochs=2, windows_per_epoch=64)
+    state = torch.random.get_rng_state()
+    first, second = (train_network(records, target, split, 7, short) for _ in range(2))
+    assert torch.equal(state, torch.random.get_rng_state())  # the caller's generator is left alone
+    for name, value in first.network.state_dict().items():
+        assert torch.equal(value, second.network.state_dict()[name]), name
+
+    train = np.concatenate([records.signals[k] for k in np.flatnonzero(split.train)], axis=1)
+    np.testing.assert_allclose(first.network.mean.numpy()[:, 0], train.mean(axis=1), atol=1e-3)
+    np.testing.assert_allclose(first.network.scale.numpy()[:, 0], train.std(axis=1), rtol=1e-3)
+
+    facts = describe_network(first, records.channels, records.settings, "identity")
+    save_network(first.network, facts, tmp_path / "cnn.safetensors")
+    network, read = load_network(tmp_path / "cnn.safetensors")
+    assert read == facts
+    windows = torch.from_numpy(record_windows(records, 0))
+    expected = first.network(windows).detach().numpy()
+    np.testing.assert_array_equal(network(windows).detach().numpy(), expected)
+
+    export_onnx(first.network, facts, tmp_path / "cnn.onnx")
+    session = onnxruntime.InferenceSession(tmp_path / "cnn.onnx")
+    for count in (1, 6):  # any batch size; float32 in another order of summation
+        found = session.run(None, {"windows": windows[:count].numpy()})[0]
+        np.testing.assert_allclose(found, expected[:count], atol=1e-4)
+
+
+def test_mixed_precision_learns_and_leaves_float32_weights_that_are_judged_in_float32(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    import torch
+
+    from diagnostics.training import cnn
+    from diagnostics.training.cnn_files import describe_network, load_network, save_network
+
+    kinds: dict[bool, set[torch.dtype]] = {True: set(), False: set()}
+
+    class Watched(cnn.WideKernelNetwork):
+        def forward(self, windows: torch.Tensor) -> torch.Tensor:
+            logits = super().forward(windows)
+            kinds[self.training].add(logits.dtype)
+            return logits
+
+    monkeypatch.setattr(cnn, "WideKernelNetwork", Watched)
+    few = cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144, mixed_precision=True)
+    trained = cnn.train_network(records, target, split, 7, few)
+    # the same code that runs on a CUDA device: the last layer answers in bfloat16 while training, never while judging
+    assert kinds == {True: {torch.bfloat16}, False: {torch.float32}}
+    assert min(trained.validation_loss) < np.log(3) - 0.05  # below that of guessing three states, which it begins with
+    assert min(trained.validation_loss) < trained.validation_loss[0]
+    for name, value in trained.network.state_dict().items():
+        assert value.device.type == "cpu", name
+        assert value.dtype in (torch.float32, torch.int64), name  # counts of batches are integers
+        assert torch.isfinite(value).all(), name
+    facts = describe_network(trained, records.channels, records.settings, "identity")
+    save_network(trained.network, facts, tmp_path / "cnn.safetensors")
+    network, _ = load_network(tmp_path / "cnn.safetensors")
+    windows = torch.from_numpy(record_windows(records, 0))
+    assert torch.equal(network(windows), trained.network(windows))
+
+
+def test_the_cpu_trains_in_float32_unless_told_otherwise(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit
+) -> None:
+    from diagnostics.training.cnn import TrainingSettings, train_network
+
+    short = TrainingSettings(most_epochs=1, windows_per_epoch=64)
+    plain, stated = (
+        train_network(records, target, split, 7, replace(short, mixed_precision=chosen)) for chosen in (None, False)
+    )
+    assert plain.validation_loss == stated.validation_loss
+
+
+def test_a_foreign_file_is_not_read(tmp_path: Path) -> None:
+    from safetensors.numpy import save_file
+
+    from diagnostics.training.cnn_files import load_network
+
+    save_file({"x": np.zeros(3)}, tmp_path / "other.safetensors")
+    with pytest.raises(UsageError, match="received format None"):
+        load_network(tmp_path / "other.safetensors")
+    (tmp_path / "broken.safetensors").write_bytes(b"not a file of weights")
+    with pytest.raises(UsageError, match="cannot be read as safetensors"):
+        load_network(tmp_path / "broken.safetensors")
+
+
+@pytest.mark.slow
+def test_network_learns_a_plain_modulation(records: OrderRecords, target: np.ndarray, split: SpecimenSplit) -> None:
+    from diagnostics.statistics.evaluation import scores
+    from diagnostics.training.cnn import network_predictions, train_network
+
+    trained = train_network(records, target, split, seed=1)
+    specimen = np.repeat(np.arange(24), 3)
+    found = network_predictions(trained, records, np.flatnonzero(split.test), target, specimen)
+    assert scores(found, seed=0).accuracy.value > 0.8
+    assert trained.best_epoch == int(np.argmin(trained.validation_loss)) + 1

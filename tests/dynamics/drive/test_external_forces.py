@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.drive.drive import Drive
+from siggen.dynamics.drive.excitation import Excitation, Source, turning_of
+from siggen.dynamics.drive.external_forces import (
+    Harmonic,
+    HarmonicForce,
+    Unbalance,
+    bearing_direction,
+    shaft_directions,
+    turning_sense,
+)
+from siggen.dynamics.drive.slow_variation import slow_variation
+from siggen.dynamics.drive.speed_ramp import SpeedRamp
+from siggen.dynamics.drive.varying_drive import VaryingDrive
+from siggen.dynamics.structure.casing_structure import torsional
+from siggen.dynamics.structure.structure import Bearing, SpurStage, Structure, eight_dof, vector
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.response import Response, response_of
+from siggen.gears.stiffness.mesh_tables import MeshTables
+from tests.dynamics.casing_stage import make_structure as casing
+from tests.dynamics.conftest import BASE_RADIUS_1, BASE_RADIUS_2, make_stage
+
+FS, SPEED = 51200.0, 32.0
+MASS, STIFFNESS, DAMPING = 0.412, 0.412 * (2.0 * np.pi * 40.0) ** 2, 12.0
+
+
+def single_mass(stage: SpurStage) -> Structure:
+    """Return a stage whose pinion shakes on soft bearings by itself: the mesh couples the rotations alone."""
+    soft = replace(stage.pinion, bearing=Bearing(STIFFNESS, STIFFNESS, DAMPING, DAMPING))
+    structure = eight_dof(replace(stage, pinion=soft))
+    rotations = vector(structure.coordinates, {"theta_1": BASE_RADIUS_1, "theta_2": -BASE_RADIUS_2})
+    return replace(structure, mesh_vector=rotations)
+
+
+def respond(structure: Structure, tables: MeshTables, drive: Drive, *sources: Source, samples: int) -> Response:
+    excitation = Excitation(sources)
+    motion = LinearMotion(
+        structure, tables, torque_nm=60.0, mesh_damping_ratio=0.07, backlash_m=80e-6, step_s=1.0 / (4 * FS),
+        input_vectors=excitation.vectors,
+    )  # fmt: skip
+    motion.transient_s = 3.0  # the soft bearings decay at 14.6/s
+    return response_of(motion, drive, fs_hz=FS, samples=samples, steps_per_sample=4, excitation=excitation)
+
+
+def line(signal: np.ndarray, frequency_hz: float) -> complex:
+    """Return the amplitude and phase of a line over whole periods."""
+    return complex(2.0 * (signal * np.exp(-2j * np.pi * frequency_hz * np.arange(signal.size) / FS)).mean())
+
+
+@pytest.mark.parametrize("speed_hz", [20.0, 40.0, 80.0], ids=["below", "at", "above"])
+def test_unbalance_shakes_a_rotor_on_springs_as_in_closed_form(
+    stage: SpurStage, constant_tables: MeshTables, speed_hz: float
+) -> None:
+    structure, moment, phase = single_mass(stage), 2e-5, 0.7
+    source = Unbalance(shaft_directions(structure, "pinion_bearing"), moment, 1.0, phase)
+    response = respond(structure, constant_tables, Drive(speed_hz, 0.0), source, samples=25600)
+    omega = 2.0 * np.pi * speed_hz
+    closed = moment * omega**2 / (STIFFNESS - MASS * omega**2 + 1j * DAMPING * omega) * np.exp(1j * phase)
+    found = {
+        axis: line(response.acceleration_m_s2[f"pinion_bearing/{axis}"], speed_hz)
+        for axis in ("horizontal", "vertical")
+    }
+    # Inputs linear over steps of 5 µs: (ω h)²/8 = 1e-6; the low-pass is flat to 1e-6 here.
+    assert abs(found["horizontal"] + omega**2 * closed) < 1e-5 * abs(omega**2 * closed)
+    # The rotor turns from horizontal to vertical, a quarter later.
+    assert abs(found["vertical"] + omega**2 * closed * np.exp(-0.5j * np.pi)) < 1e-5 * abs(omega**2 * closed)
+
+
+def test_unbalance_is_the_inertia_of_an_eccentric_mass_also_while_the_speed_changes(structure: Structure) -> None:
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 0.2), 0.4)
+    source = Unbalance(shaft_directions(structure, "gear_bearing"), 2e-4, -18 / 47, 0.9)
+    time, h = np.linspace(0.02, 0.18, 400), 1e-4
+
+    def place(t: np.ndarray) -> np.ndarray:
+        angle = -18 / 47 * drive.angle_rad(t) + 0.9
+        return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    second = (place(time + h) - 2.0 * place(time) + place(time - h)) / h**2
+    # Differences of second order: (ω h)²/12 = 1e-5 of the force.
+    expected = -2e-4 * second
+    np.testing.assert_allclose(source.inputs(turning_of(drive, time)), expected, atol=3e-5 * np.abs(expected).max())
+
+
+def test_shafts_turn_against_each_other_and_as_the_pitch_lines_move() -> None:
+    # Grounded: the gear stands at +x of the pinion, whose pitch line moves along +y there. Casing: at -horizontal.
+    for structure, pinion in ((eight_dof(make_stage()), 1.0), (casing(), -1.0)):
+        assert turning_sense(structure, "pinion_bearing") == pinion
+        assert turning_sense(structure, "gear_bearing") == -pinion
+
+
+@pytest.mark.parametrize("place", ["pinion_bearing", "gear_bearing"])
+@pytest.mark.parametrize("axis", ["vertical", "horizontal"])
+def test_a_bearing_pushes_shaft_and_casing_apart_with_equal_forces(place: str, axis: str) -> None:
+    structure = casing()
+    direction = dict(zip(structure.coordinates, bearing_direction(structure, place, axis), strict=True))
+    index = "1" if place.startswith("pinion") else "2"
+    assert np.hypot(direction[f"x_{index}"], direction[f"y_{index}"]) == pytest.approx(1.0)
+    for way in "xy":
+        assert direction[f"{way}_{index}"] + direction[f"{way}_c"] == pytest.approx(0.0, abs=1e-12)
+    along = shaft_directions(structure, place)
+    np.testing.assert_allclose(along @ along.T, np.eye(2), atol=1e-12)
+
+
+def test_a_harmonic_is_a_line_at_its_order_with_its_amplitude(structure: Structure) -> None:
+    force = HarmonicForce(bearing_direction(structure, "pinion_bearing", "vertical"), (Harmonic(3.0, 3.5, 0.2),))
+    time = np.arange(51200) / FS
+    values = force.inputs(turning_of(Drive(SPEED, 0.0), time))[:, 0]
+    assert line(values, 3.5 * SPEED) == pytest.approx(3.0 * np.exp(0.2j), abs=1e-9)
+
+
+def test_a_wandering_phase_widens_the_line_but_keeps_the_power(structure: Structure) -> None:
+    wander = slow_variation(np.random.default_rng(2), 2.0, -7.0, 11.0)
+    direction = bearing_direction(structure, "pinion_bearing", "vertical")
+    still, moved = (HarmonicForce(direction, (Harmonic(1.0, 3.5, 0.0, jitter),), wander) for jitter in (0.0, 1.0))
+    turning = turning_of(Drive(SPEED, 0.0), np.arange(512000) / FS)
+    first, second = (one.inputs(turning)[:, 0] for one in (still, moved))
+    assert second.std() == pytest.approx(first.std(), rel=0.01)
+    # A Gaussian phase of 1 rad leaves e^(-1/2) of the line; 10 s at 2 Hz hold about 60 independent values.
+    assert abs(line(second, 3.5 * SPEED)) == pytest.approx(np.exp(-0.5), abs=0.2)
+
+
+def test_rotations_alone_have_no_bearings() -> None:
+    with pytest.raises(ValueError, match="allowed are none"):
+        bearing_direction(torsional(make_stage()), "pinion_bearing", "vertical")

@@ -1,0 +1,316 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from siggen.dynamics.drive.drive import Drive, Rotation
+from siggen.dynamics.drive.excitation import Excitation, SpeedDeviation, turning_of
+from siggen.dynamics.drive.slow_variation import slow_variation
+from siggen.dynamics.drive.speed_ramp import SpeedRamp
+from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation, rigid_rotation, without_drift
+from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
+from siggen.dynamics.friction.friction import constant_friction
+from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.mesh.pair_places import FRICTION, SLIDING
+from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
+from siggen.dynamics.time.equations import state_rate
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.response import Response, response_of
+from siggen.gears.stiffness.mesh_tables import MeshTables
+from tests.dynamics.casing_stage import make_structure as casing
+from tests.dynamics.conftest import make_stage
+from tests.dynamics.pair_runs import TORQUE, law, tables
+
+FS, STEPS = 51200.0, 4
+STEP = 1.0 / (FS * STEPS)
+
+
+def linear(
+    structure: Structure, chosen: MeshTables, source: TorqueVariation | None = None, *, step_s: float = STEP,
+    torque_nm: float = 60.0, backlash_m: float = 80e-6, integrator: str = "product",
+) -> LinearMotion:  # fmt: skip
+    return LinearMotion(
+        structure, chosen, torque_nm=torque_nm, mesh_damping_ratio=0.07, backlash_m=backlash_m, step_s=step_s,
+        integrator=integrator, input_vectors=None if source is None else source.vectors,
+    )  # fmt: skip
+
+
+def settings(seed: int = 0, **changes) -> TorqueSettings:
+    rng = np.random.default_rng(seed)
+    return replace(TorqueSettings(slow_variation(rng, 1.0, -7.0, 6.0), 0.03, 0.05, 0.4, 0.02, 50.0, 1.0), **changes)
+
+
+def respond(motion: LinearMotion, drive: Rotation, source: TorqueVariation | None, samples: int, **flags) -> Response:
+    excitation = None if source is None else Excitation((source,))
+    return response_of(motion, drive, fs_hz=FS, samples=samples, steps_per_sample=STEPS, excitation=excitation, **flags)
+
+
+def run(motion, drive: Rotation, excitation: Excitation | None, steps: int, step_s: float, first_s: float = 0.0):
+    """Return times, pitches, inputs and states of a run from the static start."""
+    time = first_s + step_s * np.arange(steps + 1)
+    pitches = drive.angle_rad(time) * (motion.teeth / (2.0 * np.pi))
+    inputs = np.empty((time.size, 0)) if excitation is None else excitation.inputs(time, drive)
+    states = np.empty((time.size, 2 * len(motion.structure.coordinates)))
+    states[0] = motion.start(pitches[0])
+    motion.advance(pitches, inputs, states)
+    return time, pitches, inputs, states
+
+
+@pytest.mark.parametrize("assembly", [eight_dof, six_dof], ids=["8dof", "6dof"])
+def test_inputs_do_no_work_on_the_rigid_rotation(assembly) -> None:
+    structure = assembly(make_stage())
+    rotation = rigid_rotation(structure)
+    vectors = TorqueVariation(structure, 60.0, settings()).vectors
+    assert np.abs(vectors @ rotation).max() < 1e-14 * np.abs(vectors).max()
+    assert np.abs(structure.stiffness @ rotation).max() == pytest.approx(0.0, abs=1e-12)
+    assert structure.mesh_vector @ rotation == pytest.approx(0.0, abs=1e-17)
+
+
+@pytest.mark.parametrize("integrator", ["product", "runge_kutta"])
+def test_zero_inputs_change_nothing(structure: Structure, sharp_tables: MeshTables, integrator: str) -> None:
+    source = TorqueVariation(structure, 60.0, TorqueSettings())
+    drive = Drive(30.0, 0.3)
+    without = respond(linear(structure, sharp_tables, integrator=integrator), drive, None, 2000)
+    zero = respond(linear(structure, sharp_tables, source, integrator=integrator), drive, source, 2000)
+    for place, values in without.acceleration_m_s2.items():
+        np.testing.assert_array_equal(values, zero.acceleration_m_s2[place])
+
+
+def test_product_integration_of_inputs_linear_over_a_step_is_exact(
+    structure: Structure, constant_tables: MeshTables
+) -> None:
+    source = TorqueVariation(structure, 60.0, TorqueSettings())
+    motion = linear(structure, constant_tables, source, backlash_m=0.0)
+    pitches = 0.3 + 540.0 * STEP * np.arange(301)
+    inputs = np.random.default_rng(1).normal(0.0, 10.0, (301, 3))
+    states = np.empty((301, 16))
+    states[0] = motion.start(pitches[0])
+    motion.advance(pitches, inputs, states)
+    rates = linear(structure, constant_tables, source, backlash_m=0.0, step_s=STEP / 64, integrator="runge_kutta")
+    fine = np.arange(300 * 64 + 1) / 64.0
+    each = np.stack([np.interp(fine, np.arange(301), column) for column in inputs.T], axis=1)
+    expected = np.empty((fine.size, 16))
+    expected[0] = states[0]
+    rates.advance(0.3 + 540.0 * STEP * fine, np.ascontiguousarray(each), expected)
+    # Runge-Kutta steps of 76 ns on modes up to 8 kHz: (ω h)⁴/120 = 2e-12 per radian; rounding of 2e4 steps.
+    scale = np.abs(expected).max(axis=0)
+    assert (np.abs(states - expected[::64]).max(axis=0) / scale).max() < 1e-9
+
+
+def test_integrators_agree_with_an_adaptive_solver_under_varying_torque(
+    structure: Structure, ramp_tables: MeshTables
+) -> None:
+    source = TorqueVariation(structure, 60.0, settings(line_hz=400.0, line_ripple=0.3))
+    drive = VaryingDrive(SpeedRamp(30.0, 33.0, 0.1), 0.3, Ripple(1e-3))
+    excitation = Excitation((source,))
+    coarse = linear(structure, ramp_tables, source)
+    time, _, _, states = run(coarse, drive, excitation, 600, STEP)
+    fine = linear(structure, ramp_tables, source, step_s=STEP / 8, integrator="runge_kutta")
+    _, _, _, finer = run(fine, drive, excitation, 4800, STEP / 8)
+    push = coarse.equations.external_input
+
+    def rate(t: float, z: np.ndarray) -> np.ndarray:
+        at, result = np.array([t]), np.empty_like(z)
+        state_rate(coarse.equations, coarse._law, z, float(drive.angle_rad(at)[0]) * 18 / (2 * np.pi), result)
+        result[8:] += excitation.inputs(at, drive)[0] @ push
+        return result
+
+    solution = solve_ivp(
+        rate, (0.0, time[-1]), states[0], method="DOP853", t_eval=time[::10], rtol=1e-8, atol=1e-13, max_step=4 * STEP
+    )
+    for found in (states[::10], finer[::80]):
+        error = np.sqrt(((found - solution.y.T) ** 2).mean(axis=0) / (solution.y.T**2).mean(axis=0))
+        # The kinks of the tables cost the product steps 6e-5 at 4 steps per sample, the rest is the linear input.
+        assert error.max() < 3e-4
+
+
+def test_deviations_from_the_rotation_are_those_of_the_whole_motion(
+    structure: Structure, constant_tables: MeshTables
+) -> None:
+    """Integrate absolute angles under the motor torque T + J dΩ/dt; nothing in that knows of a prescribed rotation."""
+    source = TorqueVariation(structure, 60.0, TorqueSettings())
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 0.1), 0.0)
+    motion = linear(structure, constant_tables, source, backlash_m=0.0)
+    excitation = Excitation((source,))
+    time, _, _, states = run(motion, drive, excitation, 12000, STEP, first_s=-0.03)
+    rotation, p, torque = rigid_rotation(structure), structure.mesh_vector, structure.torque_vector
+    stiffness = mean_mesh_stiffness(constant_tables)
+    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.equivalent_mesh_mass_kg)
+    motor = (torque == 1.0).astype(float)
+    k = structure.stiffness + stiffness * np.outer(p, p)
+    c = structure.damping + damping * np.outer(p, p)
+
+    def rate(t: float, z: np.ndarray) -> np.ndarray:
+        accelerating = source.reduced_inertia_kg_m2 * drive.acceleration_rad_s2(np.array([t]))[0]
+        force = torque * 60.0 + motor * accelerating - k @ z[:8] - c @ z[8:]
+        return np.concatenate([z[8:], np.linalg.solve(structure.mass, force)])
+
+    q = motion.equations.static_deflection + states[0, :8]
+    first = np.concatenate(
+        [q + rotation * drive.angle_rad(time[:1]), states[0, 8:] + rotation * drive.speed_rad_s(time[:1])]
+    )
+    solution = solve_ivp(
+        rate,
+        (time[0], time[-1]),
+        first,
+        method="DOP853",
+        t_eval=time[::100],
+        rtol=1e-11,
+        atol=1e-13,
+        max_step=STEP * 16,
+    )
+    expected = solution.y[:8].T - rotation * drive.angle_rad(time[::100])[:, None]
+    found = motion.equations.static_deflection + states[::100, :8]
+    # The adaptive solver's rigid angle of 20 rad is right to about 1e-10; twists of the shafts are 0.1 rad.
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-9)
+    assert np.abs(np.ptp(found[:, 0] - found[:, 3])) > 0.01
+
+
+def test_the_train_as_a_whole_does_not_drift(structure: Structure, sharp_tables: MeshTables) -> None:
+    source = TorqueVariation(structure, 60.0, settings())
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 1.0), 0.0, Ripple(1e-3, 5e-4))
+    _, _, _, states = run(linear(structure, sharp_tables, source), drive, Excitation((source,)), 200000, STEP)
+    rigid = states[:, :8] @ (structure.mass @ rigid_rotation(structure)) / source.reduced_inertia_kg_m2
+    assert np.abs(rigid).max() < 1e-9
+
+
+def test_slow_torque_is_followed_by_the_mesh_force(structure: Structure, constant_tables: MeshTables) -> None:
+    source = TorqueVariation(structure, 60.0, settings(slow=slow_variation(np.random.default_rng(5), 0.1, -7.0, 6.0),
+                                                       load_once=0.0, line_ripple=0.0))  # fmt: skip
+    response = respond(linear(structure, constant_tables, source), Drive(30.0, 0.0), source, 51200, internals=True)
+    time = np.arange(51200) / FS
+    expected = source.motor_torque_nm(turning_of(Drive(30.0, 0.0), time)) / structure.mesh_vector[3]
+    # The torque changes within 10/(2π) s; the shafts' first mode at 38 Hz follows to (0.1..0.8 Hz/38 Hz)² of the 3 %.
+    # The static start knows the mean torque alone: after the transient a hundredth of its error of 2 % is left.
+    found = response.internals["mesh_force_n"]
+    np.testing.assert_allclose(found[:10000], expected[:10000], rtol=3e-4)
+    np.testing.assert_allclose(found[10000:], expected[10000:], rtol=5e-5)
+    assert np.ptp(expected) > 0.01 * expected.mean()
+
+
+def test_a_steady_run_up_twists_the_shafts_by_the_torque_that_it_takes(
+    structure: Structure, constant_tables: MeshTables
+) -> None:
+    source = TorqueVariation(structure, 60.0, TorqueSettings())
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 1.0), 0.0)
+    response = respond(linear(structure, constant_tables, source), drive, source, 51200, internals=True)
+    acceleration = 2.0 * np.pi * 40.0
+    # What passes the mesh is the torque of the load and what speeds up gear and load.
+    ratio = 18 / 47
+    mesh_torque = 60.0 + (0.005153 + 1.125e-2) * ratio**2 * acceleration
+    force = response.internals["mesh_force_n"]
+    np.testing.assert_allclose(force[10000:], mesh_torque / structure.mesh_vector[3], rtol=1e-5)
+    assert source.reduced_inertia_kg_m2 == pytest.approx(
+        0.016107 + 2.37e-4 + (0.005153 + 1.125e-2) * ratio**2, rel=1e-12
+    )
+
+
+def test_a_record_begins_without_a_shock(structure: Structure, ramp_tables: MeshTables) -> None:
+    source = TorqueVariation(structure, 60.0, settings())
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 0.5), 0.3, Ripple(1e-3))
+    usual, patient = linear(structure, ramp_tables, source), linear(structure, ramp_tables, source)
+    patient.transient_s += 1.0
+    first, second = (respond(motion, drive, source, 5120) for motion in (usual, patient))
+    for place, values in first.acceleration_m_s2.items():
+        expected = second.acceleration_m_s2[place]
+        # Five decay times leave 7e-3 of the static start's error, itself a few percent of the static twist.
+        assert np.sqrt(((values - expected) ** 2).mean() / (expected**2).mean()) < 1e-3
+
+
+def test_light_load_with_a_pulsating_load_torque_rattles(structure: Structure, ramp_tables: MeshTables) -> None:
+    def lost(load_once: float) -> float:
+        source = TorqueVariation(structure, 2.0, TorqueSettings(load_once=load_once))
+        motion = linear(structure, ramp_tables, source, torque_nm=2.0)
+        response = respond(motion, Drive(30.0, 0.0), source, 25600)
+        assert response.status == "ok"
+        return response.contact_loss_share
+
+    assert lost(0.0) == 0.0
+    assert lost(3.0) > 0.01
+
+
+def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> None:
+    """Sum the power in absolute coordinates: motor less load = kinetic and elastic energy, dampers, teeth, friction."""
+    structure, speed = casing(), 30.0
+    source = TorqueVariation(structure, TORQUE, settings())
+    nominal = 2.0 * np.pi * speed
+    excitation = Excitation((SpeedDeviation(structure.coordinates, nominal), source))
+    drive = VaryingDrive(SpeedRamp(15.0, 45.0, 0.25), 0.3, Ripple(1e-3))
+    motion = PairMotion(
+        structure, law(friction=constant_friction(0.05)), torque_nm=TORQUE, speed_hz=speed,
+        reference_stiffness_n_per_m=mean_mesh_stiffness(tables()), step_s=STEP / 2,
+        input_vectors=excitation.vectors, speed_input=0,
+    )  # fmt: skip
+    time, pitches, inputs, states = run(motion, drive, excitation, 60000, STEP / 2)
+    n, rotation = len(structure.coordinates), rigid_rotation(structure)
+    omega = drive.speed_rad_s(time)
+    whole, rate = states[:, n:] + omega[:, None] * rotation, states[:, n:]
+    q = states[:, :n] + motion.equations.static_deflection
+    # Forces that act on the bodies, as opposed to the equations' inputs, which contain inertia: M r dΩ/dt is no force.
+    forces = structure.torque_vector * TORQUE + inputs @ motion_vectors(structure, excitation)
+    forces += (structure.mass @ rotation) * rigid_push(structure, source, inputs, drive, time)[:, None]
+    given = integral((forces * whole).sum(axis=1), time)
+    values = dict(zip(motion.internal_names, motion.internals(states, pitches, inputs).T, strict=True))
+    table = motion.pairs(states, pitches, inputs)
+    teeth = integral(values["mesh_force_n"] * values["approach_rate_m_s"], time)
+    rubbed = integral((table[:, :, FRICTION] * table[:, :, SLIDING]).sum(axis=1), time)
+    dampers = integral(np.einsum("ti,ij,tj->t", rate, structure.damping, rate), time)
+    kinetic = 0.5 * np.einsum("ti,ij,tj->t", whole, structure.mass, whole)
+    elastic = 0.5 * np.einsum("ti,ij,tj->t", q, structure.stiffness, q)
+    stored = (kinetic + elastic)[-1] - (kinetic + elastic)[0]
+    assert stored > 50.0  # J: the train is three times as fast at the end
+    assert rubbed > 1.0
+    # The trapezoidal rule over force steps of the dampers of 1 % at 2.4 µs.
+    assert given == pytest.approx(stored + teeth + rubbed + dampers, abs=1e-4 * rubbed)
+
+
+def motion_vectors(structure: Structure, excitation: Excitation) -> np.ndarray:
+    """Return the vectors of the torques as forces on bodies: each of its own body alone, no inertia."""
+    torque, coordinates = structure.torque_vector, structure.coordinates
+    own = np.zeros_like(excitation.vectors)
+    own[1] = torque
+    own[2, coordinates.index("theta_l")] = 1.0
+    own[3, coordinates.index("theta_m")] = 1.0
+    return own
+
+
+def rigid_push(
+    structure: Structure, source: TorqueVariation, inputs: np.ndarray, drive: Rotation, time: np.ndarray
+) -> np.ndarray:
+    """Return the acceleration [rad/s²] that load ripple and motor ripple would give the train; held by the drive."""
+    gear = rigid_rotation(structure)[structure.coordinates.index("theta_l")]
+    accelerating = source.reduced_inertia_kg_m2 * drive.acceleration_rad_s2(time)
+    return -(inputs[:, 2] * gear + inputs[:, 3] - accelerating) / source.reduced_inertia_kg_m2
+
+
+def integral(values: np.ndarray, time: np.ndarray) -> float:
+    return float(np.trapezoid(values, time))
+
+
+@pytest.mark.slow
+def test_a_slow_run_up_has_the_rms_of_the_constant_speeds_it_passes(
+    structure: Structure, ramp_tables: MeshTables
+) -> None:
+    source = TorqueVariation(structure, 60.0, TorqueSettings())
+    drive = VaryingDrive(SpeedRamp(10.0, 50.0, 8.0), 0.3)
+    swept = respond(linear(structure, ramp_tables, source), drive, source, round(8.0 * FS))
+    for speed in (13.0, 20.0, 27.0, 36.0, 45.0):
+        constant = respond(linear(structure, ramp_tables), Drive(speed, 0.3), None, 25600)
+        middle = round((speed - 10.0) / 5.0 * FS)
+        for place, values in swept.acceleration_m_s2.items():
+            window = values[middle - 2560 : middle + 2560]
+            # 0.1 s at 5 Hz/s are ± 0.25 Hz; between modes the level changes by up to 5 % over that, load by 0.4 %.
+            assert window.std() == pytest.approx(constant.acceleration_m_s2[place].std(), rel=0.08), (speed, place)
+
+
+def test_a_unit_torque_without_drift_is_the_torque_less_its_share_of_the_rigid_motion(structure: Structure) -> None:
+    rotation = rigid_rotation(structure)
+    for name in ("theta_m", "theta_2", "theta_l"):
+        vector = without_drift(structure, name)
+        unit = np.array([float(c == name) for c in structure.coordinates])
+        removed = np.linalg.solve(structure.mass, unit - vector)
+        np.testing.assert_allclose(removed, rotation * removed[3], atol=1e-15 * abs(removed[3]) + 1e-16)

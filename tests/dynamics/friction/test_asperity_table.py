@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.dynamics.friction.asperity_share import RATIO_MODELS, mixed_share
+from siggen.dynamics.friction.asperity_table import (
+    asperity_share,
+    asperity_table,
+    asperity_table_error,
+    mixed_contact,
+    ratios_at,
+)
+from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
+
+ROUGHNESS = (0.1e-6, 0.57e-6, 2.04e-6, 5e-6)
+TABLE = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4)
+
+
+@pytest.mark.parametrize("model", RATIO_MODELS)
+def test_the_table_is_as_accurate_as_it_says_and_of_second_order(model: str) -> None:
+    fine = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4, model)
+    coarse = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4, model, (33, 33))
+    error = asperity_table_error(fine, mesh(), ROUGHNESS, model)
+    # The stated bound.
+    assert error < 1.2e-3
+    # Half the step: a quarter of the error, less where the mid point misses the worst place.
+    assert error < 0.4 * asperity_table_error(coarse, mesh(), ROUGHNESS, model)
+
+
+@settings(deadline=None)
+@given(layer=st.integers(0, 3), position=st.floats(*RANGE), force=st.floats(0.0, 2e4))
+def test_interpolation_between_all_grid_points_keeps_the_stated_error(
+    layer: int, position: float, force: float
+) -> None:
+    direct = mixed_share(mesh().groups(position, force, ROUGHNESS[layer]))
+    table = asperity_share(TABLE, layer, position, force)
+    assert 0.0 <= table <= 1.0
+    assert table == pytest.approx(float(direct), abs=1.2e-3)
+
+
+def test_grid_points_are_exact_and_the_ends_hold() -> None:
+    direct = mixed_share(mesh().groups(RANGE[0], FORCE, 0.57e-6))
+    held = asperity_share(TABLE, 1, RANGE[0] - 1e-3, FORCE)
+    assert held == asperity_share(TABLE, 1, RANGE[0], FORCE)
+    assert held == pytest.approx(float(direct), abs=1.2e-3)
+    assert asperity_share(TABLE, 2, PITCH_POINT, 0.0) == asperity_share(TABLE, 2, PITCH_POINT, 1.0)
+    assert asperity_share(TABLE, 1, PITCH_POINT, 1e9) <= asperity_share(TABLE, 1, PITCH_POINT, 2e4)
+
+
+def test_fluid_friction_may_depend_on_place_and_load() -> None:
+    table = asperity_table(mesh(), [1e-6], lambda s, force: 1.0 * s + 0.01 * np.log(force), RANGE, 2e4)
+    expected = PITCH_POINT + 0.01 * np.log(FORCE)
+    # Linear in the position; in the load axis only up to the curvature of ln R_e along a cell, 1e-3 of 0.01.
+    assert mixed_contact(table, 0, PITCH_POINT, FORCE)[1] == pytest.approx(expected, abs=2e-5)
+    assert mixed_contact(TABLE, 0, PITCH_POINT, FORCE)[1] == 0.02
+
+
+def test_ratios_exceed_one_only_before_the_share_is_cut_off() -> None:
+    ratio = ratios_at(mesh(), 5e-6, PITCH_POINT, 10.0, "masjedi_khonsari")
+    assert ratio > 1.0
+    assert asperity_share(TABLE, 3, PITCH_POINT, 10.0) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"range_m": (-1e-3, 1e-2)}, "range_m"),
+        ({"range_m": (1e-2, 5e-3)}, "range_m"),
+        ({"roughness_m": []}, "roughness_m"),
+        ({"roughness_m": [-1e-6]}, "roughness_m"),
+        ({"model": "none"}, "model"),
+        ({"points": (1, 5)}, "points"),
+        ({"largest_force_n": 1.0}, "largest_force_n"),
+        ({"largest_force_n": -1.0}, "largest_force_n"),
+    ],
+)
+def test_impossible_tables_are_refused_by_name(change: dict, name: str) -> None:
+    arguments = {"roughness_m": [1e-6], "fluid_friction": 0.02, "range_m": RANGE, "largest_force_n": 1e4} | change
+    with pytest.raises(ValueError, match=name):
+        asperity_table(mesh(), **arguments)

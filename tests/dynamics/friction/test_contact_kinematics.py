@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from siggen.dynamics.friction.contact_kinematics import (
+    effective_modulus,
+    entrainment_speed,
+    hertz_half_width,
+    hertz_pressure,
+    relative_radius,
+    slide_roll_ratio,
+    sliding_speed,
+)
+from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PAIR, PITCH_POINT, SPEED_1, SPEED_2
+
+
+def test_the_pitch_point_rolls_without_sliding_at_the_published_speed_and_pressure() -> None:
+    radius = relative_radius(PITCH_POINT, LINE)
+    load = FORCE / 20e-3
+    # Published to three digits.
+    assert entrainment_speed(PITCH_POINT, LINE, SPEED_1, SPEED_2) == pytest.approx(1.74, rel=2e-3)
+    assert radius == pytest.approx(6.68e-3, rel=1e-3)
+    assert hertz_pressure(load, radius, MODULUS) == pytest.approx(0.565e9, rel=2e-3)
+    assert hertz_half_width(load, radius, MODULUS) == pytest.approx(67e-6, rel=1e-2)
+    # Two rolling speeds of 1.74 m/s cancel: rounding only.
+    assert sliding_speed(PITCH_POINT, LINE, SPEED_1, SPEED_2, 0.0) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_sliding_changes_sign_at_the_pitch_point_from_approach_to_recess() -> None:
+    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 101)
+    slide = sliding_speed(position, LINE, SPEED_1, SPEED_2, 0.0)
+    ratio = slide_roll_ratio(position, LINE, SPEED_1, SPEED_2)
+    assert (np.sign(slide) == np.sign(position - PITCH_POINT)).all()
+    assert (np.sign(slide) == np.sign(ratio)).all()
+    assert (np.diff(slide) > 0.0).all()
+    np.testing.assert_allclose(ratio * entrainment_speed(position, LINE, SPEED_1, SPEED_2), slide, atol=1e-13)
+
+
+def test_lateral_motion_of_the_pinion_adds_to_the_sliding_speed() -> None:
+    still = sliding_speed(5e-3, LINE, SPEED_1, SPEED_2, 0.0)
+    assert sliding_speed(5e-3, LINE, SPEED_1, SPEED_2, 0.01) - still == pytest.approx(0.01, rel=1e-12)
+
+
+@settings(deadline=None)
+@given(load=st.floats(1e2, 1e7), radius=st.floats(1e-4, 0.1))
+def test_the_hertz_pressure_over_the_contact_width_carries_the_load(load: float, radius: float) -> None:
+    peak, half = hertz_pressure(load, radius, MODULUS), hertz_half_width(load, radius, MODULUS)
+    assert 0.5 * pi * peak * half == pytest.approx(load, rel=1e-12)
+    carried = quad(lambda x: peak * np.sqrt(1.0 - x * x) * half, -1.0, 1.0)[0]
+    # quad's own tolerance is 1.5e-8 of the result.
+    assert carried == pytest.approx(load, rel=1e-7)
+
+
+@settings(deadline=None)
+@given(share=st.floats(0.01, 0.99))
+def test_the_relative_radius_is_that_of_the_two_flanks_in_series(share: float) -> None:
+    position = share * LINE
+    assert relative_radius(position, LINE) == pytest.approx(1.0 / (1.0 / position + 1.0 / (LINE - position)), rel=1e-12)
+
+
+def test_the_effective_modulus_of_steel_and_its_refusals() -> None:
+    assert effective_modulus(206e9, 0.3) == pytest.approx(226e9, rel=2e-3)
+    for modulus, ratio in ((0.0, 0.3), (np.nan, 0.3), (206e9, 0.6)):
+        with pytest.raises(ValueError, match="allowed"):
+            effective_modulus(modulus, ratio)

@@ -1,0 +1,172 @@
+"""Film, pressure and friction in every contact, and the rough lands of pitted flanks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.friction.asperity_table import asperity_table
+from siggen.dynamics.friction.friction import BOUNDARY_FRICTION, FLUID_FRICTION, composite_friction
+from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
+from siggen.dynamics.mesh.damping import DampingLaw
+from siggen.dynamics.mesh.pair_forces import pair_forces
+from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.pair_places import (
+    ASPERITY_SHARE,
+    CARRYING,
+    COEFFICIENT,
+    DAMPING,
+    FRICTION,
+    NORMAL,
+    POSITION,
+    STIFFNESS,
+    pair_table,
+)
+from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, slice_law, slice_tables
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PITCH_POINT, RANGE, mesh
+from tests.dynamics.pair_runs import RELIEF, gear_pair
+from tests.gears.pit_shapes import chord_pit
+
+PAIR = gear_pair()
+HEALTHY_M, PITTED_M = 0.57e-6, 2.04e-6
+FRICTION_LAW = composite_friction(asperity_table(mesh(), [HEALTHY_M, PITTED_M], FLUID_FRICTION, RANGE, 10.0 * FORCE))
+DEDENDUM = PITCH_POINT - 3e-3
+"""Well before the pitch point, where teeth slide."""
+HALF_PIT = (chord_pit(PAIR, 1e-3, DEDENDUM, semi_face_m=5e-3),)
+ALONE = (PITCH_POINT - PAIR.contact_start_m) / PAIR.base_pitch_m
+ON_PIT = (DEDENDUM - PAIR.contact_start_m) / PAIR.base_pitch_m
+
+
+def law(damage: Damage = (), damping: float | DampingLaw = 0.07) -> PairLaw:
+    slices: SliceLaw = slice_law(
+        PAIR, damage, StiffnessOptions("base_circle", "sainsot", "profile"), SliceOptions(59e3, edge_radius_m=0.0)
+    )
+    return pair_law(
+        slice_tables(PAIR, damage, slices),
+        missing_material(PAIR, RELIEF),
+        line_of_action_m=LINE,
+        damping_ratio=damping,
+        equivalent_mesh_mass_kg=0.2124,
+        backlash_m=80e-6,
+        friction=FRICTION_LAW,
+        slices=slices,
+    )
+
+
+def loaded(chosen: PairLaw, approach: float, pitches: float, rate: float = 0.0) -> np.ndarray:
+    pairs = pair_table(chosen)
+    pair_forces(chosen, approach, rate, pitches, -2.4, 260.0, pairs)
+    return pairs
+
+
+def internals(pairs: np.ndarray, contact: PairContact | None) -> dict[str, float]:
+    names = pair_internal_names(len(pairs), contact)
+    return dict(zip(names, pair_internals(pairs[None], LINE, contact)[0], strict=True))
+
+
+def test_lands_inside_damage_rub_more_and_never_above_the_boundary() -> None:
+    healthy, pitted = loaded(law(), 5e-6, ON_PIT)[0], loaded(law(HALF_PIT), 5e-6, ON_PIT)[0]
+    assert FLUID_FRICTION < healthy[COEFFICIENT] < pitted[COEFFICIENT] < BOUNDARY_FRICTION
+    # The mean over the face: a share of 0.2 beside the pit and one of 0.6 on rough lands, at twice the line load.
+    assert pitted[ASPERITY_SHARE] == pytest.approx(0.5 * (healthy[ASPERITY_SHARE] + 0.62), abs=0.08)
+    through = loaded(law((chord_pit(PAIR, 0.5e-3, DEDENDUM),)), 20e-6, ON_PIT)[0]
+    assert through[NORMAL] > 0.0
+    assert pitted[COEFFICIENT] < through[COEFFICIENT] < BOUNDARY_FRICTION
+
+
+def test_friction_before_and_behind_a_pit_is_the_healthy_one_to_the_bit() -> None:
+    plain, pitted = law(), law(HALF_PIT)
+    for pitches in (ALONE + 0.1, ON_PIT + 1.0, 4.3):
+        np.testing.assert_array_equal(
+            loaded(plain, 5e-6, pitches)[:, : DAMPING + 1], loaded(pitted, 5e-6, pitches)[:, : DAMPING + 1]
+        )
+
+
+def test_damping_follows_the_asperities() -> None:
+    parts = DampingLaw(0.04, 0.02, 0.05)
+    pairs = loaded(law(damping=parts), 5e-6, ON_PIT)
+    touching = pairs[:, NORMAL] > 0.0
+    total = pairs[touching, STIFFNESS].sum()
+    for row in pairs[touching]:
+        ratio = 0.04 + 0.02 * (1.0 - row[ASPERITY_SHARE]) + 0.05 * row[ASPERITY_SHARE]
+        expected = 2.0 * ratio * np.sqrt(0.2124 / total) * row[STIFFNESS]
+        assert row[DAMPING] == pytest.approx(expected, rel=1e-12)
+    rough = loaded(law(HALF_PIT, parts), 5e-6, ON_PIT)[0]
+    assert rough[DAMPING] / rough[STIFFNESS] > pairs[0, DAMPING] / pairs[0, STIFFNESS]
+    with pytest.raises(ValueError, match="without a friction law; allowed: with one"):
+        pair_law(
+            slice_tables(PAIR, (), slice_law(PAIR, (), StiffnessOptions(), SliceOptions(59e3))),
+            missing_material(PAIR, RELIEF),
+            line_of_action_m=LINE,
+            damping_ratio=parts,
+            equivalent_mesh_mass_kg=0.2,
+            backlash_m=0.0,
+        )
+
+
+def test_damping_of_equal_parts_is_the_constant_one() -> None:
+    shared, constant = law(damping=DampingLaw(0.05, 0.02, 0.02)), law(damping=0.07)
+    for rate in (-0.01, 0.02):
+        first, second = (loaded(chosen, 5e-6, 0.4, rate)[:, NORMAL] for chosen in (shared, constant))
+        np.testing.assert_allclose(first, second, rtol=1e-12)
+
+
+def test_contact_values_are_those_of_the_pitch_point() -> None:
+    contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
+    chosen = law()
+    low, high = 0.0, 2e-5
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if loaded(chosen, middle, ALONE)[0, NORMAL] < FORCE else (low, middle)
+    inner = internals(loaded(chosen, high, ALONE), contact)
+    assert inner["pair_0_force_n"] == pytest.approx(FORCE, rel=1e-6)
+    assert inner["pair_0_load_share"] == pytest.approx(1.0)
+    # Single contact: 0.565 GPa; film 1.03 µm between those at σ = 0.4 and 0.6 µm, 0.98 and 1.05; share 0.19.
+    assert inner["pair_0_hertz_pressure_pa"] == pytest.approx(0.565e9, rel=2e-3)
+    assert inner["pair_0_central_film_m"] == pytest.approx(1.04e-6, rel=0.01)
+    assert inner["pair_0_film_ratio"] == pytest.approx(inner["pair_0_central_film_m"] / HEALTHY_M, rel=1e-12)
+    assert inner["pair_0_asperity_share"] == pytest.approx(0.19, abs=0.01)
+
+
+def test_internals_add_up_and_rough_lands_are_thinner_lubricated() -> None:
+    contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
+    pairs = loaded(law(HALF_PIT), 5e-6, ON_PIT, 1e-3)
+    inner, plain = internals(pairs, contact), internals(loaded(law(), 5e-6, ON_PIT, 1e-3), contact)
+    assert inner["mesh_force_n"] == pytest.approx(pairs[:, NORMAL].sum(), rel=1e-12)
+    assert inner["friction_moment_pinion_nm"] == pytest.approx((pairs[:, POSITION] * pairs[:, FRICTION]).sum())
+    moments = inner["pair_0_friction_moment_pinion_nm"] + inner["pair_0_friction_moment_gear_nm"]
+    assert moments == pytest.approx(LINE * inner["pair_0_friction_n"], rel=1e-12)
+    assert inner["pair_0_film_ratio"] < plain["pair_0_film_ratio"]
+    # Half the face carries: the pressure grows with the root of the line load, all else being the same.
+    loads = inner["pair_0_force_n"] / pairs[0, CARRYING] / plain["pair_0_force_n"]
+    assert 1.8 < loads < 2.0
+    ratio = inner["pair_0_hertz_pressure_pa"] / plain["pair_0_hertz_pressure_pa"]
+    assert ratio == pytest.approx(loads**0.5, rel=1e-9)
+
+
+def test_a_pair_apart_has_no_force_and_what_only_a_contact_has_is_undefined() -> None:
+    contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
+    apart = internals(loaded(law(), -20e-6, ALONE), contact)
+    undefined = {name for name, value in apart.items() if np.isnan(value)}
+    assert undefined == {name for name in apart if name.endswith(OF_CONTACT_ALONE)}
+    assert {name.removeprefix("pair_0_") for name in undefined if name.startswith("pair_0_")} == set(OF_CONTACT_ALONE)
+    for name in set(apart) - undefined:
+        if not name.endswith(("position_m", "sliding_m_s")):
+            assert apart[name] == 0.0, name
+    dry = replace(contact, oil=None)
+    assert "pair_0_central_film_m" not in pair_internal_names(2, dry)
+    assert "pair_0_hertz_pressure_pa" not in pair_internal_names(2, None)
+
+
+def test_a_back_flank_carries_without_film_and_friction() -> None:
+    contact = PairContact(MODULUS, 0.02, mesh(), (HEALTHY_M, PITTED_M))
+    back = internals(loaded(law(), -90e-6, ALONE), contact)
+    assert back["pair_0_force_n"] < 0.0
+    assert back["pair_0_friction_n"] == 0.0
+    assert all(np.isnan(back[f"pair_0_{name}"]) for name in OF_CONTACT_ALONE)

@@ -1,0 +1,137 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.structure.casing_structure import Bolts, bolt_elements, casing_structure, torsional
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.structure import eight_dof, vector
+from siggen.dynamics.time.modes import natural_frequencies_hz, natural_modes
+from tests.dynamics.casing_stage import (
+    BASE_RADIUS_1,
+    BASE_RADIUS_2,
+    MEAN_STIFFNESS,
+    PRESSURE_ANGLE,
+    grounded_structure,
+    make_casing,
+    make_stage,
+    make_structure,
+)
+
+
+def static(torque_nm: float = 30.0) -> np.ndarray:
+    """Return the displacement under a torque at the mean mesh stiffness."""
+    structure = make_structure()
+    loaded = structure.stiffness + MEAN_STIFFNESS * np.outer(structure.mesh_vector, structure.mesh_vector)
+    return static_solution(structure, loaded, torque_nm * structure.torque_vector)
+
+
+def test_natural_frequencies_of_the_standard_gearbox() -> None:
+    # Computed independently with a prototype of the same model, to the digits given.
+    expected = [0.0, 81.3, 413.0, 572.0, 688.0, 775.0, 1397.0, 1428.0, 2175.0, 2318.0, 7051.0]
+    found = natural_frequencies_hz(make_structure(), MEAN_STIFFNESS)
+    assert found[0] == 0.0
+    np.testing.assert_allclose(found, expected, atol=0.55)
+    mesh_mode = [natural_frequencies_hz(make_structure(), k)[-1] for k in (2.05e8, 3.78e8)]
+    np.testing.assert_allclose(mesh_mode, [5750.0, 7714.0], atol=0.55)
+
+
+def test_the_mesh_mode_has_its_strain_energy_in_the_mesh() -> None:
+    modes = natural_modes(make_structure(), MEAN_STIFFNESS)
+    assert modes.mesh_share[-1] == pytest.approx(0.965, abs=0.005)
+    assert modes.mesh_share[0] == 0.0
+
+
+def test_one_free_rotation_without_any_mesh_are_two() -> None:
+    assert (natural_frequencies_hz(make_structure(), MEAN_STIFFNESS) == 0.0).sum() == 1
+    assert (natural_frequencies_hz(make_structure(), 0.0) == 0.0).sum() == 2
+
+
+def test_torsional_limit_of_the_mesh_mode() -> None:
+    structure = torsional(make_stage())
+    assert structure.equivalent_mesh_mass_kg == pytest.approx(0.2124, abs=5e-5)
+    limit = np.sqrt(MEAN_STIFFNESS / structure.equivalent_mesh_mass_kg) / (2.0 * np.pi)
+    assert limit == pytest.approx(6120.0, abs=1.0)
+    # The shafts stiffen it: (6300/R_b1² + 2100/R_b2²)/k = 3 % at most, half of that in frequency.
+    assert natural_frequencies_hz(structure, MEAN_STIFFNESS)[-1] == pytest.approx(limit, rel=0.015)
+    stiff = casing_structure(
+        make_stage(bearing_stiffness=1e14),
+        make_casing(bolts=Bolts(1e14, 1e14, 0.04, ((0.09, 0.0), (-0.09, 0.0)))),
+    )
+    rigid = natural_frequencies_hz(stiff, MEAN_STIFFNESS)
+    slow = rigid[rigid < 2e4]
+    np.testing.assert_allclose(slow[-1], natural_frequencies_hz(structure, MEAN_STIFFNESS)[-1], rtol=1e-4)
+
+
+def test_an_immovable_casing_leaves_the_eight_degrees_of_freedom() -> None:
+    grounded = natural_frequencies_hz(grounded_structure(), MEAN_STIFFNESS)
+    eight = natural_frequencies_hz(eight_dof(make_stage()), MEAN_STIFFNESS)
+    for frequency in eight[1:]:
+        assert np.abs(grounded / frequency - 1.0).min() < 1e-6
+
+
+def test_bolts_carry_the_torques_of_motor_and_load() -> None:
+    structure, casing = make_structure(), make_casing()
+    q = static()
+    moment, forces = 0.0, np.zeros(2)
+    for element in bolt_elements(casing, PRESSURE_ANGLE):
+        v = vector(structure.coordinates, element.direction)
+        force = element.stiffness * (v @ q)
+        moment += force * element.direction["phi_c"]
+        forces += force * np.array([element.direction["x_c"], element.direction["y_c"]])
+    # T_m + T_L = 30 (1 + 47/18); the mesh force is internal, so no net force is left.
+    assert abs(moment) == pytest.approx(30.0 * (1.0 + 47.0 / 18.0), rel=1e-9)
+    assert abs(moment) == pytest.approx(108.33, abs=0.005)
+    assert np.abs(forces).max() < 1e-9 * 1182.4
+
+
+def test_bearings_carry_the_mesh_force() -> None:
+    structure, q = make_structure(), static()
+    force = 30.0 / BASE_RADIUS_1
+    sine, cosine = np.sin(PRESSURE_ANGLE), np.cos(PRESSURE_ANGLE)
+    # The mesh pushes the pinion against the line of action, which points down and towards the pinion's side.
+    expected = {
+        "pinion_bearing/vertical": -force * cosine,
+        "pinion_bearing/horizontal": force * sine,
+        "gear_bearing/vertical": force * cosine,
+        "gear_bearing/horizontal": -force * sine,
+    }
+    for place, value in expected.items():
+        assert structure.bearing_forces[place][0] @ q == pytest.approx(value, rel=1e-9), place
+
+
+def test_a_sensor_sees_translation_and_rocking_of_its_place() -> None:
+    structure = make_structure()
+    q = vector(structure.coordinates, {"phi_c": 1e-3})
+    assert structure.motions["casing_lid/vertical"] @ q == pytest.approx(0.06e-3)
+    assert structure.motions["casing_lid/horizontal"] @ q == pytest.approx(-0.05e-3)
+    moved = vector(
+        structure.coordinates, {"x_c": np.cos(PRESSURE_ANGLE), "y_c": -np.sin(PRESSURE_ANGLE)}
+    )  # one unit horizontally
+    assert structure.motions["casing_lid/horizontal"] @ moved == pytest.approx(1.0)
+    assert structure.motions["casing_lid/vertical"] @ moved == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("name", ["casing", "8dof", "torsional"])
+def test_sliding_vanishes_at_the_pitch_point_of_the_rigid_rotation(name: str) -> None:
+    stage = make_stage()
+    structure = {"casing": make_structure(), "8dof": eight_dof(stage), "torsional": torsional(stage)}[name]
+    rotation = vector(structure.coordinates, {"theta_1": 1.0, "theta_2": 18.0 / 47.0})
+    still, arm = structure.sliding_vectors @ rotation
+    assert -still / arm == pytest.approx(BASE_RADIUS_1 * np.tan(PRESSURE_ANGLE), rel=1e-12)
+    assert stage.line_of_action_m == pytest.approx((BASE_RADIUS_1 + BASE_RADIUS_2) * np.tan(PRESSURE_ANGLE))
+
+
+def test_friction_and_mesh_force_act_across_each_other() -> None:
+    for structure in (make_structure(), eight_dof(make_stage())):
+        moving = [i for i, name in enumerate(structure.coordinates) if name[0] in "xy"]
+        assert structure.mesh_vector[moving] @ structure.sliding_vectors[0, moving] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("places", [(), ((0.09, 0.0),), ((0.09, 0.0), (0.09, 0.0))])
+def test_a_casing_that_could_turn_freely_is_refused(places: tuple) -> None:
+    bolts = replace(make_casing().bolts, places_m=places)
+    with pytest.raises(ValueError, match="turn freely"):
+        make_structure(bolts=bolts)

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from siggen.dynamics.structure.structure import Element, SpurStage, Structure, assemble, eight_dof, six_dof, vector
+from siggen.dynamics.time.modes import natural_frequencies_hz
+
+POSITIVE = st.floats(min_value=1e-3, max_value=1e3)
+
+
+def rigid_rotation(structure: Structure) -> np.ndarray:
+    """Return the motion of both shafts turning together without any deformation."""
+    ratio = (
+        -structure.mesh_vector[structure.coordinates.index("theta_1")]
+        / structure.mesh_vector[structure.coordinates.index("theta_2")]
+    )
+    turns = {"theta_m": 1.0, "theta_1": 1.0, "theta_2": ratio, "theta_l": ratio}
+    return np.array([turns.get(name, 0.0) for name in structure.coordinates])
+
+
+@pytest.mark.parametrize("assembly", [eight_dof, six_dof])
+def test_rigid_rotation_deforms_nothing_and_torques_balance_on_it(assembly, stage: SpurStage) -> None:
+    structure = assembly(stage)
+    rigid = rigid_rotation(structure)
+    # A product of numbers of size 330 and 66 mm with rounded ratios: 1e-12 of the largest entry is rounding.
+    assert np.abs(structure.stiffness @ rigid).max() < 1e-12 * np.abs(structure.stiffness).max()
+    assert np.abs(structure.damping @ rigid).max() < 1e-12 * np.abs(structure.damping).max()
+    assert abs(structure.mesh_vector @ rigid) < 1e-15
+    assert abs(structure.torque_vector @ rigid) < 1e-14
+
+
+@pytest.mark.parametrize(("assembly", "size"), [(eight_dof, 8), (six_dof, 6)])
+def test_exactly_one_natural_frequency_is_zero(assembly, size: int, stage: SpurStage) -> None:
+    frequencies = natural_frequencies_hz(assembly(stage), 3.36e8)
+    assert frequencies.size == size
+    # Rounding of a zero eigenvalue: sqrt(1e-16) of 7.8 kHz is below 1 mHz; the lowest elastic mode lies at tens of Hz.
+    assert frequencies[0] < 1e-3
+    assert frequencies[1] > 10.0
+
+
+def test_natural_frequencies_of_the_published_parameter_set(structure: Structure) -> None:
+    # Published to whole hertz (the lowest two rounded), at the mean stiffness of that gear pair.
+    expected = [0.0, 38.0, 76.0, 799.0, 830.0, 1830.0, 2290.0, 7832.0]
+    np.testing.assert_allclose(natural_frequencies_hz(structure, 3.3599e8), expected, atol=1.0)
+
+
+def test_mesh_force_acts_along_the_line_of_action_with_the_base_radii(stage: SpurStage) -> None:
+    structure = eight_dof(stage)
+    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
+    assert p["x_1"] == -p["x_2"] == pytest.approx(np.sin(stage.working_pressure_angle_rad))
+    assert p["y_1"] == -p["y_2"] == pytest.approx(np.cos(stage.working_pressure_angle_rad))
+    assert (p["theta_1"], p["theta_2"]) == (stage.pinion.base_radius_m, -stage.gear.base_radius_m)
+
+
+def test_torsional_limit_frequency_follows_from_the_equivalent_mesh_mass(stage: SpurStage) -> None:
+    structure = six_dof(stage)
+    rotations = [structure.coordinates.index(name) for name in ("theta_1", "theta_2")]
+    p = structure.mesh_vector[rotations]
+    inverse_mass = (p**2 / np.diag(structure.mass)[rotations]).sum()
+    assert structure.equivalent_mesh_mass_kg == pytest.approx(1.0 / inverse_mass, rel=1e-14)
+
+
+@given(stiffness=POSITIVE, damping=POSITIVE, first=POSITIVE, second=POSITIVE)
+def test_an_element_is_a_positive_semidefinite_dyad(
+    stiffness: float, damping: float, first: float, second: float
+) -> None:
+    k, c = assemble(("a", "b"), [Element({"a": first, "b": -second}, stiffness, damping)])
+    np.testing.assert_allclose(k / stiffness, c / damping, rtol=1e-12)
+    assert np.linalg.matrix_rank(k) == 1
+    # Energy of the displacement that does not deform the element is rounding only.
+    still = np.array([second, first])
+    assert abs(still @ k @ still) <= 1e-12 * stiffness * (first * second) ** 2
+
+
+def test_unknown_coordinates_are_named() -> None:
+    with pytest.raises(ValueError, match=r"theta_9.*allowed are a, b"):
+        vector(("a", "b"), {"theta_9": 1.0})

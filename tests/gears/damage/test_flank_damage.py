@@ -1,0 +1,125 @@
+"""What makes a damage impossible, named with pit, value and limit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.gears.damage.flank_damage import Pit, damage_problems, damaged_teeth, flank_heights, pits_of
+from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, pair_stiffness
+from tests.gears.builders import layers, pair_18_47, pit
+from tests.gears.stiffness.test_sections import pits
+
+PAIR = pair_18_47()
+
+
+def test_possible_damage_has_no_problem_even_where_pits_cross_the_face_or_the_tip():
+    tip = flank_heights(PAIR.pinion)[1] * 1e3
+    assert damage_problems(PAIR, ()) == ()
+    assert damage_problems(PAIR, layers(3, 10)) == ()
+    assert damage_problems(PAIR, (pit(face_mm=0.0), pit(face_mm=20.0), pit(tip - 0.01, depth_mm=0.3))) == ()
+
+
+@pytest.mark.parametrize(
+    ("bad", "received", "allowed"),
+    [
+        ({"height_mm": 5.6}, "height_m 0.0056 m", "0.00553372 m"),
+        ({"height_mm": 0.001}, "height_m 1e-06 m", "involute flank"),
+        ({"height_mm": float("nan")}, "height_m nan", "finite"),
+        ({"face_mm": 20.1}, "face_m 0.0201 m", "0 to 0.02 m"),
+        ({"a_mm": 0.0}, "semi_axis_face_m 0.0 m", "above 0"),
+        ({"b_mm": -0.1}, "semi_axis_profile_m -0.0001 m", "above 0"),
+        ({"depth_mm": float("inf")}, "depth_m inf m", "finite"),
+        ({"depth_mm": 2.8}, "depth_m 0.0028 m", "below the half tooth thickness there"),
+        ({"floor": "cone"}, "floor 'cone'", "flat, dish"),
+        ({"gear": "wheel"}, "gear 'wheel'", "'pinion', 'gear'"),
+        ({"tooth": 18}, "tooth 18", "0 to 17"),
+        ({"tooth": -1}, "tooth -1", "0 to 17"),
+    ],
+    ids=str,
+)
+def test_impossible_pits_are_named_with_index_value_and_limit(bad, received, allowed):
+    problems = damage_problems(PAIR, (pit(), pit(**bad)))
+    assert [problem.index for problem in problems] == [1]
+    assert problems[0].received == received
+    assert allowed in problems[0].allowed
+    assert str(problems[0]).startswith("pit 1: received ")
+
+
+def test_depth_is_judged_where_the_tooth_is_thinnest_over_the_pit():
+    tip = PAIR.pinion.tip_half_thickness_m * 1e3
+    high = flank_heights(PAIR.pinion)[1] * 1e3 - 0.05
+    assert damage_problems(PAIR, (pit(high, b_mm=0.2, depth_mm=tip * 1.001),))
+    assert not damage_problems(PAIR, (pit(high, b_mm=0.2, depth_mm=tip * 0.999),))
+
+
+def test_a_whole_contact_length_must_not_be_lost_on_one_flank():
+    chain = tuple(pit(1.9, w, 1.2, 0.3, depth_mm=0.3) for w in range(0, 21, 2))
+    problems = damage_problems(PAIR, (pit(tooth=3), *chain))
+    assert [problem.index for problem in problems] == [1]
+    assert "whole contact length" in problems[0].received
+    assert damage_problems(PAIR, chain[1:]) == ()
+
+
+def test_a_whole_contact_length_must_not_be_lost_by_two_mating_flanks_together():
+    s = PAIR.pitch_point_m
+    heights = (
+        float(PAIR.pinion.height_m(s / PAIR.pinion.base_radius_m)) * 1e3,
+        float(PAIR.gear.height_m((PAIR.line_of_action_m - s) / PAIR.gear.base_radius_m)) * 1e3,
+    )
+    one = pit(heights[0], 0.0, 12.0, 0.3, depth_mm=0.2)
+    two = replace(pit(heights[1], 20.0, 12.0, 0.3, depth_mm=0.2), gear="gear", tooth=30)
+    assert damage_problems(PAIR, (one,)) == ()
+    assert damage_problems(PAIR, (two,)) == ()
+    problems = damage_problems(PAIR, (one, two))
+    assert [problem.index for problem in problems] == [0]
+    assert "together with gear tooth 30" in problems[0].received
+
+
+def test_mating_flanks_that_never_meet_may_be_damaged_alike():
+    # 18 and 48 teeth share the factor 6: tooth 0 meets every sixth tooth only.
+    pair = replace(PAIR, gear=replace(PAIR.gear, teeth=48))
+    s = pair.pitch_point_m
+    one = pit(float(pair.pinion.height_m(s / pair.pinion.base_radius_m)) * 1e3, 0.0, 12.0, 0.3, 0.2)
+    height = float(pair.gear.height_m((pair.line_of_action_m - s) / pair.gear.base_radius_m)) * 1e3
+    two = replace(pit(height, 20.0, 12.0, 0.3, 0.2), gear="gear")
+    assert damage_problems(pair, (one, replace(two, tooth=6)))
+    assert damage_problems(pair, (one, replace(two, tooth=7))) == ()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(pits, min_size=1, max_size=10), st.sampled_from(["pinion", "gear"]))
+def test_damage_without_problems_has_a_positive_stiffness_everywhere(layout, which):
+    damage = tuple(replace(p, gear=which) for p in layout)
+    if damage_problems(PAIR, damage):
+        return
+    start, end = PAIR.contact_start_m, PAIR.contact_end_m
+    s = [start + (end - start) * i / 40 for i in range(41)]
+    found = pair_stiffness(PAIR, s, StiffnessOptions(), **{f"{which}_pits": damage})
+    assert (found > 0).all()
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.lists(
+        st.builds(
+            Pit,
+            st.sampled_from(["pinion", "gear", "rim"]),
+            st.integers(-2, 60),
+            *[st.floats(-0.01, 0.03) | st.just(float("nan"))] * 5,
+            st.sampled_from(["flat", "dish", "hole"]),
+        ),
+        max_size=4,
+    )
+)
+def test_damage_problems_never_raises(layout):
+    assert all(0 <= problem.index < len(layout) for problem in damage_problems(PAIR, tuple(layout)))
+
+
+def test_pits_are_found_by_gear_and_tooth():
+    damage = (pit(tooth=4), pit(tooth=2), pit(tooth=4, gear="gear"))
+    assert damaged_teeth(damage, "pinion") == (2, 4)
+    assert pits_of(damage, "gear", 4) == (damage[2],)

@@ -1,0 +1,286 @@
+"""Healthy tooth, pair and mesh: published numbers, independent integrals, invariants."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import acos, cos, pi, radians, sqrt, tan
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from siggen.gears.geometry.gear_pair import GearPair, geometry_problems
+from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.gears.builders import pair_18_47, spur_gear
+from tests.gears.stiffness.slow_quadrature import alpha_form, beam_compliances, straight_root_closed_form
+
+BASE = StiffnessOptions("base_circle")
+BASE_FREE = StiffnessOptions("base_circle", "none")
+ROOT = StiffnessOptions("root_circle")
+ROOT_FREE = StiffnessOptions("root_circle", "none")
+TROCHOID = StiffnessOptions("rack_trochoid")
+TROCHOID_FREE = StiffnessOptions("rack_trochoid", "none")
+
+
+def zones(pair, options):
+    """Single min, max, double min, max, pitch pair, mean over one base pitch (Gauss-Legendre in s)."""
+    start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    low, high = np.linspace(start, end - pitch, 2001), np.linspace(end - pitch, start + pitch, 2001)
+    single = pair_stiffness(pair, high, options)
+    double = pair_stiffness(pair, low, options) + pair_stiffness(pair, np.minimum(low + pitch, end), options)
+    whole = start + 0.5 * (end - start) * (1 + nodes)
+    # Every pair passes each position once per pitch, so the mean of K is the integral of k_pair over the whole path /
+    # p_b.
+    mean = 0.5 * (end - start) * weights @ pair_stiffness(pair, whole, options) / pitch
+    at_pitch = pair_stiffness(pair, pair.pitch_point_m, options)[0]
+    return single.min(), single.max(), double.min(), double.max(), at_pitch, mean
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (BASE, (2.2076e8, 2.3043e8, 3.8132e8, 4.0396e8, 2.3006e8, 3.3599e8)),
+        (BASE_FREE, (7.356e8, 8.382e8, 1.2114e9, 1.3435e9, 8.193e8, 1.1230e9)),
+        (ROOT, (2.0707e8, 2.1141e8, 3.5026e8, 3.6893e8, 2.1124e8, 3.0787e8)),
+        (TROCHOID, (2.3834e8, 2.4397e8, 4.1363e8, 4.3344e8, 2.4396e8, 3.6007e8)),
+    ],
+    ids=["base", "base without foundation", "root", "trochoid"],
+)
+def test_mesh_stiffness_of_the_paper_preset_is_met_to_the_printed_digits(options, expected):
+    # Half a unit of the last printed digit: 5 digits are 0.5e-4 of the leading one, the beam without foundation has 4.
+    digits = 0.51e-3 if options is BASE_FREE else 0.51e-4
+    for value, printed in zip(zones(pair_18_47(), options), expected, strict=True):
+        assert abs(value - printed) <= digits * 10 ** np.floor(np.log10(printed)), (value, printed)
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (BASE, (2.078e8, 2.163e8, 3.612e8, 3.822e8, 3.174e8)),
+        (ROOT, (1.956e8, 1.995e8, 3.333e8, 3.507e8, 2.922e8)),
+        (TROCHOID, (2.235e8, 2.284e8, 3.905e8, 4.087e8, 3.391e8)),
+    ],
+)
+def test_mesh_stiffness_of_the_default_preset_is_met_to_the_printed_digits(options, expected):
+    values = zones(pair_18_47(3.0e-3, (10e-3, 15e-3)), options)
+    for value, printed in zip((*values[:4], values[5]), expected, strict=True):
+        # Half a unit of the fourth printed digit; the trochoid's double minimum is 3.9055e8, printed 3.905.
+        assert abs(value - printed) <= 0.51e5 + 0.5e5 * (printed == 3.905e8), (value, printed)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "base", "trochoid"), [(1.4, 2.93, 3.15), (2.0, 2.71, 2.90), (3.0, 2.34, 2.48), (4.0, 1.98, 2.09)]
+)
+def test_pitch_pair_softens_with_a_smaller_bore_as_tabulated(ratio, base, trochoid):
+    pair = pair_18_47()
+    bores = (pair.pinion.root_radius_m / ratio, pair.gear.root_radius_m / ratio)
+    pair = pair_18_47(bores_m=bores)
+    # Half a unit of the last digit; the base beam at ratio 3 is 2.33495e8 and was printed as 2.34 (rounded twice).
+    assert pair_stiffness(pair, pair.pitch_point_m, BASE)[0] == pytest.approx(base * 1e8, abs=0.0051e8)
+    assert pair_stiffness(pair, pair.pitch_point_m, TROCHOID)[0] == pytest.approx(trochoid * 1e8, abs=0.005e8)
+
+
+@pytest.mark.parametrize("which", ["pinion", "gear"])
+def test_base_beam_equals_the_alpha_form_of_the_literature(which):
+    pair = pair_18_47()
+    gear = pair.member(which)
+    rolls = np.linspace(0.03, gear.tip_roll_rad, 9)
+    ours = tooth_compliance(pair, which, rolls, BASE_FREE)
+    for i, roll in enumerate(rolls):
+        bending, shear, axial = alpha_form(pair, gear, roll)
+        # Adaptive quadrature asks for 1e-12; sums of J0, J1, J2 lose about one digit near the base circle.
+        assert ours.bending[i] == pytest.approx(bending, rel=1e-10)
+        assert ours.shear[i] == pytest.approx(shear, rel=1e-11)
+        assert ours.axial[i] == pytest.approx(axial, rel=1e-11, abs=1e-24)
+
+
+def test_root_beam_adds_the_straight_piece_of_the_closed_forms():
+    pair = pair_18_47()
+    rolls = np.linspace(0.05, pair.pinion.tip_roll_rad, 7)
+    root, base = (tooth_compliance(pair, "pinion", rolls, o) for o in (ROOT_FREE, BASE_FREE))
+    added = np.stack([root.bending - base.bending, root.shear - base.shear, root.axial - base.axial], axis=1)
+    for row, roll in zip(added, rolls, strict=True):
+        # Differences of compliances up to 30 times larger: rounding 1e-16 becomes 1e-14, margin 100.
+        assert row == pytest.approx(straight_root_closed_form(pair, pair.pinion, roll), rel=1e-11, abs=1e-24)
+
+
+def test_root_beam_of_47_teeth_starts_on_the_root_circle():
+    pair = pair_18_47()
+    gear = pair.gear
+    start = sqrt((gear.root_radius_m / gear.base_radius_m) ** 2 - 1)
+    for roll in (0.2, 0.3, gear.tip_roll_rad):
+        ours = tooth_compliance(pair, "gear", roll, ROOT_FREE)
+        slow = beam_compliances(pair, gear, roll, start)
+        assert [ours.bending[0], ours.shear[0], ours.axial[0]] == pytest.approx(slow, rel=1e-10)
+
+
+@pytest.mark.parametrize("which", ["pinion", "gear"])
+@pytest.mark.parametrize(("teeth", "shift"), [(18, 0.0), (18, 0.35), (15, 0.0)], ids=["plain", "shifted", "undercut"])
+def test_trochoid_beam_equals_adaptive_quadrature_over_fillet_and_flank(which, teeth, shift):
+    pair = pair_18_47(shifts=(shift, shift))
+    pair = replace(pair, pinion=replace(pair.pinion, teeth=teeth))
+    assert pair.pinion.undercut == (teeth == 15)
+    gear = pair.member(which)
+    roll = 0.9 * gear.tip_roll_rad
+    flank = beam_compliances(pair, gear, roll, gear.involute_start_roll_rad)
+    slant = roll - gear.base_half_angle_rad
+    lever = cos(slant) * gear.height_m(roll) - np.sin(slant) * gear.half_thickness_m(roll)
+    young, width = pair.youngs_modulus_pa, pair.face_width_m
+
+    def fillet(f):
+        def integrand(gamma):
+            step = 1e-6
+            y, h = gear.trochoid_point_m(gamma)
+            # Central difference: relative error of order step^2 = 1e-12 and rounding 1e-16/step = 1e-10.
+            slope = (gear.trochoid_point_m(gamma + step)[0] - gear.trochoid_point_m(gamma - step)[0]) / (2 * step)
+            return f(y - gear.base_height_m, h) * -slope
+
+        return quad(integrand, gear.involute_start_gamma_rad, pi / 2, epsabs=0, epsrel=1e-9)[0]
+
+    bending = fillet(lambda x, h: (lever - cos(slant) * x) ** 2 / (young * 2 / 3 * h**3 * width))
+    shear = fillet(lambda x, h: 1.2 * cos(slant) ** 2 * 2 * (1 + pair.poisson_ratio) / (young * 2 * h * width))
+    axial = fillet(lambda x, h: np.sin(slant) ** 2 / (young * 2 * h * width))
+    ours = tooth_compliance(pair, which, roll, TROCHOID_FREE)
+    assert [ours.bending[0], ours.shear[0], ours.axial[0]] == pytest.approx(
+        flank + np.array([bending, shear, axial]), rel=1e-8
+    )
+
+
+def test_contact_counts_once_per_pair_and_is_constant():
+    pair = pair_18_47()
+    k_h = 1 / contact_compliance(pair, np.linspace(pair.contact_start_m, pair.contact_end_m, 5))
+    assert k_h == pytest.approx(np.full(5, 3.5559e9), rel=1.5e-5)
+    assert np.ptp(k_h) == 0.0
+
+
+def test_contact_is_6_5_percent_of_the_pitch_pair_with_foundation_and_23_without():
+    pair = pair_18_47()
+    share = contact_compliance(pair, pair.pitch_point_m) * pair_stiffness(pair, pair.pitch_point_m, BASE)
+    free = contact_compliance(pair, pair.pitch_point_m) * pair_stiffness(pair, pair.pitch_point_m, BASE_FREE)
+    assert share[0] == pytest.approx(0.065, abs=0.0005)
+    assert free[0] == pytest.approx(0.23, abs=0.005)
+
+
+@pytest.mark.parametrize("options", [BASE, ROOT, TROCHOID])
+def test_mesh_stiffness_has_the_mesh_period(options):
+    pair = pair_18_47()
+    angle = np.linspace(0.001, 2 * pi / 18 - 0.001, 101)
+    # Angles of later revolutions round by 1e-15 rad; dk/k per radian is of order 1.
+    assert mesh_stiffness(pair, angle + 5 * 2 * pi / 18, options) == pytest.approx(
+        mesh_stiffness(pair, angle, options), rel=1e-12
+    )
+
+
+def test_zones_have_the_lengths_of_the_contact_ratio():
+    pair = pair_18_47()
+    assert pair.contact_ratio == pytest.approx(1.63676, abs=5e-6)
+    angle = np.linspace(0, 2 * pi / 18, 200001)[:-1]
+    double = mesh_stiffness(pair, angle, BASE) > 3e8
+    assert np.mean(double) == pytest.approx(pair.contact_ratio - 1, abs=2e-5)
+    assert np.count_nonzero(np.diff(double.astype(int))) == 1
+
+
+def test_double_contact_angle_equals_tians_formula():
+    z1, z2, a0 = 18, 47, radians(20)
+    leg = acos(z2 * cos(a0) / (z2 + 2)) - a0
+    other = sqrt((z2 + 2) ** 2 + (z1 + z2) ** 2 - 2 * (z2 + 2) * (z1 + z2) * cos(leg))
+    tian = tan(acos(z1 * cos(a0) / (z1 + 2))) - 2 * pi / z1 - tan(acos(z1 * cos(a0) / other))
+    assert (pair_18_47().contact_ratio - 1) * 2 * pi / z1 == pytest.approx(tian, abs=1e-12)
+
+
+@pytest.mark.parametrize("options", [BASE, TROCHOID])
+def test_jump_at_a_zone_edge_is_the_leaving_or_entering_pair(options):
+    pair = pair_18_47()
+    radius = pair.pinion.base_radius_m
+    leaves = (pair.contact_end_m - pair.contact_start_m - pair.base_pitch_m) / radius
+    before, after = mesh_stiffness(pair, np.array([leaves - 1e-9, leaves + 1e-9]), options)
+    # 1e-9 rad away from the edge the two continuing terms move by less than 1e-8 of themselves.
+    assert before - after == pytest.approx(pair_stiffness(pair, pair.contact_end_m, options)[0], rel=1e-7)
+    before, after = mesh_stiffness(pair, np.array([-1e-9, 1e-9]), options)
+    assert after - before == pytest.approx(pair_stiffness(pair, pair.contact_start_m, options)[0], rel=1e-7)
+
+
+gears = st.tuples(
+    st.integers(17, 60), st.integers(17, 90), st.sampled_from(["base_circle", "root_circle", "rack_trochoid"])
+)
+
+
+@settings(max_examples=40, deadline=None)
+@given(gears, st.floats(0.5, 20.0), st.floats(0.1, 10.0), st.floats(0.1, 10.0))
+def test_stiffness_scales_with_modulus_and_width_and_ignores_the_module(teeth, module, young, width):
+    z1, z2, beam = teeth
+    options = StiffnessOptions(beam)
+    one = GearPair(spur_gear(z1, 1e-3, 0.2e-3 * z1), spur_gear(z2, 1e-3, 0.2e-3 * z2), 10e-3, 206e9, 0.3)
+    if geometry_problems(one):
+        return
+    scaled = GearPair(
+        spur_gear(z1, module * 1e-3, module * 0.2e-3 * z1),
+        spur_gear(z2, module * 1e-3, module * 0.2e-3 * z2),
+        width * 10e-3,
+        young * 206e9,
+        0.3,
+    )
+    share = np.linspace(0.001, 0.999, 15)
+    first, second = (
+        pair_stiffness(p, p.contact_start_m + share * (p.contact_end_m - p.contact_start_m), options)
+        for p in (one, scaled)
+    )
+    assert second / (young * width) == pytest.approx(first, rel=1e-12)
+
+
+@settings(max_examples=40, deadline=None)
+@given(gears, st.floats(-0.2, 0.4), st.floats(-0.2, 0.4))
+def test_swapping_driver_and_driven_mirrors_the_curve(teeth, shift_one, shift_two):
+    z1, z2, beam = teeth
+    options = StiffnessOptions(beam)
+    pair = GearPair(spur_gear(z1, 2e-3, 5e-3, shift_one), spur_gear(z2, 2e-3, 6e-3, shift_two), 15e-3, 206e9, 0.3)
+    if geometry_problems(pair):
+        return
+    swapped = replace(pair, pinion=pair.gear, gear=pair.pinion)
+    s = np.linspace(pair.contact_start_m, pair.contact_end_m, 13)[1:-1]
+    mirrored = pair_stiffness(swapped, pair.line_of_action_m - s, options)
+    # Positions T - s round by 1e-16 of T.
+    assert mirrored == pytest.approx(pair_stiffness(pair, s, options), rel=1e-12)
+
+
+def test_stiffness_falls_towards_the_tip_while_the_load_points_downwards():
+    pair = pair_18_47()
+    for which, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+        first = max(gear.base_half_angle_rad, pair.active_flank[which == "gear"][0])
+        found = tooth_compliance(pair, which, np.linspace(first, gear.tip_roll_rad, 400), BASE)
+        for name in ("bending", "shear", "axial", "foundation"):
+            assert np.all(np.diff(getattr(found, name)) > 0), (which, name)
+
+
+def test_near_the_pinions_base_circle_bending_and_foundation_stiffness_rise_and_shear_stiffness_falls():
+    pair = pair_18_47()
+    half = pair.pinion.base_half_angle_rad
+    found = tooth_compliance(pair, "pinion", np.linspace(pair.active_flank[0][0], half, 200), BASE)
+    assert found.bending[0] / found.bending.min() == pytest.approx(1.037, abs=0.002)
+    assert found.foundation[0] / found.foundation.min() == pytest.approx(1.005, abs=0.001)
+    assert np.all(np.diff(found.shear) > 0)
+    assert tooth_compliance(pair, "pinion", half, BASE).axial[0] == 0.0
+
+
+def test_a_contacts_stiffness_does_not_depend_on_the_other_contacts_asked_for():
+    pair = pair_18_47()
+    s = np.linspace(pair.contact_start_m, pair.contact_end_m, 57)
+    together = pair_stiffness(pair, s[::-1], TROCHOID)[::-1]
+    alone = np.array([pair_stiffness(pair, value, TROCHOID)[0] for value in s])
+    assert np.array_equal(together, alone)
+
+
+def test_positions_off_the_path_of_contact_and_unknown_models_are_refused():
+    pair = pair_18_47()
+    for position in (pair.contact_start_m - 1e-6, pair.contact_end_m + 1e-6, np.nan):
+        with pytest.raises(ValueError, match="path of contact"):
+            pair_stiffness(pair, position, BASE)
+    with pytest.raises(ValueError, match="rack_trochoid"):
+        StiffnessOptions("cantilever")
+    with pytest.raises(ValueError, match="finite"):
+        mesh_stiffness(pair, np.array([0.0, np.inf]), BASE)

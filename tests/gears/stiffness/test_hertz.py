@@ -1,0 +1,176 @@
+"""Contact laws: the linear constant, the exact approach of a half plane, exponents, dimensions, lost length."""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from siggen.gears.stiffness.hertz import (
+    LARGEST_HALF_WIDTH,
+    centre_line_depth,
+    contact_half_width,
+    linear_compliance,
+    power_law_compliance,
+    weber_banaschek_compliance,
+)
+from siggen.gears.stiffness.mesh_stiffness import contact_compliance, pair_compliance, pair_stiffness, rolls_at
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.gears.builders import layers, pair_18_47
+
+FORCE_N = 2000.0
+
+
+def at_the_pitch_point(pair):
+    return rolls_at(pair, np.array([pair.pitch_point_m]))
+
+
+def weber(pair, force_n, length_m=None, **other):
+    rolls = at_the_pitch_point(pair)
+    length = np.array([pair.face_width_m if length_m is None else length_m])
+    return weber_banaschek_compliance(pair, *rolls, length, force_n, **other)[0]
+
+
+def approach_per_force(depth, half_width, poisson):
+    """E L times the approach of the surface to a point below it, from Hertz's stresses on the axis, plane strain."""
+    peak = 2.0 / (pi * half_width)
+
+    def strain(z):
+        root = np.hypot(half_width, z)
+        across = -peak / half_width * ((half_width**2 + 2 * z * z) / root - 2 * z)
+        along = -peak * half_width / root
+        return (1 - poisson**2) * along - poisson * (1 + poisson) * across
+
+    return -quad(strain, 0.0, depth, epsabs=1e-13, epsrel=1e-12)[0]
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
+def test_weber_banaschek_is_the_approach_of_two_half_planes_under_hertz_pressure(poisson):
+    pair = pair_18_47(poisson_ratio=poisson)
+    rolls = at_the_pitch_point(pair)
+    width = contact_half_width(pair, *rolls, np.array([pair.face_width_m]), FORCE_N)[0]
+    depths = [centre_line_depth(pair, which, roll)[0] for which, roll in zip(("pinion", "gear"), rolls, strict=True)]
+    exact = sum(approach_per_force(depth, width, poisson) for depth in depths)
+    # The logarithm leaves out terms of order (a/h)^2 = 1.2e-3 here; measured 0.01 to 0.02 %.
+    assert weber(pair, FORCE_N) * pair.youngs_modulus_pa * pair.face_width_m == pytest.approx(exact, rel=5e-4)
+
+
+def test_half_width_is_that_of_hertz_for_two_cylinders():
+    pair = pair_18_47()
+    rolls = at_the_pitch_point(pair)
+    width = contact_half_width(pair, *rolls, np.array([0.02]), FORCE_N)[0]
+    # Peak pressure of cylinders, p0 = sqrt(F E*/(pi L R)) with E* = E/(2 (1 - nu^2)), and F = pi a L p0/2.
+    first, second = rolls[0][0] * pair.pinion.base_radius_m, rolls[1][0] * pair.gear.base_radius_m
+    modulus, radius = pair.youngs_modulus_pa / (2 * 0.91), first * second / (first + second)
+    pressure = np.sqrt(FORCE_N * modulus / (pi * 0.02 * radius))
+    assert pi * width * 0.02 * pressure / 2 == pytest.approx(FORCE_N, rel=1e-12)
+
+
+@given(st.floats(10.0, 5000.0), st.floats(1.1, 3.0))
+def test_weber_banaschek_falls_with_the_logarithm_of_the_force(force, ratio):
+    pair = pair_18_47()
+    step = 2 * linear_compliance(pair, np.array([pair.face_width_m]))[0] * log(ratio) / 4
+    assert weber(pair, force) - weber(pair, force * ratio) == pytest.approx(step, rel=1e-9)
+
+
+@given(st.floats(10.0, 1e5), st.floats(1.1, 10.0), st.floats(1e-3, 0.1))
+def test_power_law_has_its_exponents(force, ratio, length):
+    pair, softer = pair_18_47(), pair_18_47(youngs_modulus_pa=206e9 / 2)
+    one = power_law_compliance(pair, np.array([length]), force)[0]
+    # Powers of floats are good to a few ulp.
+    assert power_law_compliance(pair, np.array([length]), force * ratio)[0] == pytest.approx(
+        one / ratio**0.1, rel=1e-13
+    )
+    assert power_law_compliance(pair, np.array([length * ratio]), force)[0] == pytest.approx(
+        one / ratio**0.8, rel=1e-13
+    )
+    assert power_law_compliance(softer, np.array([length]), force)[0] == pytest.approx(one * 2**0.9, rel=1e-13)
+
+
+def test_power_law_has_the_dimension_of_a_compliance():
+    # Lengths in mm, forces in N and moduli in N/mm2 give mm/N: the law knows no hidden unit.
+    pair_m, pair_mm = pair_18_47(), pair_18_47(youngs_modulus_pa=206e3)
+    metres = power_law_compliance(pair_m, np.array([0.02]), FORCE_N)[0]
+    assert power_law_compliance(pair_mm, np.array([20.0]), FORCE_N)[0] == pytest.approx(1e3 * metres, rel=1e-12)
+
+
+def test_laws_differ_by_what_the_docstring_says():
+    pair = pair_18_47()
+    linear = linear_compliance(pair, np.array([pair.face_width_m]))[0]
+    assert 3.0 < weber(pair, FORCE_N) / linear < 5.0
+    power = power_law_compliance(pair, np.array([pair.face_width_m]), FORCE_N)[0]
+    assert 0.7 < power / weber(pair, FORCE_N) < 1.0
+
+
+@given(st.floats(1.0, 1e9))
+def test_compliance_stays_positive_and_falls_with_the_force_whatever_the_force(force):
+    pair = pair_18_47()
+    floor = linear_compliance(pair, np.array([pair.face_width_m]))[0] * (log(2 / LARGEST_HALF_WIDTH) - 0.3 / 1.4)
+    # sqrt(h1 h2) is at least the smaller depth, so the bracket never falls below its value at the widest contact.
+    assert floor <= weber(pair, force) * (1 + 1e-12)
+    assert weber(pair, 2 * force) <= weber(pair, force)
+
+
+@pytest.mark.parametrize("hertz", ["weber_banaschek", "power_law"])
+def test_half_the_force_changes_the_pair_by_two_percent_only(hertz):
+    pair = pair_18_47()
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, 21)
+    full, half = (pair_stiffness(pair, position, StiffnessOptions(hertz=hertz, hertz_force_n=f)) for f in (2e3, 1e3))
+    # Why one force serves all contacts: measured 0.8 % (power law) and 2.1 % (Weber-Banaschek).
+    assert np.max(full / half - 1) < 0.025
+    assert np.min(full / half - 1) > 0.0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        StiffnessOptions(),
+        StiffnessOptions(hertz="weber_banaschek", hertz_force_n=FORCE_N),
+        StiffnessOptions(hertz="power_law", hertz_force_n=FORCE_N),
+    ],
+    ids=lambda o: o.hertz,
+)
+def test_lost_contact_length_counts_as_a_narrower_face(options):
+    pits = layers(1, 10)
+    pair = pair_18_47()
+    position = pair.pinion.base_radius_m * pair.pinion.roll_at_height([1.9e-3])
+    pitted = contact_compliance(pair, position, pits, options=options)
+    # Ten pits of 0.6 mm at their middle leave 14 of 20 mm.
+    narrow = contact_compliance(pair_18_47(face_width_m=14e-3), position, options=options)
+    np.testing.assert_allclose(pitted, narrow, rtol=1e-12)
+    assert pitted[0] > contact_compliance(pair, position, options=options)[0]
+
+
+def test_linear_is_the_default_and_independent_of_position():
+    pair = pair_18_47()
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, 5)
+    expected = 4 * 0.91 / (pi * 206e9 * 0.02)
+    np.testing.assert_allclose(contact_compliance(pair, position), expected, rtol=1e-14)
+
+
+def test_parts_of_a_pair_add_up_to_its_compliance():
+    pair = pair_18_47()
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, 9)
+    parts = pair_compliance(pair, position, StiffnessOptions(), layers(1, 4))
+    np.testing.assert_array_equal(1 / parts.total, pair_stiffness(pair, position, StiffnessOptions(), layers(1, 4)))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"hertz": "weber_banaschek"}, "hertz_force_n None"),
+        ({"hertz": "power_law", "hertz_force_n": 0.0}, "above 0 N"),
+        ({"hertz": "power_law", "hertz_force_n": float("nan")}, "above 0 N"),
+        ({"hertz_force_n": 100.0}, "'linear'"),
+        ({"hertz": "hertzian"}, "weber_banaschek"),
+        ({"foundation": "none"}, "calibrated"),
+        ({"foundation_angle": "profile"}, "calibrated"),
+    ],
+)
+def test_options_that_mean_nothing_together_are_refused(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        StiffnessOptions(**wrong)

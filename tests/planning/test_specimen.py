@@ -1,0 +1,105 @@
+"""Specimens: drawn by their own keys, so that no change elsewhere changes them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from siggen.config import constant
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from tests.config.minimal import config
+
+SPREAD = {
+    "gears__module_mm": {"kind": "uniform", "low": 2.5, "high": 3.5},
+    "gears__pinion__bore_radius_mm": {"kind": "choice", "values": [8, 9, 10]},
+    "dynamics__mesh_damping_ratio": {"kind": "uniform", "low": 0.05, "high": 0.1},
+    "dynamics__gear__bearing_stiffness_y_n_per_m": {"kind": "loguniform", "low": 6e7, "high": 1.2e8},
+    "operating_points": {
+        "count": 2,
+        "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
+        "torque_nm": {"kind": "normal", "mean": 50, "std": 10, "low": 30, "high": 80},
+    },
+    "sensors__0__gain": {"kind": "uniform", "low": 0.9, "high": 1.1},
+}
+
+
+@given(st.integers(0, 10**6))
+def test_a_specimen_does_not_depend_on_the_number_of_specimens(specimen):
+    assert draw_specimen(config(**SPREAD), specimen) == draw_specimen(config(**SPREAD, specimens=10**7), specimen)
+
+
+@given(st.integers(0, 10**6))
+def test_values_lie_within_their_distributions(specimen):
+    drawn = draw_specimen(config(**SPREAD), specimen)
+    assert 2.5 <= constant(drawn.gears.module_mm) <= 3.5
+    assert drawn.gears.pinion.bore_radius_mm in (8.0, 9.0, 10.0)
+    assert 6e7 <= constant(drawn.dynamics.gear.bearing_stiffness_y_n_per_m) <= 1.2e8
+    point = draw_operating_point(config(**SPREAD), specimen, 1)
+    assert 20 <= point.speed_hz <= 35
+    assert 30 <= point.torque_nm <= 80
+
+
+def test_specimens_differ():
+    drawn = [draw_specimen(config(**SPREAD), i) for i in range(200)]
+    assert len({specimen.gears.module_mm for specimen in drawn}) == 200
+    assert len({specimen.dynamics.mesh_damping_ratio for specimen in drawn}) == 200
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"gears__face_width_mm": {"kind": "uniform", "low": 18, "high": 22}},
+        {"gears__gear__bore_radius_mm": {"kind": "uniform", "low": 14, "high": 16}},
+        {"dynamics__backlash_um": {"kind": "uniform", "low": 60, "high": 120}},
+        {"dynamics__pinion__mass_kg": {"kind": "uniform", "low": 0.4, "high": 0.6}},
+        {"sensors__0__noise": {"floor_m_s2": {"kind": "loguniform", "low": 0.01, "high": 1}}},
+        {"states": [{"name": "healthy"}]},
+        {"repeats": 5},
+        {"fs_hz": 25_600},
+    ],
+)
+def test_a_new_distribution_or_setting_leaves_all_other_draws_alone(change):
+    before, after = config(**SPREAD), config(**SPREAD, **change)
+    old, new = draw_specimen(before, 3), draw_specimen(after, 3)
+    assert old.gears.module_mm == new.gears.module_mm
+    assert old.gears.pinion == new.gears.pinion
+    assert old.dynamics.mesh_damping_ratio == new.dynamics.mesh_damping_ratio
+    assert old.dynamics.gear == new.dynamics.gear
+    assert old.sensors[0].gain == new.sensors[0].gain
+    assert draw_operating_point(before, 3, 1) == draw_operating_point(after, 3, 1)
+
+
+def test_more_operating_points_leave_existing_ones_alone():
+    more = {**SPREAD, "operating_points": {**SPREAD["operating_points"], "count": 5}}
+    for point in range(2):
+        assert draw_operating_point(config(**SPREAD), 3, point) == draw_operating_point(config(**more), 3, point)
+
+
+def test_operating_points_of_a_specimen_are_drawn_independently():
+    speeds = np.array([[draw_operating_point(config(**SPREAD), i, k).speed_hz for k in (0, 1)] for i in range(400)])
+    # 400 independent pairs: the correlation has a standard deviation of 0.05
+    assert abs(np.corrcoef(speeds.T)[0, 1]) < 0.2
+    assert len(np.unique(speeds)) == 800
+
+
+def test_draws_of_different_stages_are_independent():
+    drawn = [draw_specimen(config(**SPREAD), i) for i in range(400)]
+    pairs = np.array([(constant(s.gears.module_mm), constant(s.dynamics.mesh_damping_ratio)) for s in drawn])
+    # 400 independent pairs: the correlation has a standard deviation of 0.05
+    assert abs(np.corrcoef(pairs.T)[0, 1]) < 0.2
+
+
+def test_draws_follow_the_distribution():
+    modules = [constant(draw_specimen(config(**SPREAD), i).gears.module_mm) for i in range(1000)]
+    # a uniform of width 1 has a standard deviation of 0.289, its mean over 1000 one of 0.009
+    assert np.mean(modules) == pytest.approx(3.0, abs=0.04)
+    assert np.std(modules) == pytest.approx(0.2887, abs=0.03)
+
+
+def test_constants_need_no_luck():
+    drawn = draw_specimen(config(), 5)
+    assert drawn.gears == config().gears
+    assert drawn.dynamics == config().dynamics
+    assert drawn.sensors[0].gain == (1.0,)

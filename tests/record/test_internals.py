@@ -1,0 +1,112 @@
+"""Which internal quantities a set stores follows from its configuration; every record then has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record
+from siggen.config import parse, parse_yaml
+from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
+from siggen.errors import ConfigError
+from siggen.planning.specimen import draw_specimen
+from siggen.record.internals import internals_table, stored_quantities
+from siggen.record.simulation import simulate
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.structure import structure
+
+SHORT = ["duration_s=0.05", "specimens=2"]
+
+
+@pytest.mark.parametrize("name", ["linear_pits", "paper_b"])
+def test_every_record_has_the_quantities_of_the_configuration(name: str) -> None:
+    config = load_config(f"configs/{name}.yaml", [*SHORT, "internals.records=all"])
+    names = {column.name for column in stored_quantities(config)}
+    last = config.records_per_specimen * 2 - 1
+    for record in simulate(config, [0, last]):
+        assert isinstance(record, Record)
+        assert set(record.internals) == names
+        assert all(values.dtype == np.float32 and len(values) == config.samples for values in record.internals.values())
+
+
+def test_stored_series_are_those_of_the_command(tmp_path) -> None:
+    config = load_config("configs/linear_pits.yaml", [*SHORT, "internals.records=first_of_state"])
+    stored, unchosen = simulate(config, [2, 3])
+    table = internals_table(config, 2)
+    assert unchosen.internals is None
+    for name, values in stored.internals.items():
+        if name != "pinion_angle_rad":
+            np.testing.assert_array_equal(values, table[name].to_numpy().astype(np.float32))
+    turns = (table["angle_rad"].to_numpy() - stored.internals["pinion_angle_rad"]) / (2.0 * np.pi)
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-6)  # float32 of an angle below 2 pi
+
+
+def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
+    with_them, without = (
+        simulate(load_config("configs/linear_pits.yaml", [*SHORT, *extra]), [1])[0]
+        for extra in (["internals.records=all"], [])
+    )
+    for channel, signal in without.channels.items():
+        assert signal.tobytes() == with_them.channels[channel].tobytes()
+
+
+def test_units_follow_from_the_names() -> None:
+    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    units = {column.name: column.unit for column in stored_quantities(config)}
+    expected = {
+        "mesh_force_n": "N", "mesh_stiffness_n_per_m": "N/m", "mesh_damping_n_s_per_m": "N s/m", "approach_m": "m",
+        "approach_rate_m_s": "m/s", "pair_0_load_share": "", "phi_c_rad": "rad", "friction_moment_gear_nm": "N m",
+        "clean_accel_casing_lid_vertical_m_s2": "m/s^2",
+    }  # fmt: skip
+    assert {name: units[name] for name in expected} == expected
+
+
+def test_quantities_that_the_model_lacks_are_refused_at_load_beside_the_nearest_names() -> None:
+    asked = "internals.quantities=[mesh_force_n, mesh_stifness, all, x_c_m]"
+    with pytest.raises(ConfigError) as caught:
+        load_config("configs/linear_pits.yaml", [*SHORT, asked])
+    first, second = caught.value.problems
+    assert (first.path, first.received) == ("internals.quantities.1", "'mesh_stifness'")
+    assert "nearest: mesh_stiffness_n_per_m, " in first.allowed
+    assert second.path == "internals.quantities.3"
+    assert len(str(second)) < 300  # not the list of all names
+
+
+def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_stored() -> None:
+    parsed = parse(parse_yaml(Path("configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_c_m]}\n"))
+    with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_c_m'"):
+        stored_quantities(parsed.config)
+
+
+def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothing() -> None:
+    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    (record,) = simulate(config, [config.records_per_specimen - 1])
+    force = record.internals["pair_0_force_n"]
+    assert 0.1 < np.mean(force == 0.0) < 0.9  # a pair is in contact for 1.6 of 2 pitches
+    for name in OF_CONTACT_ALONE:
+        np.testing.assert_array_equal(np.isnan(record.internals[f"pair_0_{name}"]), force == 0.0)
+    meanings = {column.name: column.meaning for column in stored_quantities(config)}
+    assert {name for name in meanings if "NaN" in meanings[name]} == {
+        f"pair_{pair}_{name}" for pair in (0, 1) for name in OF_CONTACT_ALONE
+    }
+
+
+def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_gears() -> None:
+    config = load_config("configs/paper_b.yaml", SHORT)
+    specimen = draw_specimen(config, 0)
+    table = internals_table(config, 0)
+    pair = gear_pair(specimen.gears)
+    assembled = structure(specimen.dynamics, pair, specimen.sensors)
+    lengths = dict(zip(assembled.coordinates, assembled.mesh_vector, strict=True))
+    assert lengths["theta_1"] == pytest.approx(pair.pinion.base_radius_m)
+    assert lengths["theta_2"] == pytest.approx(-pair.gear.base_radius_m)
+    columns = {name: next(c for c in table.column_names if c.startswith(f"{name}_")) for name in lengths}
+    moved = sum(length * table[columns[name]].to_numpy() for name, length in lengths.items())
+    # Micrometres as the difference of rotations whose rounding is that of their size.
+    np.testing.assert_allclose(table["transmission_error_m"].to_numpy(), moved, atol=1e-12)
+    np.testing.assert_array_equal(table["transmission_error_m"].to_numpy(), table["approach_m"].to_numpy())
+    turned = sum(lengths[name] * table[columns[name]].to_numpy() for name in ("theta_1", "theta_2"))
+    assert np.abs(turned - moved).max() > 1e-7  # bearings give way

@@ -1,0 +1,119 @@
+"""From a configuration to records: purity, grouping, failures, labels."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, RecordFailure
+from siggen.config import Config
+from siggen.record.simulation import simulate, simulate_specimen
+
+SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_per_rad=2.0"]
+
+
+@pytest.fixture(scope="module")
+def config() -> Config:
+    return load_config("configs/linear_pits.yaml", SMALL)
+
+
+@pytest.fixture(scope="module")
+def specimen(config: Config) -> list[Record]:
+    results = simulate_specimen(config, range(config.records_per_specimen))
+    assert all(isinstance(r, Record) for r in results)
+    return results  # type: ignore[return-value]
+
+
+def same(a: Record, b: Record) -> bool:
+    signals = all(np.array_equal(a.channels[c], b.channels[c]) for c in a.channels)
+    return signals and a.labels == b.labels and np.array_equal(a.tacho_s, b.tacho_s) and a.planned == b.planned
+
+
+def test_a_record_is_a_function_of_configuration_and_index_alone(config: Config, specimen: list[Record]) -> None:
+    for index in (5, 0, 3):
+        alone = simulate_specimen(config, [index])[0]
+        assert isinstance(alone, Record)
+        assert same(alone, specimen[index])
+
+
+def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: Config) -> None:
+    per_specimen = config.records_per_specimen
+    ids = [per_specimen, 0, per_specimen + 1]
+    assert [r.planned.record_id for r in simulate(config, ids) if isinstance(r, Record)] == ids
+
+
+def test_simulating_two_specimens_as_one_is_refused(config: Config) -> None:
+    with pytest.raises(ValueError, match="specimens \\[0, 1\\]"):
+        simulate_specimen(config, [0, config.records_per_specimen])
+
+
+def test_states_of_a_specimen_share_speed_and_torque_but_not_noise_or_phase(specimen: list[Record]) -> None:
+    same_point = [r for r in specimen if r.planned.operating_point_id == 0]
+    assert len({(r.labels["speed_hz"], r.labels["torque_nm"]) for r in same_point}) == 1
+    assert len({r.labels["start_angle_rad"] for r in same_point}) == len(same_point)
+
+
+def test_labels_grow_with_severity(specimen: list[Record]) -> None:
+    ladder = [r.labels for r in specimen if r.planned.operating_point_id == 0]
+    for name in ("damaged_area_mm2", "damage_count", "contact_length_loss_mm", "mesh_stiffness_loss"):
+        values = [float(labels[name]) for labels in ladder]  # type: ignore[arg-type]
+        assert values[0] == 0.0
+        assert values == sorted(values)
+        assert values[-1] > values[0]
+
+
+def test_frequencies_are_those_of_the_teeth(specimen: list[Record]) -> None:
+    for labels in (r.labels for r in specimen):
+        # The mean speed is that of the angle's ends; rounding of an angle of up to 300 rad over 0.1 s leaves 1e-13.
+        assert labels["pinion_shaft_hz"] == pytest.approx(labels["speed_hz"], rel=1e-10)
+        assert labels["mesh_hz"] == pytest.approx(18 * labels["pinion_shaft_hz"], rel=1e-15)  # type: ignore[operator]
+        assert labels["gear_shaft_hz"] == pytest.approx(labels["mesh_hz"] / 47, rel=1e-15)  # type: ignore[operator]
+
+
+def test_tacho_times_are_whole_turns_of_the_angle(specimen: list[Record]) -> None:
+    for record in specimen:
+        start, speed = record.labels["start_angle_rad"], record.labels["speed_hz"]
+        turns = (start + 2 * math.pi * speed * record.tacho_s) / (2 * math.pi)  # type: ignore[operator]
+        assert np.abs(turns - np.round(turns)).max() < 1e-9
+        assert len(record.tacho_s) in (math.floor(speed * 0.1), math.ceil(speed * 0.1))  # type: ignore[operator]
+
+
+def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_records() -> None:
+    # Wide pits cover the face together: no contact length is left, which only the draw can show.
+    config = load_config(
+        "configs/linear_pits.yaml",
+        [*SMALL, "states.3.damage.semi_axis_face_mm=6.0"],
+    )
+    results = simulate_specimen(config, range(config.records_per_specimen))
+    assert [type(r) for r in results[:6]] == [Record] * 6
+    for failure in results[6:]:
+        assert isinstance(failure, RecordFailure)
+        assert failure.status == "impossible_damage"
+        assert "contact length" in failure.reason
+
+
+def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
+    law = ["dynamics.mesh.law=pairs", "operating_points.torque_nm=2.0e+4"]
+    results = simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *law]), [0, 2])
+    assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
+    assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))
+
+
+def test_bearings_may_be_as_good_as_rigid() -> None:
+    stiff = [f"dynamics.{g}.bearing_stiffness_{axis}_n_per_m=1.0e+15" for axis in "xy" for g in ("pinion", "gear")]
+    (record,) = simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *stiff]), [0])
+    assert isinstance(record, Record)
+    # 4 kN on 1e15 N/m: nothing is left but half a step of the converter and the noise.
+    assert max(signal.std() for signal in record.channels.values()) < 25.0
+
+
+def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr("siggen.record.simulation.measured_channels", broken)
+    with pytest.raises(ValueError, match="broadcast"):
+        simulate_specimen(config, [0])

@@ -1,0 +1,87 @@
+"""Records of damage through the whole face, and of the readings of damage, from the configuration on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.record.simulation import simulate
+
+SPALL = {
+    "kind": "spall", "gear": "pinion", "teeth": 1, "shape": "rectangle", "centre_height_mm": "pitch",
+    "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2, "height_reading": "arc",
+}  # fmt: skip
+WHOLE_FACE = "take the whole contact length"
+
+
+def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
+    spall = SPALL if damage is None else damage
+    states = [{"name": "healthy"}, {"name": "damaged", "fault": "spalling", "severity": "severe", "damage": spall}]
+    from siggen.config import read_yaml
+
+    raw = {**read_yaml("configs/paper_b.yaml"), "states": states, "specimens": 1, "duration_s": 0.1}
+    return load_config(raw, overrides)
+
+
+def record(chosen: Config, record_id: int) -> Record:
+    result = simulate(chosen, [record_id])[0]
+    assert isinstance(result, Record), result
+    return result
+
+
+def test_damage_through_the_face_is_simulated_and_labelled() -> None:
+    chosen = config()
+    points = len(chosen.operating_points)
+    healthy, damaged = record(chosen, 0), record(chosen, points)
+    assert damaged.labels["through_face"] is True
+    # 1 mm of arc near the pitch point: l²/(8 R_e) with R_e of 6.7 mm and the edges' rounding of 0.1 mm.
+    assert damaged.labels["sink_depth_um"] == pytest.approx(1e3 / (8.0 * 6.78), rel=0.03)
+    assert damaged.labels["contact_length_loss_mm"] == 20.0
+    assert damaged.labels["mesh_stiffness_loss"] == 1.0
+    assert healthy.labels["through_face"] is False
+    assert healthy.labels["sink_depth_um"] == 0.0
+    name = next(iter(healthy.channels))
+    assert damaged.channels[name].std() > 2.0 * healthy.channels[name].std()
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        ["dynamics.mesh.damage=stiffness"],
+        ["dynamics.mesh.law=linear", "dynamics.friction.model=off", "dynamics.mesh.damping=constant"],
+    ],
+)
+def test_readings_without_a_sink_refuse_damage_through_the_face(override: list[str]) -> None:
+    with pytest.raises(ConfigError, match=WHOLE_FACE) as refused:
+        config(None, *override)
+    assert "dynamics.mesh.damage: all or geometry" in str(refused.value)
+
+
+def test_the_readings_of_damage_differ_and_agree_on_healthy_teeth() -> None:
+    spall = {**SPALL, "face_length_mm": 12.0, "profile_length_mm": 2.0, "depth_mm": 0.4}
+    readings = [config(spall, f"dynamics.mesh.damage={name}") for name in ("stiffness", "geometry", "all")]
+    point = len(readings[0].operating_points)
+    signals = [record(chosen, point).channels["lid_vertical"] for chosen in readings]
+    for i, first in enumerate(signals):
+        for second in signals[:i]:
+            assert not np.array_equal(first, second)
+    healthy = [record(chosen, 0).channels["lid_vertical"].tobytes() for chosen in readings]
+    assert len(set(healthy)) == 1
+    labels = [record(chosen, point).labels["mesh_stiffness_loss"] for chosen in readings]
+    assert len(set(labels)) == 1
+
+
+def test_damping_by_asperities_needs_the_oil_and_changes_the_vibration() -> None:
+    with pytest.raises(ConfigError, match=r"dynamics\.mesh\.damping"):
+        config(None, "dynamics.mesh.damping=asperity_share", "dynamics.friction.model=constant")
+    constant, shared = config(None, "dynamics.mesh.damping=constant"), config()
+    assert constant.identity != shared.identity
+    first, second = (record(chosen, 0).channels["lid_vertical"] for chosen in (constant, shared))
+    assert second.std() == pytest.approx(first.std(), rel=0.3)
+    assert not np.array_equal(first, second)

@@ -1,0 +1,152 @@
+"""Generation: bytes that depend on the configuration alone, failures that are listed, work that is never done twice."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from siggen.dataset.manifest import unsealed
+from siggen.dataset.reading import open as open_set
+from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
+from siggen.errors import DatasetError, EngineError
+from siggen.sets.generation import generate, in_order
+from tests.dataset.fake_set import (
+    FAKE_FILES,
+    damage_rows,
+    fake_config,
+    file_bytes,
+    simulate,
+    simulate_none,
+    simulate_with_a_bug,
+    simulate_with_failures,
+    write_fake_set,
+)
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sets") / "reference"
+    write_fake_set(path)
+    return path
+
+
+def test_a_set_has_exactly_its_files_and_they_match_the_plan(reference: Path) -> None:
+    assert sorted(p.relative_to(reference).as_posix() for p in reference.rglob("*") if p.is_file()) == FAKE_FILES
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_bytes_do_not_depend_on_the_number_of_workers(reference: Path, tmp_path: Path, workers: int) -> None:
+    write_fake_set(tmp_path, workers=workers)
+    assert file_bytes(tmp_path) == file_bytes(reference)
+
+
+def test_another_seed_gives_other_rows(reference: Path, tmp_path: Path) -> None:
+    write_fake_set(tmp_path, fake_config(seed=8))
+    data = {name for name in FAKE_FILES if name.startswith("data/")}
+    mine, theirs = file_bytes(tmp_path), file_bytes(reference)
+    assert all(mine[name] != theirs[name] for name in data & set(mine))
+
+
+def test_the_first_specimens_of_a_larger_set_are_the_same(reference: Path, tmp_path: Path) -> None:
+    write_fake_set(tmp_path, fake_config(specimens=7))
+    mine, theirs = file_bytes(tmp_path), file_bytes(reference)
+    assert all(mine[name] == theirs[name] for name in FAKE_FILES if name.startswith("data/"))
+
+
+def test_a_finished_set_is_left_alone(reference: Path, tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    times = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*")}
+    again = write_fake_set(tmp_path)
+    assert again.was_finished
+    assert (again.rows, again.records_made) == (30, 0)
+    assert {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*")} == times
+
+
+@pytest.mark.parametrize("name", [name for name in FAKE_FILES if name not in ("run.json", "config.yaml")])
+def test_a_lost_file_is_made_again_with_the_same_bytes(reference: Path, tmp_path: Path, name: str) -> None:
+    write_fake_set(tmp_path)
+    (tmp_path / name).unlink()
+    again = write_fake_set(tmp_path)
+    assert not again.was_finished
+    assert again.records_made == (6 if name.startswith(("data/", "shards/")) else 0)
+    assert again.shards_taken_over == 5 - again.records_made // 6
+    assert file_bytes(tmp_path) == file_bytes(reference)
+
+
+def test_a_shard_damaged_between_two_runs_is_made_again(reference: Path, tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    (tmp_path / "manifest.json").unlink()
+    shard = tmp_path / "data/train-00001.parquet"
+    content = bytearray(shard.read_bytes())
+    content[len(content) // 2] ^= 1
+    shard.write_bytes(content)
+    assert write_fake_set(tmp_path).records_made == 6
+    assert file_bytes(tmp_path) == file_bytes(reference)
+
+
+def test_half_written_files_of_a_killed_run_are_removed(tmp_path: Path) -> None:
+    leftover = tmp_path / f"data/.train-00000.parquet.0123abcd{LEFTOVER_SUFFIX}"
+    leftover.parent.mkdir()
+    leftover.write_bytes(b"half")
+    write_fake_set(tmp_path)
+    assert not leftover.exists()
+
+
+def test_failed_records_are_no_rows_but_listed_everywhere(tmp_path: Path) -> None:
+    generation = write_fake_set(tmp_path, simulation=simulate_with_failures)
+    assert [failure.record_id for failure in generation.failures] == [3, 8, 10]
+    assert generation.rows == 27
+    dataset = open_set(tmp_path)
+    assert sorted(dataset.labels()["record_id"].to_pylist()) == [i for i in range(30) if i not in (3, 8, 10)]
+    assert len(dataset.manifest["failures"]) == 3
+    again = write_fake_set(tmp_path, simulation=simulate_with_failures)
+    assert again.was_finished
+    assert again.failures == generation.failures
+
+
+def test_a_set_of_which_every_record_fails_is_still_a_set(tmp_path: Path) -> None:
+    generation = write_fake_set(tmp_path, simulation=simulate_none)
+    assert generation.rows == 0
+    assert len(generation.failures) == 30
+    assert open_set(tmp_path).labels().num_rows == 0
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_fault_of_the_program_names_the_record_and_keeps_what_is_committed(tmp_path: Path, workers: int) -> None:
+    with pytest.raises(EngineError, match=r"record 8 raised ZeroDivisionError"):
+        write_fake_set(tmp_path, workers=workers, simulation=simulate_with_a_bug)
+    assert not (tmp_path / "manifest.json").exists()
+    assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
+    again = write_fake_set(tmp_path)
+    assert again.shards_taken_over == len(again.failures) + (30 - again.records_made) // 6
+
+
+def test_progress_counts_every_record_once(tmp_path: Path) -> None:
+    seen: list[tuple[int, int]] = []
+
+    def show(done: int, total: int) -> None:
+        seen.append((done, total))
+
+    generate(fake_config(), tmp_path, 0, show, simulate=simulate, damage_rows=damage_rows)
+    assert seen[-1] == (30, 30)
+    assert [done for done, _ in seen] == sorted({done for done, _ in seen})
+
+
+def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
+    with LocalFolder(tmp_path).writing(), pytest.raises(DatasetError, match="another siggen process"):
+        write_fake_set(tmp_path)
+
+
+def test_run_json_holds_the_speed_and_carries_its_own_digest(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    run = unsealed("run.json", (tmp_path / "run.json").read_bytes())
+    assert run["records_made"] == 30
+    assert run["records_per_s"] > 0
+    assert run["peak_memory_bytes"]["parent"] > 0
+    assert run["environment"] == json.loads((tmp_path / "shards/test-00000.json").read_text())["environment"]
+
+
+def test_results_are_put_back_in_order() -> None:
+    assert list(in_order(iter([(2, "c"), (0, "a"), (3, "d"), (1, "b")]))) == ["a", "b", "c", "d"]  # type: ignore[arg-type]

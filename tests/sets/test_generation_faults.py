@@ -1,0 +1,189 @@
+"""Killed and interrupted generation: the same command finishes the set, with the bytes of an undisturbed run."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from siggen.dataset.manifest import unsealed
+from siggen.dataset.storage import LEFTOVER_SUFFIX
+from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
+from siggen.sets.generation import InterruptionError, generate
+from tests.dataset.fake_set import (
+    damage_rows,
+    fake_config,
+    file_bytes,
+    simulate,
+    simulate_and_die,
+    simulate_and_die_once,
+    write_fake_set,
+)
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    path = tmp_path_factory.mktemp("sets") / "reference"
+    write_fake_set(path)
+    return file_bytes(path)
+
+
+def start(folder: Path, workers: int = 2) -> subprocess.Popen[str]:
+    """Start generation in a process of its own; simulations take 50 ms per record there."""
+    command = [sys.executable, "-m", "tests.dataset.fake_set", str(folder), str(workers)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for(condition, process: subprocess.Popen[str]) -> None:
+    deadline = time.monotonic() + 60
+    while not condition() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.005)
+
+
+def sidecars(folder: Path) -> list[Path]:
+    return sorted((folder / "shards").glob("*.json"))
+
+
+def assert_complete(folder: Path, reference: dict[str, bytes]) -> None:
+    assert file_bytes(folder) == reference
+    assert not list(folder.rglob(f"*{LEFTOVER_SUFFIX}"))
+
+
+def test_after_sigkill_the_same_command_gives_the_bytes_of_an_undisturbed_run(
+    tmp_path: Path, reference: dict[str, bytes]
+) -> None:
+    process = start(tmp_path)
+    wait_for(lambda: len(sidecars(tmp_path)) >= 2, process)
+    process.kill()
+    process.communicate()
+    kept = len(sidecars(tmp_path))
+    assert 2 <= kept < 5
+    assert not (tmp_path / "manifest.json").exists()
+    again = write_fake_set(tmp_path, workers=2)
+    assert again.shards_taken_over == kept
+    assert_complete(tmp_path, reference)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_killing_again_and_again_at_random_moments_changes_nothing(
+    tmp_path: Path, reference: dict[str, bytes], seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(12):
+        process = start(tmp_path)
+        wait_for((tmp_path / "config.yaml").exists, process)
+        time.sleep(rng.uniform(0.0, 2.5))
+        process.kill()
+        process.communicate()
+        if (tmp_path / "manifest.json").exists():
+            break
+    write_fake_set(tmp_path, workers=1)
+    assert_complete(tmp_path, reference)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_signal_ends_with_130_committed_shards_and_a_hint(
+    tmp_path: Path, reference: dict[str, bytes], number: signal.Signals, workers: int
+) -> None:
+    process = start(tmp_path, workers)
+    wait_for(lambda: len(sidecars(tmp_path)) >= 1, process)
+    process.send_signal(number)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == EXIT_INTERRUPTED
+    kept = len(sidecars(tmp_path))
+    # nothing but the one message: no traceback of a worker, no complaint of the interpreter
+    assert (
+        said
+        == f"stopped: {kept} of 5 shards of {tmp_path} are finished and stay; the same command continues from there\n"
+    )
+    assert 1 <= kept < 5
+    assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
+    assert write_fake_set(tmp_path).shards_taken_over == kept
+    assert_complete(tmp_path, reference)
+
+
+def test_ctrl_c_for_the_whole_process_group_is_quiet_too(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tests.dataset.fake_set", str(tmp_path), "2"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    wait_for(lambda: len(sidecars(tmp_path)) >= 1, process)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == EXIT_INTERRUPTED
+    assert said.count("\n") == 1
+    assert said.startswith("stopped: ")
+
+
+def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dict[str, bytes]) -> None:
+    def interrupt(done: int, total: int) -> None:
+        if done >= 8:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(InterruptionError, match="0 of 3 shards"):
+        # shards of the usual size hold a whole split, none of which is finished after 8 records
+        generate(fake_config(), tmp_path, 0, interrupt, simulate=simulate, damage_rows=damage_rows)
+    write_fake_set(tmp_path)
+    assert_complete(tmp_path, reference)
+
+
+def test_a_killed_worker_does_not_stop_generation(
+    tmp_path: Path, reference: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SIGGEN_TEST_MARKER", str(tmp_path / "killed"))
+    write_fake_set(tmp_path / "set", workers=2, simulation=simulate_and_die_once)
+    assert (tmp_path / "killed").exists()
+    assert_complete(tmp_path / "set", reference)
+
+
+def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_chunk(tmp_path: Path) -> None:
+    with pytest.raises(EngineError, match=r"records 8 to 9 of shard \S+ was lost 3 times"):
+        write_fake_set(tmp_path, workers=2, simulation=simulate_and_die)
+    assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
+
+
+MEMORY = """
+import sys
+from pathlib import Path
+from siggen.sets.generation import generate
+from tests.dataset.fake_set import damage_rows, fake_config, simulate
+if __name__ == "__main__":
+    config = fake_config(fs_hz=51200.0, duration_s=10.0, specimens=int(sys.argv[2]))
+    generate(config, Path(sys.argv[1]), 2, simulate=simulate, damage_rows=damage_rows)
+"""
+
+
+@pytest.mark.slow
+def test_the_writers_memory_does_not_grow_with_the_set(tmp_path: Path) -> None:
+    """Records of 4.1 MB: 10 gearboxes are 246 MB of signals, 30 are 737 MB; row groups hold 2 records (8 MB)."""
+    peaks = []
+    for specimens in (10, 30):
+        folder = tmp_path / str(specimens)
+        subprocess.run([sys.executable, "-c", MEMORY, str(folder), str(specimens)], check=True)
+        run = unsealed("run.json", (folder / "run.json").read_bytes())
+        peaks.append(run["peak_memory_bytes"]["parent"])
+    # window of 8 chunks (8 to 16 MB each, twice while a pipe is read) over an interpreter with pyarrow of about 110 MB
+    assert peaks[1] < 250e6
+    assert peaks[1] - peaks[0] < 60e6
+
+
+def test_a_disk_that_takes_no_more_stops_with_what_to_do_and_the_rest_is_made_later(
+    tmp_path: Path, reference: dict[str, bytes]
+) -> None:
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    largest = max(len(content) for name, content in reference.items() if name.startswith("data/"))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest - 1, before[1]))
+    try:
+        with pytest.raises(DatasetError, match="File too large; finished shards stay, and the same command continues"):
+            write_fake_set(tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    write_fake_set(tmp_path)
+    assert_complete(tmp_path, reference)

@@ -1,0 +1,171 @@
+"""Verification: one flipped byte in any file shows, and so does a record that is not what the simulation gives."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import siggen.sets.verification
+from siggen.cli.app import app
+from siggen.columns.record import Record, RecordFailure
+from siggen.config import Config
+from siggen.dataset.environment import environment
+from siggen.errors import EXIT_MISMATCH, DatasetError
+from siggen.sets.verification import CLOSE, EXACT, verify
+from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, write_fake_set
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sets") / "reference"
+    write_fake_set(path)
+    return path
+
+
+@pytest.fixture
+def folder(reference: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(reference, tmp_path / "set"))
+
+
+def flip(path: Path, place: int, bit: int) -> None:
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1 << bit
+    path.write_bytes(content)
+
+
+def test_an_untouched_set_is_as_promised(reference: Path) -> None:
+    found = verify(reference, 30, simulate=simulate, workers=0)
+    assert found.mismatches == ()
+    assert found.files == len(FAKE_FILES)
+    assert found.records == tuple(range(30))
+    assert found.comparison == EXACT
+
+
+@pytest.mark.parametrize("name", FAKE_FILES)
+def test_a_flipped_bit_anywhere_in_any_file_is_found(folder: Path, name: str) -> None:
+    size = (folder / name).stat().st_size
+    rng = np.random.default_rng(FAKE_FILES.index(name))
+    for place in {0, size // 2, size - 1, *rng.integers(0, size, 5).tolist()}:
+        bit = int(rng.integers(8))
+        flip(folder / name, place, bit)
+        found = verify(folder)
+        assert [mismatch.what for mismatch in found.mismatches] == [name], f"byte {place}, bit {bit}"
+        flip(folder / name, place, bit)
+    assert verify(folder).mismatches == ()
+
+
+@pytest.mark.parametrize("name", FAKE_FILES)
+def test_the_command_ends_with_4_after_a_flipped_byte_in_any_file(folder: Path, name: str) -> None:
+    flip(folder / name, (folder / name).stat().st_size // 2, 0)
+    result = CliRunner().invoke(app, ["verify", str(folder)])
+    assert result.exit_code == EXIT_MISMATCH
+    assert name in result.stderr
+
+
+@pytest.mark.parametrize("name", [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")])
+def test_missing_and_truncated_files_are_found(folder: Path, name: str) -> None:
+    path = folder / name
+    path.write_bytes(path.read_bytes()[:-1])
+    assert [m.what for m in verify(folder).mismatches] == [name]
+    path.unlink()
+    assert [(m.what, m.problem) for m in verify(folder).mismatches] == [(name, "missing")]
+
+
+@pytest.mark.parametrize(
+    "name", ["data/train-00003.parquet", "shards/notes.txt", "metadata/old/train.parquet", "damage/x"]
+)
+def test_a_foreign_file_among_the_rows_is_found(folder: Path, name: str) -> None:
+    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).write_bytes(b"x")
+    assert [(m.what, m.problem) for m in verify(folder).mismatches] == [(name, "not part of the set")]
+
+
+def test_files_beside_the_set_and_a_set_without_run_json_are_fine(folder: Path) -> None:
+    (folder / ".gitattributes").write_text("*.parquet filter=lfs")
+    (folder / "run.json").unlink()
+    assert verify(folder).mismatches == ()
+
+
+def test_a_folder_that_is_no_finished_set_is_no_mismatch_but_an_error(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match="no such folder"):
+        verify(tmp_path / "nothing")
+
+
+def shifted(config: Config, ids: Sequence[int], by_m_s2: float) -> list[Record | RecordFailure]:
+    results = []
+    for record in simulate(config, ids):
+        assert isinstance(record, Record)
+        signal = record.channels["bearing_horizontal"].copy()
+        signal[100] += np.float32(by_m_s2)
+        results.append(replace(record, channels={**record.channels, "bearing_horizontal": signal}))
+    return results
+
+
+def elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(siggen.sets.verification, "environment", lambda: {**environment(), "cpu": "another"})
+
+
+def test_here_a_single_sample_that_differs_by_one_step_is_a_mismatch(reference: Path) -> None:
+    found = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, STEP_M_S2), workers=0)
+    assert len(found.mismatches) == 3
+    assert "accel_bearing_horizontal_m_s2 differs by up to 0.0156 (allowed 0)" in found.mismatches[0].problem
+    assert found.comparison == EXACT
+
+
+def test_elsewhere_one_step_of_the_converter_is_allowed_and_two_are_not(
+    reference: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere(monkeypatch)
+    one = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, STEP_M_S2), workers=0)
+    assert one.mismatches == ()
+    assert one.comparison.startswith(CLOSE)
+    two = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, 2 * STEP_M_S2), workers=0)
+    assert len(two.mismatches) == 3
+
+
+@pytest.mark.parametrize(
+    ("label", "value", "allowed_elsewhere"),
+    [
+        ("mesh_hz", 540.0 * (1 + 1e-9), True),
+        ("mesh_hz", 540.1, False),
+        ("damage_count", 77, False),
+        ("fault", "x", False),
+    ],
+)
+def test_labels_are_compared_too(
+    reference: Path, monkeypatch: pytest.MonkeyPatch, label: str, value: object, allowed_elsewhere: bool
+) -> None:
+    def changed(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
+        return [replace(record, labels={**record.labels, label: value}) for record in simulate(config, ids)]
+
+    assert len(verify(reference, 2, simulate=changed, workers=0).mismatches) == 2
+    elsewhere(monkeypatch)
+    assert (verify(reference, 2, simulate=changed, workers=0).mismatches == ()) == allowed_elsewhere
+
+
+def test_a_record_that_now_fails_is_a_mismatch(reference: Path) -> None:
+    def fails(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
+        return [RecordFailure(i, "diverged", "why not") for i in ids]
+
+    found = verify(reference, 1, simulate=fails, workers=0)
+    assert found.mismatches[0].problem == "now fails: diverged (why not)"
+
+
+def test_workers_simulate_again_too_and_the_sample_is_repeatable(reference: Path) -> None:
+    first = verify(reference, 4, simulate=simulate)
+    assert first.mismatches == ()
+    assert len(first.records) == 4
+    assert verify(reference, 4, simulate=simulate, workers=0).records == first.records
+
+
+def test_records_are_not_simulated_when_files_differ(folder: Path) -> None:
+    flip(folder / "config.yaml", 10, 0)
+    found = verify(folder, 3, simulate=simulate, workers=0)
+    assert found.records == ()
+    assert found.comparison == "none, since files differ"

@@ -1,0 +1,136 @@
+"""Records whose speed and torque vary: labels, tacho, what is shared between states, what is drawn per record."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record
+from siggen.config import Config
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.simulation import simulate, simulate_specimen
+from siggen.specimen.drive import RecordDrive, drawn_variation, record_drive
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.shaft_forces import tone_orders
+from siggen.specimen.structure import structure
+
+SMALL = ["specimens=2", "duration_s=0.2", "dynamics.input_coupling.damping_nm_s_per_rad=2.0", "mesh_harmonics=3"]
+VARYING = [
+    "variation.speed.start_ratio=0.6", "variation.speed.end_ratio=1.4", "variation.speed.random_rms=0.003",
+    "variation.speed.ripple_once=0.0005", "variation.speed.slip=0.03", "variation.torque.random_rms=0.03",
+    "variation.torque.load_once=0.05", "variation.torque.line_ripple=0.01",
+]  # fmt: skip
+FORCES = ["dynamics.unbalance.grade_mm_s=6.3", "dynamics.bearing_tones.level=0.03"]
+
+
+def load(*overrides: str) -> Config:
+    return load_config("configs/linear_pits.yaml", [*SMALL, *overrides])
+
+
+def drive_of(config: Config, record_id: int, start_rad: float = 0.5) -> RecordDrive:
+    record = planned_record(config, record_id)
+    specimen = draw_specimen(config, record.specimen_id)
+    pair = gear_pair(specimen.gears)
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    return record_drive(config, specimen, pair, structure(specimen.dynamics, pair), point, record, start_rad)
+
+
+@pytest.fixture(scope="module")
+def varying() -> Config:
+    return load(*VARYING, *FORCES)
+
+
+@pytest.fixture(scope="module")
+def record(varying: Config) -> Record:
+    (found,) = simulate(varying, [2])
+    assert isinstance(found, Record)
+    return found
+
+
+def test_a_varying_record_is_a_function_of_configuration_and_index_alone(varying: Config, record: Record) -> None:
+    again = simulate_specimen(varying, [0, 2])[1]
+    assert isinstance(again, Record)
+    assert again.labels == record.labels
+    assert all(np.array_equal(again.channels[name], record.channels[name]) for name in record.channels)
+
+
+def test_labels_say_what_speed_and_torque_did(varying: Config, record: Record) -> None:
+    labels = record.labels
+    slipping = 1.0 - 0.03 * labels["torque_nm"] / 60.0
+    # The slow part of 0.3 % and the ripple move the mean of 0.2 s.
+    assert labels["pinion_shaft_hz"] == pytest.approx(labels["speed_hz"] * slipping, rel=0.01)
+    # A linear course from 0.6 to 1.4 has the standard deviation 0.8/√12.
+    assert labels["speed_std_hz"] == pytest.approx(labels["speed_hz"] * slipping * 0.8 / math.sqrt(12.0), rel=0.02)
+    drive = drive_of(varying, 2)
+    assert drive.torque is not None
+    acceleration = 2.0 * math.pi * 0.8 * labels["speed_hz"] * slipping / 0.2
+    expected = labels["torque_nm"] + drive.torque.reduced_inertia_kg_m2 * acceleration
+    assert labels["mean_torque_nm"] == pytest.approx(expected, rel=0.1)  # ± 3 % of slow torque, twice over
+    assert 0.0 < labels["torque_std_nm"] < 0.2 * expected
+
+
+def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, record: Record) -> None:
+    rotation = drive_of(varying, 2, record.labels["start_angle_rad"]).rotation
+    turns = rotation.angle_rad(record.tacho_s) / (2.0 * math.pi)
+    assert np.abs(turns - np.round(turns)).max() < 1e-9
+    assert len(record.tacho_s) >= 5
+    assert np.diff(record.tacho_s, 2).max() < 0.0  # faster and faster
+
+
+def test_states_share_the_numbers_but_not_the_course() -> None:
+    config = load("variation.speed.random_rms={kind: uniform, low: 0.001, high: 0.005}")
+    points = len(config.operating_points) * config.repeats
+    first, second = planned_record(config, 0), planned_record(config, points)
+    assert (first.state_id, second.state_id) == (0, 1)
+    assert drawn_variation(config, first) == drawn_variation(config, second)
+    other_specimen = planned_record(config, config.records_per_specimen)
+    assert drawn_variation(config, first) != drawn_variation(config, other_specimen)
+    time = np.linspace(0.0, 0.2, 50)
+    speeds = [drive_of(config, r.record_id).rotation.speed_rad_s(time) for r in (first, second)]
+    assert np.abs(speeds[0] - speeds[1]).max() > 1e-4 * speeds[0].mean()
+
+
+def test_unbalance_belongs_to_the_specimen_and_cage_slip_to_the_record() -> None:
+    config = load(*FORCES)
+    time = np.linspace(0.0, 0.1, 200)
+
+    def inputs(record_id: int) -> np.ndarray:
+        drive = drive_of(config, record_id)
+        assert drive.excitation is not None
+        return drive.excitation.inputs(time, drive.rotation)
+
+    first, second = inputs(0), inputs(config.repeats * len(config.operating_points))
+    np.testing.assert_array_equal(first[:, :4], second[:, :4])
+    assert np.abs(first[:, 4:] - second[:, 4:]).max() > 0.1 * np.abs(first[:, 4:]).max()
+    point = draw_operating_point(config, 0, 0)
+    mass = structure(draw_specimen(config, 0).dynamics, gear_pair(draw_specimen(config, 0).gears)).mass[1, 1]
+    expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
+    assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_constant_speed_without_forces_has_no_inputs() -> None:
+    drive = drive_of(load(), 0)
+    assert drive.excitation is None
+    assert drive.speed_input == -1
+    assert drive.torque is None
+
+
+def test_tones_follow_a_cage_that_lags() -> None:
+    section = draw_specimen(load(*FORCES), 0).dynamics.bearing_tones
+    without, lagging = tone_orders(section, 0.0), tone_orders(section, 0.02)
+    assert without == {"outer_race": 3.585, "inner_race": 5.415, "ball": 2.357, "cage": 0.398}
+    # Nine balls pass either race: together they pass with the shaft.
+    assert lagging["outer_race"] + lagging["inner_race"] == pytest.approx(9.0, abs=1e-12)
+    assert lagging["outer_race"] == pytest.approx(0.98 * 3.585)
+
+
+@pytest.mark.parametrize("mesh", [["dynamics.mesh.law=pairs", "dynamics.friction.model=constant"], []])
+def test_pairs_and_casing_take_all_of_it(mesh: list[str]) -> None:
+    config = load(*VARYING, *FORCES, "dynamics.model=casing", "dynamics.integrator=runge_kutta", *mesh)
+    (found,) = simulate(config, [0])
+    assert isinstance(found, Record), found
+    assert all(np.isfinite(signal).all() for signal in found.channels.values())

@@ -1,0 +1,164 @@
+"""Errors drawn from a configuration: what shares them, what does not, and what reaches the records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, label_names
+from siggen.config import Config
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import simulate, simulate_specimen
+from siggen.specimen.errors import SpecimenErrors, specimen_errors
+from siggen.specimen.gears import gear_pair
+
+SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
+
+
+def made(*overrides: str) -> Config:
+    return load_config("configs/paper_b.yaml", [*SHORT, *overrides])
+
+
+CLASS_6 = made("manufacture={accuracy_class: 6}")
+PER_STATE = made("manufacture={accuracy_class: 6, draw: state}")
+PAIR = gear_pair(draw_specimen(CLASS_6, 0).gears)
+
+
+def errors_of(config: Config, specimen: int = 0, state: int = 0, pair: GearPair = PAIR) -> SpecimenErrors:
+    found = specimen_errors(config, pair, specimen, state)
+    assert found is not None
+    return found
+
+
+def places(errors: SpecimenErrors) -> np.ndarray:
+    return np.concatenate([errors.pinion.errors.pitch_m, errors.gear.errors.pitch_m])
+
+
+def differ(first: SpecimenErrors, second: SpecimenErrors) -> bool:
+    return not np.isclose(places(first), places(second), rtol=1e-6, atol=0.0).any()
+
+
+def test_perfect_gears_have_no_errors() -> None:
+    assert specimen_errors(made(), PAIR, 0, 0) is None
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.integers(0, 10**6))
+def test_drawn_gears_keep_to_their_class_and_use_their_share(specimen: int) -> None:
+    errors = errors_of(CLASS_6, specimen)
+    for gear in (errors.pinion, errors.gear):
+        assert 0.3 <= gear.tolerance_share <= 0.5
+        limit = gear.tolerances.times(gear.tolerance_share)
+        used = {name: value / getattr(limit, name) for name, value in gear.found.largest.items()}
+        assert max(used.values()) == pytest.approx(1.0, abs=1e-9)
+        assert 0.3 <= used["runout_m"] <= 0.8 + 1e-9
+
+
+def test_states_of_a_specimen_share_its_gears_or_do_not() -> None:
+    np.testing.assert_array_equal(places(errors_of(CLASS_6, 3, 0)), places(errors_of(CLASS_6, 3, 2)))
+    assert differ(errors_of(PER_STATE, 3, 0), errors_of(PER_STATE, 3, 2))
+    assert differ(errors_of(CLASS_6, 3), errors_of(CLASS_6, 4))
+
+
+def test_the_pinion_does_not_depend_on_the_gear() -> None:
+    other = made("manufacture={accuracy_class: 6, accuracy_class_gear: 9}", "gears.gear.teeth=53")
+    changed = errors_of(other, pair=gear_pair(draw_specimen(other, 0).gears))
+    before, after = errors_of(CLASS_6).pinion, changed.pinion
+    # A longer path of contact reaches a little further along the flank, so sizes move; shapes and places do not.
+    assert before.tolerance_share == after.tolerance_share
+    assert before.errors.phase_rad == after.errors.phase_rad
+    assert np.corrcoef(before.errors.pitch_m, after.errors.pitch_m)[0, 1] == pytest.approx(1.0, abs=1e-12)
+    assert changed.gear.accuracy_class == 9
+
+
+def test_a_constant_in_place_of_a_distribution_shifts_no_other_draw() -> None:
+    fixed = errors_of(made("manufacture={accuracy_class: 6, profile_waves: 3.0, runout_share: 0.0}"))
+    free = errors_of(CLASS_6)
+    assert fixed.pinion.tolerance_share == free.pinion.tolerance_share
+    assert np.corrcoef(fixed.pinion.errors.pitch_m, free.pinion.errors.pitch_m)[0, 1] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
+    config = made("manufacture={accuracy_class: {kind: choice, values: [5, 6, 7]}}")
+    found = [errors_of(config, specimen) for specimen in range(40)]
+    assert {one.pinion.accuracy_class for one in found} == {5, 6, 7}
+    assert any(one.pinion.accuracy_class != one.gear.accuracy_class for one in found)
+
+
+def misaligned(value: object) -> Config:
+    section = {"accuracy_class": 6, "lead_misalignment_um": value}
+    return Config.model_validate({**CLASS_6.canonical(), "manufacture": section})
+
+
+def test_misalignment_is_linear_across_the_face_and_drawn_with_either_sign() -> None:
+    drawn = [errors_of(misaligned(8.0), specimen) for specimen in range(30)]
+    assert {round(1e6 * one.lead_misalignment_m, 9) for one in drawn} == {8.0, -8.0}
+    lead = drawn[0].lead_m(200)
+    assert lead.mean() == pytest.approx(0.0, abs=1e-20)
+    # Middles of the slices: half a slice short of the face at both ends.
+    assert np.ptp(lead) == pytest.approx(8e-6 * 199 / 200, rel=1e-12)
+    assert errors_of(CLASS_6).lead_misalignment_m == 0.0
+
+
+def test_misalignment_by_the_standard_stays_within_the_helix_slopes_of_both_gears() -> None:
+    found = [errors_of(misaligned("iso_1328"), specimen) for specimen in range(200)]
+    limits = [sum(g.tolerance_share * g.tolerances.helix_slope_m for g in (e.pinion, e.gear)) for e in found]
+    ratio = np.array([e.lead_misalignment_m for e in found]) / limits
+    assert np.abs(ratio).max() <= 1.0
+    # The sum of two uniform ones of about one size: a standard deviation of 1/√6 of their reach.
+    assert ratio.std() == pytest.approx(1.0 / np.sqrt(6.0), rel=0.15)
+
+
+def records(config: Config, ids: list[int]) -> list[Record]:
+    found = simulate(config, ids)
+    assert all(isinstance(one, Record) for one in found), found
+    return found  # type: ignore[return-value]
+
+
+def test_records_say_what_was_drawn() -> None:
+    record = records(CLASS_6, [1])[0]
+    errors = errors_of(CLASS_6, 0, 1)
+    assert set(record.labels) == set(label_names(CLASS_6))
+    assert record.labels["manufacture_draw"] == "specimen"
+    assert record.labels["accuracy_class_gear"] == 6
+    found = errors.gear.found.largest
+    assert record.labels["cumulative_pitch_gear_um"] == pytest.approx(1e6 * found["cumulative_pitch_m"])
+    assert record.labels["pitch_deviation_gear_um"] == pytest.approx(1e6 * found["pitch_m"])
+    assert not {name for name in label_names(made()) if "pitch_deviation" in name or "accuracy" in name}
+
+
+def test_no_share_of_the_tolerance_gives_the_bytes_of_perfect_gears() -> None:
+    zero = records(made("manufacture={accuracy_class: 6, tolerance_share: 0.0}"), [1])[0]
+    perfect = records(made(), [1])[0]
+    for name, signal in perfect.channels.items():
+        assert zero.channels[name].tobytes() == signal.tobytes()
+
+
+def test_a_record_does_not_depend_on_its_company() -> None:
+    together = simulate_specimen(CLASS_6, [0, 1])
+    alone = records(CLASS_6, [1])[0]
+    assert isinstance(together[1], Record)
+    for name, signal in alone.channels.items():
+        assert together[1].channels[name].tobytes() == signal.tobytes()
+
+
+def test_misaligned_shafts_change_healthy_and_damaged_records_alike() -> None:
+    aligned, askew = (
+        records(made(f"manufacture={{accuracy_class: 6, lead_misalignment_um: {lead}}}"), [0, 2]) for lead in (0.0, 8.0)
+    )
+    for before, after in zip(aligned, askew, strict=True):
+        signal = before.channels["lid_vertical"].astype(float)
+        change = np.std(after.channels["lid_vertical"] - signal) / np.std(signal)
+        assert 0.05 < change < 1.0
+        assert abs(after.labels["lead_misalignment_um"]) == pytest.approx(8.0)  # type: ignore[arg-type]
+        assert after.labels["sink_depth_um"] == before.labels["sink_depth_um"]
+
+
+def test_errors_shake_a_healthy_gearbox() -> None:
+    perfect, errors = (records(config, [0])[0] for config in (made(), CLASS_6))
+    assert errors.channels["lid_vertical"].std() > 1.2 * perfect.channels["lid_vertical"].std()
+    assert errors.labels["contact_loss_share"] == 0.0

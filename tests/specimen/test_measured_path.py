@@ -1,0 +1,171 @@
+"""Measured responses: from files of several kinds into a configuration that needs them no more."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record
+from siggen.config import Config, parse, parse_yaml, yaml_text
+from siggen.errors import ConfigError
+from siggen.record.simulation import simulate
+from siggen.views.path_curves import path_curves
+from tests.config.minimal import minimal
+
+MODAL = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
+
+
+def written(folder: Path, path: dict[str, Any], **changes: Any) -> Path:
+    """Write a configuration whose sensor has this path, and return its file."""
+    sensor = {**MODAL, "path": path}
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0, "housing": {}, **changes}
+    source = folder / "set.yaml"
+    source.write_text(yaml_text(minimal(sensors=[sensor], **changes)))
+    return source
+
+
+@pytest.fixture
+def modal(tmp_path: Path) -> Config:
+    return load_config(written(tmp_path, {"kind": "modal", "rigid": False}))
+
+
+def columns(config: Config) -> dict[str, np.ndarray]:
+    """Return the modal path of the first gearbox as the columns of a measurement."""
+    table = path_curves(config).table
+    return {name.replace("lid_", ""): table[name].to_numpy() for name in table.column_names}
+
+
+def polar(cartesian: dict[str, np.ndarray], unit: str) -> dict[str, np.ndarray]:
+    result = {"frequency_hz": cartesian["frequency_hz"]}
+    for name, real in cartesian.items():
+        if name.endswith("_real_m_s2_per_n"):
+            stem = name.removesuffix("_real_m_s2_per_n")
+            curve = real + 1j * cartesian[f"{stem}_imag_m_s2_per_n"]
+            result[f"{stem}_magnitude_m_s2_per_n"] = np.abs(curve)
+            result[f"{stem}_phase_{unit}"] = np.angle(curve, deg=unit == "deg")
+    return result
+
+
+def save(values: dict[str, np.ndarray], file: Path) -> None:
+    match file.suffix:
+        case ".csv":
+            pyarrow.csv.write_csv(pa.table(values), file)
+        case ".parquet":
+            pyarrow.parquet.write_table(pa.table(values), file)
+        case ".npz":
+            np.savez(file, **values)
+
+
+def signal(config: Config) -> np.ndarray:
+    result = simulate(config, [0])[0]
+    assert isinstance(result, Record), result
+    return result.channels["lid_vertical"]
+
+
+@pytest.mark.parametrize("name", ["lid.csv", "lid.parquet", "lid.npz", "polar_deg.csv", "polar_rad.parquet"])
+def test_a_response_from_a_file_gives_the_record_of_the_path_it_was_taken_from(
+    modal: Config, tmp_path: Path, name: str
+) -> None:
+    (tmp_path / "measured").mkdir()
+    values = columns(modal)
+    save(polar(values, name[6:9]) if name.startswith("polar") else values, tmp_path / "measured" / name)
+    measured = load_config(written(tmp_path, {"kind": "measured", "file": f"measured/{name}"}))
+    expected = signal(modal)
+    # float32 channels: 6e-8 of the largest value, and as much again from rounding in the other direction
+    np.testing.assert_allclose(signal(measured), expected, atol=1.3e-7 * np.abs(expected).max())
+
+
+def test_the_set_needs_the_file_no_more(modal: Config, tmp_path: Path) -> None:
+    save(columns(modal), tmp_path / "lid.csv")
+    config = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
+    digest = hashlib.sha256((tmp_path / "lid.csv").read_bytes()).hexdigest()
+    assert config.sensors[0].path.sha256 == digest  # type: ignore[union-attr]
+    stored = yaml_text(config.canonical())
+    (tmp_path / "lid.csv").unlink()
+    again = parse(parse_yaml(stored)).config
+    assert again == config
+    assert again is not None
+    assert again.identity == config.identity
+    (tmp_path / "stored.yaml").write_text(stored)
+    assert signal(load_config(tmp_path / "stored.yaml")).tobytes() == signal(config).tobytes()
+
+
+def test_the_identity_follows_the_content_and_not_the_folder(modal: Config, tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    values = columns(modal)
+    save(values, tmp_path / "lid.csv")
+    save(values, tmp_path / "a" / "lid.csv")
+    here = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
+    there = load_config(written(tmp_path, {"kind": "measured", "file": "a/lid.csv"}))
+    assert here.identity == there.identity
+    values["vertical_from_gear_bearing_vertical_real_m_s2_per_n"] = (
+        1.01 * values["vertical_from_gear_bearing_vertical_real_m_s2_per_n"]
+    )
+    save(values, tmp_path / "lid.csv")
+    assert load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"})).identity != here.identity
+
+
+def renamed(values: dict[str, np.ndarray], old: str, new: str) -> dict[str, np.ndarray]:
+    return {name.replace(old, new): value for name, value in values.items()}
+
+
+FIRST = "vertical_from_pinion_bearing_vertical_real_m_s2_per_n"
+MISTAKES = {
+    "no unit": (lambda v: renamed(v, FIRST, FIRST.removesuffix("_m_s2_per_n")), "no unit"),
+    "wrong unit": (lambda v: renamed(v, FIRST, FIRST.replace("m_s2_per_n", "g_per_n")), "the unit g_per_n"),
+    "no frequencies": (lambda v: renamed(v, "frequency_hz", "f"), "a column frequency_hz"),
+    "unknown column": (lambda v: {**v, "coherence": v["frequency_hz"]}, "the column coherence"),
+    "half a number": (lambda v: {n: x for n, x in v.items() if n != FIRST}, "real and imag"),
+    "no force": (lambda v: {n: x for n, x in v.items() if "gear_bearing_vertical" not in n}, "two columns for every"),
+    "other axis": (lambda v: renamed(v, "vertical_from", "axial_from"), "no columns vertical_from"),
+    "not a number": (lambda v: {**v, FIRST: np.where(v["frequency_hz"] == 640.0, np.nan, v[FIRST])}, "not finite"),
+    "too narrow": (lambda v: {n: x[:1000] for n, x in v.items()}, "0.45 fs_hz"),
+    "not causal": (lambda v: {n: -x if "_imag_" in n else x for n, x in v.items()}, "before time 0"),
+    "too coarse": (lambda v: {n: x[::64] for n, x in v.items()}, "impulse response"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_file_that_is_no_response_is_refused_by_name(modal: Config, tmp_path: Path, mistake: str) -> None:
+    change, said = MISTAKES[mistake]
+    save(change(columns(modal)), tmp_path / "lid.parquet")
+    with pytest.raises(ConfigError) as refused:
+        load_config(written(tmp_path, {"kind": "measured", "file": "lid.parquet"}))
+    assert {problem.path for problem in refused.value.problems} == {"sensors.0.path.file"}
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ({"file": "nowhere.csv"}, "cannot be read"),
+        ({}, "the path of a CSV"),
+        ({"file": "set.yaml"}, "the ending '.yaml'"),
+        ({"file": "text.csv"}, "a column frequency_hz"),
+        ({"file": "text.parquet"}, "cannot be read"),
+        ({"file": "text.npz"}, "cannot be read"),
+        ({"file": "text.csv", "sha256": "0" * 64}, "leave sha256 out"),
+        ({"response": "nonsense"}, "what siggen filled in itself"),
+    ],
+)
+def test_a_path_without_a_usable_file_is_refused_by_name(tmp_path: Path, path: dict[str, str], said: str) -> None:
+    for name in ("text.csv", "text.parquet", "text.npz"):
+        (tmp_path / name).write_text("a,b\n1,2\n")
+    with pytest.raises(ConfigError, match=said) as refused:
+        load_config(written(tmp_path, {"kind": "measured", **path}))
+    assert all(problem.path.startswith("sensors.0.path.") for problem in refused.value.problems)
+
+
+def test_a_measured_path_takes_no_more_cross_axis_sensitivity(modal: Config, tmp_path: Path) -> None:
+    save(columns(modal), tmp_path / "lid.csv")
+    source = written(tmp_path, {"kind": "measured", "file": "lid.csv"})
+    with pytest.raises(ConfigError, match=r"sensors\.0\.cross_axis"):
+        load_config(source, ["sensors.0.cross_axis=0.04"])

@@ -1,0 +1,168 @@
+"""Spalls of a state: from the configuration to the flank, growth, messages, and rows of the damage table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.errors import ConfigError
+from siggen.gears.damage.flank_damage import damage_problems, profile_arc_m
+from siggen.gears.stiffness.sections import contact_length_loss
+from siggen.planning.specimen import draw_specimen
+from siggen.record.damage_rows import damage_rows
+from siggen.specimen.gears import gear_pair
+from tests.specimen.test_damage import config_with, damage_of
+
+BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}
+V: dict[str, Any] = {
+    "kind": "spall",
+    "shape": "v",
+    "lower_width_mm": 2.0,
+    "upper_width_mm": 8.0,
+    "profile_length_mm": 1.5,
+    "depth_mm": 0.1,
+}
+CORNERS = [{"height_mm": h, "face_mm": w} for h, w in ((1.0, 2.0), (2.0, 8.0), (1.5, 12.0))]
+POLYGON: dict[str, Any] = {"kind": "spall", "shape": "polygon", "vertices": CORNERS, "depth_mm": 0.1}
+DRAWN = {"kind": "uniform", "low": 0.5, "high": 1.5}
+
+
+@pytest.mark.parametrize("shape", ["rectangle", "ellipse"])
+def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point(shape: str) -> None:
+    config = config_with({**BOX, "shape": shape})
+    (spall,) = damage_of(config, 1)
+    pair = gear_pair(draw_specimen(config, 0).gears)
+    # An ellipse stays centred: the arc is 1 mm up to its curvature over half a millimetre.
+    assert profile_arc_m(pair.pinion, spall.outline) == pytest.approx(1e-3, rel=1e-9 if shape == "rectangle" else 1e-2)
+    assert spall.outline.face_range_m == pytest.approx((7e-3, 13e-3), rel=1e-12)
+    assert config.states[1].fault == "spalling"
+    assert not damage_problems(pair, (spall,))
+
+
+def test_axial_lengths_are_heights() -> None:
+    (spall,) = damage_of(config_with({**BOX, "height_reading": "axial", "centre_height_mm": 2.0}), 1)
+    assert spall.outline.height_range_m == pytest.approx((1.5e-3, 2.5e-3), rel=1e-12)
+
+
+def test_length_squared_depths_follow_the_length() -> None:
+    base = {key: value for key, value in BOX.items() if key != "depth_mm"}
+    (spall,) = damage_of(config_with({**base, "profile_length_mm": 2.0, "depth_law": "length_squared"}), 1)
+    assert spall.depth_m == pytest.approx(16.3e-6 * 4.0, rel=1e-9)
+    assert spall.floor == "length_squared"
+
+
+def test_a_longer_spall_over_the_same_centre_takes_the_place_of_the_shorter_one() -> None:
+    config = config_with(BOX, {**BOX, "profile_length_mm": 1.6, "depth_mm": 0.2})
+    slight, moderate = damage_of(config, 1), damage_of(config, 2)
+    assert len(slight) == len(moderate) == 1
+    (low, high), (lowest, highest) = slight[0].outline.height_range_m, moderate[0].outline.height_range_m
+    assert lowest < low < high < highest
+
+
+@pytest.mark.parametrize(
+    "ladder",
+    [
+        [{**BOX, "face_centre_mm": {"kind": "uniform", "low": 5.0, "high": 15.0}, "profile_length_mm": DRAWN}] * 2,
+        [BOX, {**V, "depth_mm": 0.05}, {**BOX, "teeth": 2, "profile_length_mm": 2.0, "shape": "ellipse"}],
+        [
+            {
+                "kind": "clustered",
+                "count": 8,
+                "spread_profile_mm": 0.3,
+                "semi_axis_face_mm": 0.4,
+                "semi_axis_profile_mm": 0.3,
+                "depth_mm": 0.2,
+            },
+            {**BOX, "profile_length_mm": 2.0, "depth_mm": 0.3},
+        ],
+    ],
+    ids=["drawn", "shapes", "pits"],
+)
+def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[dict[str, Any]]) -> None:
+    config = config_with(*ladder)
+    heights = np.linspace(0.05e-3, 4.7e-3, 200)
+    for state in range(1, len(ladder)):
+        milder, harder = damage_of(config, state), damage_of(config, state + 1)
+        for tooth in {p.tooth for p in milder}:
+            one, both = (
+                contact_length_loss([p for p in damage if p.tooth == tooth], 20e-3, heights)
+                for damage in (harder, (*harder, *milder))
+            )
+            assert one == pytest.approx(both, abs=1e-17)
+
+
+@pytest.mark.parametrize(
+    ("base", "bad", "key", "received", "allowed"),
+    [
+        (BOX, {"face_length_mm": 0.0}, "face_length_mm", "0.0", "above 0"),
+        (BOX, {"profile_length_mm": -1.0}, "profile_length_mm", "-1.0", "above 0"),
+        (BOX, {"depth_mm": float("nan")}, "depth_mm", "nan", "above 0"),
+        (BOX, {"centre_height_mm": 9.0, "height_reading": "axial"}, "centre_height_mm", "9 mm", "4.74319 mm"),
+        (BOX, {"face_centre_mm": 20.5}, "face_centre_mm", "20.5 mm", "0 to 20 mm"),
+        (BOX, {"depth_mm": 4.0}, "depth_mm", "4 mm", "half tooth thickness"),
+        (BOX, {"depth_mm": None}, "depth_mm", "nothing", "needs depth_mm"),
+        (BOX, {"depth_law": "length_squared"}, "depth_mm", "a value", "depth_coefficient_um_per_mm2"),
+        (BOX, {"depth_coefficient_um_per_mm2": 20.0}, "depth_coefficient_um_per_mm2", "a value", "takes depth_mm"),
+        (BOX, {"upper_width_mm": 3.0}, "upper_width_mm", "a value", "shape rectangle takes face_length_mm"),
+        (BOX, {"shape": "star"}, "shape", "'star'", "rectangle, ellipse, v, polygon"),
+        (BOX, {"teeth": [18]}, "teeth", "tooth 18", "0 to 17"),
+        (V, {"lower_width_mm": 0.0, "upper_width_mm": 0.0}, "upper_width_mm", "0.0", "at least one width above 0"),
+        (V, {"upper_width_mm": None}, "upper_width_mm", "nothing", "needs lower_width_mm, upper_width_mm"),
+        (POLYGON, {"vertices": CORNERS[:2]}, "vertices", "2 vertices", "at least 3"),
+        (POLYGON, {"centre_height_mm": 2.0}, "centre_height_mm", "a value", "where its vertices are"),
+        (
+            POLYGON,
+            {"vertices": [*CORNERS, {"height_mm": 1.2, "face_mm": 12.0}, {"height_mm": 1.9, "face_mm": 5.0}]},
+            "vertices",
+            "edges",
+            "simple polygon",
+        ),
+    ],
+    ids=str,
+)
+def test_mistakes_are_named_with_their_key(
+    base: dict[str, Any], bad: dict[str, Any], key: str, received: str, allowed: str
+) -> None:
+    listed = {k: v for k, v in {**base, **bad}.items() if k not in ("kind", "teeth", "height_reading")}
+    places = {"states.1.damage": {**base, **bad}}
+    if "teeth" not in bad and "height_reading" not in bad:
+        places["states.1.damage.spalls.0"] = {"kind": "list", "spalls": [listed], "height_reading": "arc"}
+    for path, damage in places.items():
+        with pytest.raises(ConfigError) as refused:
+            config_with(damage)
+        lines = [line for line in str(refused.value).splitlines() if f"{path}.{key}:" in line]
+        assert len(lines) == 1, str(refused.value)
+        assert received in lines[0]
+        assert allowed in lines[0]
+
+
+def test_a_spall_over_the_whole_face_is_refused() -> None:
+    with pytest.raises(ConfigError, match="spalls of pinion tooth 0 that take the whole contact length"):
+        config_with({**BOX, "face_length_mm": 20.0}, law="linear")
+
+
+def test_an_empty_list_is_refused() -> None:
+    with pytest.raises(ConfigError, match=r"damage\.pits: received no pits and no spalls"):
+        config_with({"kind": "list"})
+
+
+def test_rows_of_the_damage_table_tell_kind_shape_and_corners() -> None:
+    pit = {"face_mm": 4.0, "semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
+    spalls = [{k: v for k, v in shape.items() if k != "kind"} for shape in (BOX, V, POLYGON)]
+    config = config_with({"kind": "list", "pits": [pit], "spalls": [*spalls, {**spalls[0], "shape": "ellipse"}]})
+    rows = damage_rows(config, 1)
+    assert [(row["kind"], row["shape"]) for row in rows] == [
+        ("pit", "ellipse"),
+        ("spall", "rectangle"),
+        ("spall", "v"),
+        ("spall", "polygon"),
+        ("spall", "ellipse"),
+    ]
+    assert rows[3]["polygon_face_mm"] == pytest.approx([2.0, 8.0, 12.0])
+    assert rows[3]["polygon_height_mm"] == pytest.approx([1.0, 2.0, 1.5])
+    assert rows[1]["semi_axis_face_mm"] == pytest.approx(3.0)
+    assert [len(row["polygon_face_mm"]) for row in rows] == [0, 4, 4, 3, 0]  # type: ignore[arg-type]
+    assert config.states[1].fault == "pitting"
+    assert config_with({"kind": "list", "spalls": spalls}).states[1].fault == "spalling"
