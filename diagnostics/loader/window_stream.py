@@ -35,7 +35,7 @@ class Position:
     delivered: int = 0
 
 
-class WindowStream(IterableDataset[Batch]):
+class WindowStream(IterableDataset[Batch]):  # type: ignore[misc]  # the type checker does not read torch
     """Batches of windows of one split; iterate it through a `WindowLoader`.
 
     A batch has `windows` (batch, channels, samples) float32 in the unit of the channels, `record_id`, `specimen_id`,

@@ -245,7 +245,7 @@ def _referenced_vote(
 
     def minus_reference(names: tuple[str, ...]) -> np.ndarray:
         reference = log_mean(np.concatenate([found.columns(names) for _, _, found in healthy]))
-        return log_values(pieces.columns(names)) - reference
+        return np.asarray(log_values(pieces.columns(names)) - reference)
 
     vote = _pipeline_vote(
         REFERENCED, model.referenced_classifier, minus_reference(model.referenced_classifier.features)

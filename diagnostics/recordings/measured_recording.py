@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.recordings.acceleration_unit import factor_to_m_s2
-from diagnostics.recordings.columns import Columns, read_columns
+from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.pulse_edges import pulse_edges
+from diagnostics.recordings.recorded_columns import Columns
 from diagnostics.recordings.signal_problem import signal_problem
 from siggen.errors import UsageError
 

@@ -53,7 +53,7 @@ def _is_list(kind: Any) -> bool:
     import pyarrow as pa
 
     listed = pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind)
-    return listed and (pa.types.is_floating(kind.value_type) or pa.types.is_integer(kind.value_type))
+    return bool(listed and (pa.types.is_floating(kind.value_type) or pa.types.is_integer(kind.value_type)))
 
 
 def _numbers(array: Any) -> np.ndarray:

@@ -21,4 +21,5 @@ def analytic_signal(signal: np.ndarray) -> np.ndarray:
 
 def envelope(signal: np.ndarray) -> np.ndarray:
     """Return |signal + j H(signal)|, (n,) float64; of A cos it is A."""
-    return np.abs(analytic_signal(signal))
+    amplitude: np.ndarray = np.abs(analytic_signal(signal))
+    return amplitude

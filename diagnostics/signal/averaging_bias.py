@@ -23,7 +23,8 @@ def comb_gain(order: np.ndarray, revolutions: int) -> np.ndarray:
         M.
     """
     off = np.asarray(order, dtype=np.float64) - np.rint(order)
-    return np.abs(np.sinc(revolutions * off) / np.sinc(off))
+    gain: np.ndarray = np.abs(np.sinc(revolutions * off) / np.sinc(off))
+    return gain
 
 
 def noise_share(angle_signal: np.ndarray, samples_per_revolution: int) -> float:

@@ -27,7 +27,8 @@ def log_amplitude(signal: np.ndarray) -> np.ndarray:
     from scipy import fft
 
     amplitude = np.abs(fft.rfft(signal * hann_weights(signal.size)))
-    return np.log(np.maximum(amplitude, FLOOR * amplitude.max() + 1e-300))
+    found: np.ndarray = np.log(np.maximum(amplitude, FLOOR * amplitude.max() + 1e-300))
+    return found
 
 
 def real_cepstrum(log_spectrum: np.ndarray) -> np.ndarray:
@@ -76,7 +77,8 @@ def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
     fine = np.exp(2j * np.pi * (step * quefrency % length) / length)
     coarse = np.exp(2j * np.pi * (step * block * quefrency % length) / length)
     rows = weighted.reshape(block, block)
-    return ((rows @ fine.real) * coarse.real - (rows @ fine.imag) * coarse.imag).sum(axis=0) / length
+    found: np.ndarray = ((rows @ fine.real) * coarse.real - (rows @ fine.imag) * coarse.imag).sum(axis=0) / length
+    return found
 
 
 def short_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
@@ -88,7 +90,8 @@ def short_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
 
 def long_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
     """Return the cepstrum with quefrencies below `samples` zeroed: its spectrum is flat but for lines (the source)."""
-    return cepstrum - short_pass(cepstrum, samples)
+    rest: np.ndarray = cepstrum - short_pass(cepstrum, samples)
+    return rest
 
 
 def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -> np.ndarray:

@@ -72,9 +72,10 @@ def line_excess(
         Of the mesh frequency; halves and thirds too.
     """
     frequency = np.outer(multiples, mesh_hz)
-    return np.mean(
+    mean: np.ndarray = np.mean(
         [frame_excess(frame, fs_hz, frequency)[:, k] for frame, k in zip(frames, chosen, strict=True)], axis=0
     )
+    return mean
 
 
 def other_speed(

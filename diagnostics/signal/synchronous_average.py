@@ -77,7 +77,8 @@ def hann_weights(samples: int) -> np.ndarray:
     fine_angle = 2.0 * np.pi * np.arange(fine) / samples
     cosine = np.cos(coarse_angle) * np.cos(fine_angle)
     cosine -= np.sin(coarse_angle) * np.sin(fine_angle)
-    weights = cosine.ravel()[:samples]
+    weights: np.ndarray = cosine.ravel()[:samples]
     weights *= -0.5
     weights += 0.5
-    return np.maximum(weights, 0.0, out=weights)
+    np.maximum(weights, 0.0, out=weights)
+    return weights

@@ -41,7 +41,8 @@ def weighted_quantile(values: np.ndarray, weights: np.ndarray, level: float) -> 
     below = np.cumsum(weights[:, order], axis=1)
     # a rounding error of the sum must not push the threshold to the next record
     reached = below >= level * below[:, -1:] * (1.0 - 1e-12)
-    return values[order][reached.argmax(axis=1)]
+    found: np.ndarray = values[order][reached.argmax(axis=1)]
+    return found
 
 
 def detection_curve(

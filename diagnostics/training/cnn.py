@@ -97,7 +97,7 @@ class TrainedNetwork:
     temperature: float = 1.0
 
 
-class WideKernelNetwork(nn.Module):
+class WideKernelNetwork(nn.Module):  # type: ignore[misc]  # the type checker does not read torch
     """Windows (batch, channels, samples) in m/s^2, `samples_per_tooth` to a mesh period, to logits (batch, classes)."""
 
     def __init__(self, channels: int, classes: int, samples_per_tooth: int) -> None:

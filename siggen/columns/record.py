@@ -277,7 +277,7 @@ def signal_matrix(column: pa.FixedSizeListArray | pa.ChunkedArray) -> np.ndarray
     """Return a signal column as a float32 matrix (rows, samples); without a copy for a single chunk."""
     array = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
     # flatten() respects slices; .values would return the whole parent buffer
-    return array.flatten().to_numpy(zero_copy_only=True).reshape(len(array), array.type.list_size)
+    return np.asarray(array.flatten().to_numpy(zero_copy_only=True).reshape(len(array), array.type.list_size))
 
 
 def _signal_array(signals: Sequence[np.ndarray], signal_type: pa.DataType) -> pa.FixedSizeListArray:

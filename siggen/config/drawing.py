@@ -6,7 +6,8 @@ import itertools
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
-from siggen.config.number import Choice, LogUniform, Normal, Uniform, Within, at, bounds
+from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.config.number import Within, at, bounds
 from siggen.config.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
@@ -103,6 +103,8 @@ def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
 
 def _fault(damage: object) -> str:
     """Return the fault that a damage, raw or parsed, is by default; a list is spalling if it has spalls and no pits."""
-    read = damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
+    read: Callable[[str], object] = (
+        damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
+    )
     spalls_alone = read("kind") == "list" and bool(read("spalls")) and not read("pits")
     return "spalling" if read("kind") == "spall" or spalls_alone else "pitting"

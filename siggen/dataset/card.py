@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 import yaml
 
+from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import SCHEMA_VERSION, Column, channels, damage_schema, record_schema
+from siggen.columns.record import SCHEMA_VERSION, channels, damage_schema, record_schema
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted

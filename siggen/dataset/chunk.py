@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
+from siggen.columns.column import Column
 from siggen.columns.internals import internals_batch
-from siggen.columns.record import Column, Record, RecordFailure, non_finite, record_batch
+from siggen.columns.record import Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
 
 if TYPE_CHECKING:
@@ -118,4 +119,4 @@ def _stream(batch: pa.RecordBatch) -> bytes:
     sink = pa.BufferOutputStream()
     with pa.ipc.new_stream(sink, batch.schema) as writer:
         writer.write_batch(batch)
-    return sink.getvalue().to_pybytes()
+    return bytes(sink.getvalue().to_pybytes())

@@ -14,7 +14,8 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import yaml
 
-from siggen.columns.record import TACHO_COLUMN, Channel, Column, signal_channels, signal_matrix
+from siggen.columns.column import Column
+from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
 from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import LocalFolder, Storage

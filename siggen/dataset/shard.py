@@ -115,7 +115,8 @@ def _options(schema: pa.Schema) -> dict[str, object]:
 
 def leaf(field: pa.Field) -> str:
     """Return the path of the values of a column in Parquet."""
-    return field.name + LIST_LEAF if isinstance(field.type, pa.ListType | pa.FixedSizeListType) else field.name
+    name: str = field.name
+    return name + LIST_LEAF if isinstance(field.type, pa.ListType | pa.FixedSizeListType) else name
 
 
 def _is_series(field: pa.Field) -> bool:

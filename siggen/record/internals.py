@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.checks.quantity_names import available_quantities, quantity_problems
-from siggen.columns.record import Column
+from siggen.columns.column import Column
 from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record

@@ -6,7 +6,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, bearing_force_name
-from siggen.columns.record import Column
+from siggen.columns.column import Column
 from siggen.config import constant
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
@@ -66,4 +66,4 @@ def _transmission_error(approach_m: FloatArray, specimen: Specimen) -> FloatArra
     if specimen.dynamics.mesh.law == "pairs":
         return approach_m
     half_backlash_m = 0.5e-6 * constant(specimen.dynamics.backlash_um)
-    return approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m)
+    return np.asarray(approach_m - np.sign(approach_m) * np.minimum(np.abs(approach_m), half_backlash_m))

@@ -36,7 +36,7 @@ def noise_spectrum(
         raise ValueError(f"pink_corner_hz: received {pink_corner_hz}; allowed are values above 0")
     bins = length // 2 + 1
     parts = rng.standard_normal((bins, 2))
-    spectrum = parts.view(np.complex128)[:, 0] * (density * 0.5 * np.sqrt(length * fs_hz))
+    spectrum: ComplexArray = parts.view(np.complex128)[:, 0] * (density * 0.5 * np.sqrt(length * fs_hz))
     if length % 2 == 0:
         spectrum[-1] = spectrum[-1].real * np.sqrt(2.0)
     spectrum[0] = 0.0

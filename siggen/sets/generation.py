@@ -11,8 +11,9 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
-from siggen.columns.record import Column, RecordFailure, channels, record_schema
+from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes

@@ -151,7 +151,7 @@ def _accelerance(
         case ModalPath() as path if housing is not None:
             shape = housing.at_sensor(sensor, direction)
             found = modal_accelerance(housing.modes, housing.at_bearings(INPUTS), shape, grid)
-            return found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us"))
+            return np.asarray(found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us")))
         case MeasuredPath(response=str() as text):
             return decoded_response(text).accelerance(direction, INPUTS, grid)
     raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")

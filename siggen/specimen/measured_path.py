@@ -196,7 +196,7 @@ def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[n
         case ["imag", "real"]:
             return parts["real"] + 1j * parts["imag"]
         case ["magnitude", "phase"]:
-            return parts["magnitude"] * np.exp(1j * parts["phase"])
+            return np.asarray(parts["magnitude"] * np.exp(1j * parts["phase"]))
     received = f"{' and '.join(sorted(parts))} of {key[0]}_from_{key[1].replace('/', '_')}"
     raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")
 

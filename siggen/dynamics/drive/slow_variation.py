@@ -56,7 +56,7 @@ class SlowVariation:
 
     def integral(self, time_s: FloatArray) -> FloatArray:
         """Return the integral [s] of n from time 0."""
-        return self._evaluated(INTEGRAL, time_s) - self._evaluated(INTEGRAL, np.zeros(1))[0]
+        return np.asarray(self._evaluated(INTEGRAL, time_s) - self._evaluated(INTEGRAL, np.zeros(1))[0])
 
     def _evaluated(self, what: int, time_s: FloatArray) -> FloatArray:
         """Return value, slope or integral.

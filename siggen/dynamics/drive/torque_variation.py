@@ -101,4 +101,4 @@ def without_drift(structure: Structure, coordinate: str) -> FloatArray:
     rotation = rigid_rotation(structure)
     share = rotation[structure.coordinates.index(coordinate)]
     moved = structure.mass @ rotation
-    return vector(structure.coordinates, {coordinate: 1.0}) - moved * (share / float(rotation @ moved))
+    return np.asarray(vector(structure.coordinates, {coordinate: 1.0}) - moved * (share / float(rotation @ moved)))

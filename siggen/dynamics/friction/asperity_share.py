@@ -43,7 +43,7 @@ def masjedi_khonsari_ratio(groups: FilmGroups) -> Values:
     material, hardness = np.log(groups.material), np.log(groups.hardness)
     rough = np.log(np.maximum(groups.roughness, 1e-30))
     inner = np.log(4470.0) + 6.015 * rough + 1.168 * hardness + 0.485 * load - 3.741 * speed - 2.898 * material
-    percent = 0.005 * np.exp(-0.408 * load - 0.088 * speed + 0.103 * material) * np.logaddexp(0.0, inner)
+    percent: Values = 0.005 * np.exp(-0.408 * load - 0.088 * speed + 0.103 * material) * np.logaddexp(0.0, inner)
     return 0.01 * percent
 
 
@@ -54,7 +54,7 @@ def greenwood_tripp_ratio(groups: FilmGroups) -> Values:
     """
     load = np.maximum(groups.load, LOAD_FLOOR)
     separation = _smooth_film_ratio(groups)
-    level = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * ASPERITY_DENSITY_PRODUCT**2 * np.sqrt(ASPERITY_SLOPE)
+    level: float = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * ASPERITY_DENSITY_PRODUCT**2 * np.sqrt(ASPERITY_SLOPE)
     return level * gaussian_integral(2.5, separation) * np.sqrt(8.0 / (np.pi * load))
 
 

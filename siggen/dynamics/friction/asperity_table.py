@@ -77,7 +77,7 @@ def asperity_table(
     _check(mesh, roughness_m, range_m, model, points)
     position = np.linspace(*range_m, points[0])
     floor = LOAD_FLOOR * mesh.contact_length_m * mesh.effective_modulus_pa
-    lowest = floor * relative_radius(position, mesh.line_m)
+    lowest = np.asarray(floor * relative_radius(position, mesh.line_m))
     span = float(np.log(largest_force_n / lowest.min())) if largest_force_n > 0.0 else np.nan
     if not (np.isfinite(span) and span > 0.0):
         allowed = f"allowed are finite forces above {lowest.min():.3g} N"
@@ -159,7 +159,8 @@ def cell_value(values: FloatArray, first: int, loads: int, a: float, b: float) -
     """Return the value in a cell of a table in row order whose lower corner is `first`, bilinear in the weights."""
     low = values[first] * (1.0 - a) + values[first + loads] * a
     high = values[first + 1] * (1.0 - a) + values[first + loads + 1] * a
-    return low * (1.0 - b) + high * b
+    value: float = low * (1.0 - b) + high * b
+    return value
 
 
 @njit(cache=True)

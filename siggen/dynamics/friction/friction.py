@@ -68,7 +68,8 @@ def constant_friction(coefficient: float, slip_speed_m_s: float = SLIP_SPEED_M_S
 def friction_mixed(share: float, boundary: float, fluid: float) -> float:
     """Return μ = La μ_b + (1 - La) min(μ_EHL, μ_b); numbers or arrays that broadcast."""
     bounded = np.minimum(fluid, boundary)
-    return bounded + share * (boundary - bounded)
+    coefficient: float = bounded + share * (boundary - bounded)
+    return coefficient
 
 
 @njit(cache=True)
@@ -84,4 +85,5 @@ def friction_force(law: FrictionLaw, layer: int, position_m: float, force_n: flo
     if force_n <= 0.0:
         return 0.0
     coefficient = friction_coefficient(law, layer, position_m, force_n)
-    return coefficient * force_n * np.tanh(sliding_m_s / law.slip_speed_m_s)
+    force: float = coefficient * force_n * np.tanh(sliding_m_s / law.slip_speed_m_s)
+    return force

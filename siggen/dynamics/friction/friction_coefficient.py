@@ -76,7 +76,8 @@ def xu_kahraman_friction(
     pressure, viscosity = pressure_pa * 1e-9, viscosity_pa_s * 1e3
     heat = slide * pressure * np.log10(viscosity)
     exponent = B1 + B4 * heat + B5 * np.exp(-heat) + B9 * np.exp(roughness_m * 1e6)
-    return np.exp(exponent) * pressure**B2 * slide**B3 * entrainment_m_s**B6 * viscosity**B7 * radius_m**B8
+    value: Values = np.exp(exponent) * pressure**B2 * slide**B3 * entrainment_m_s**B6 * viscosity**B7 * radius_m**B8
+    return value
 
 
 def benedict_kelley_friction(

@@ -68,5 +68,5 @@ def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, layer
     for start in pair.contact_start_m + pair.base_pitch_m * (np.arange(points) + 0.5) / points:
         places = start + pair.base_pitch_m * np.arange(int(pair.contact_ratio) + 1)
         places = places[places <= pair.contact_end_m]
-        total += np.mean([friction_coefficient(law, layer, place, force / places.size) for place in places])
+        total += float(np.mean([friction_coefficient(law, layer, place, force / places.size) for place in places]))
     return float(total / points)

@@ -17,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from siggen.dynamics.friction.contact_kinematics import Values
+
 PIEZO_FACTOR = 9.904
 PIEZO_EXPONENT = 0.1390
 ROELANDS_LOG = 9.67
@@ -68,7 +70,8 @@ class Oil:
 
     def pressure_viscosity_per_pa(self, temperature_c: float) -> float:
         """Return α_pv [1/Pa]; raises as `kinematic_viscosity_m2_s`."""
-        return PIEZO_FACTOR * (self.kinematic_viscosity_m2_s(temperature_c) * 1e6) ** PIEZO_EXPONENT * 1e-9
+        found: float = PIEZO_FACTOR * (self.kinematic_viscosity_m2_s(temperature_c) * 1e6) ** PIEZO_EXPONENT * 1e-9
+        return found
 
 
 MINERAL_OILS = {
@@ -89,7 +92,7 @@ MINERAL_OILS = {
 
 
 @njit(cache=True)
-def viscosity_under_pressure(viscosity_pa_s: float, pressure_viscosity_per_pa: float, pressure_pa: float) -> float:
+def viscosity_under_pressure(viscosity_pa_s: float, pressure_viscosity_per_pa: float, pressure_pa: Values) -> Values:
     """Return Roelands' viscosity [Pa s] at a pressure [Pa]; its slope at ambient pressure is α_pv η_0.
 
     η = η_0 exp{(ln η_0 + 9.67) [(1 + p/p_0)^Z - 1]}, Z = α_pv p_0/(ln η_0 + 9.67), p_0 = 196 MPa (reference: standard
@@ -97,4 +100,5 @@ def viscosity_under_pressure(viscosity_pa_s: float, pressure_viscosity_per_pa: f
     """
     scale = np.log(viscosity_pa_s) + ROELANDS_LOG
     power = pressure_viscosity_per_pa * ROELANDS_PRESSURE_PA / scale
-    return viscosity_pa_s * np.exp(scale * ((1.0 + pressure_pa / ROELANDS_PRESSURE_PA) ** power - 1.0))
+    viscosity: Values = viscosity_pa_s * np.exp(scale * ((1.0 + pressure_pa / ROELANDS_PRESSURE_PA) ** power - 1.0))
+    return viscosity

@@ -38,14 +38,16 @@ def mesh_damping_ratio(law: DampingLaw, share: float) -> float:
 @njit(cache=True)
 def pair_damping(ratio: float, pair_n_per_m: float, mesh_n_per_m: float, mesh_mass_kg: float) -> float:
     """Return c_n = 2 ζ √(k_m m_e) k_n/k_m [N s/m] of one of the pairs in contact, whose stiffnesses sum to k_m."""
-    return 2.0 * ratio * np.sqrt(mesh_mass_kg / mesh_n_per_m) * pair_n_per_m
+    damping: float = 2.0 * ratio * np.sqrt(mesh_mass_kg / mesh_n_per_m) * pair_n_per_m
+    return damping
 
 
 @njit(cache=True)
 def squeeze_damping(film_m: float, radius_m: float, length_m: float, viscosity_pa_s: float) -> float:
     """Return the damping [N s/m] of an oil film of thickness h between flanks of relative radius R_e."""
     ratio = radius_m / film_m
-    return 3.0 * np.sqrt(2.0) * np.pi * viscosity_pa_s * length_m * ratio * np.sqrt(ratio)
+    damping: float = 3.0 * np.sqrt(2.0) * np.pi * viscosity_pa_s * length_m * ratio * np.sqrt(ratio)
+    return damping
 
 
 @njit(cache=True)

@@ -82,7 +82,8 @@ def read_only(values: NDArray[Any], dtype: type) -> NDArray[Any]:
 def table_row(law: MeshLaw, pair: int) -> int:
     """Return the row of the table of engagement `pair` (any integer; negative before angle 0)."""
     teeth_1, teeth_2 = law.table_of_pair.shape
-    return law.table_of_pair[pair % teeth_1, pair % teeth_2]
+    row: int = law.table_of_pair[pair % teeth_1, pair % teeth_2]
+    return row
 
 
 @njit(cache=True)
@@ -91,7 +92,8 @@ def row_stiffness(law: MeshLaw, row: int, pitches: float) -> float:
     place = pitches * law.intervals_per_pitch
     index = min(max(int(place), 0), law.stiffness.shape[1] - 2)
     share = place - index
-    return law.stiffness[row, index] * (1.0 - share) + law.stiffness[row, index + 1] * share
+    stiffness: float = law.stiffness[row, index] * (1.0 - share) + law.stiffness[row, index + 1] * share
+    return stiffness
 
 
 @njit(cache=True)

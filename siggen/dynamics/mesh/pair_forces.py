@@ -44,7 +44,8 @@ def _film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: 
     if rate_m_s <= 0.0 or place < 0.0 or place > scalars[at.CONTACT_RATIO]:
         return 0.0
     curvature_m = position_m * (scalars[at.LINE_M] - position_m) / scalars[at.LINE_M]
-    return scalars[at.FILM] * (0.5 * curvature_m / max(gap_m, scalars[at.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+    force_n: float = scalars[at.FILM] * (0.5 * curvature_m / max(gap_m, scalars[at.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+    return force_n
 
 
 @njit(cache=True, inline="always")

@@ -37,7 +37,8 @@ def pair_table(law: PairLaw) -> FloatArray:
 @njit(cache=True)
 def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
     """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
-    return numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight
+    value: float = numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight
+    return value
 
 
 @njit(cache=True)

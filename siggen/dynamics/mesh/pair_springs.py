@@ -65,7 +65,8 @@ def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) 
     if between(numbers, index[at.FLUSH_AT], corner, weight) > 0.0:
         return 0.0
     low = index[at.SINK_AT] + corner * groups
-    return numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
+    sink: float = numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
+    return sink
 
 
 @njit(cache=True, inline="always")
@@ -87,7 +88,8 @@ def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int
     if away == 0 or abs(away) > apart:
         return 0.0
     # The pair that entered later has the smaller s.
-    return pairs[j, COUPLED + away - 1] if away > 0 else pairs[i, COUPLED - away - 1]
+    coupling: float = pairs[j, COUPLED + away - 1] if away > 0 else pairs[i, COUPLED - away - 1]
+    return coupling
 
 
 @njit(cache=True)

@@ -27,9 +27,10 @@ from siggen.gears.contact.slice_contact import SliceSprings, grouped_sinks, sink
 from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords, has_extent
 from siggen.gears.damage.flank_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.compliance import StiffnessOptions, tooth_compliance
+from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, rolls_at
 from siggen.gears.stiffness.mesh_tables import MeshTables, pair_kinds, table_of_pair
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 
 class SliceOptions(NamedTuple):
@@ -218,7 +219,7 @@ def slice_pair_force(law: SliceLaw, row: int, position_m: float, penetration_m: 
     if penetration_m <= 0.0:
         return 0.0
     index, share = slice_place(law, position_m)
-    pair = law.stiffness_n_per_m[row, index] * (1.0 - share) + law.stiffness_n_per_m[row, index + 1] * share
+    pair: float = law.stiffness_n_per_m[row, index] * (1.0 - share) + law.stiffness_n_per_m[row, index + 1] * share
     groups = law.sink_m.shape[2]
     if law.sink_m[row, index, groups - 1] == 0.0 and law.sink_m[row, index + 1, groups - 1] == 0.0:
         return pair * penetration_m
@@ -276,14 +277,16 @@ def grouped_force(
 def slice_contact_length(law: SliceLaw, row: int, position_m: float) -> float:
     """Return the contact length on lands [m] at position s, for the line load of the lubricated contact."""
     index, share = slice_place(law, position_m)
-    return law.face_width_m * (law.land[row, index] * (1.0 - share) + law.land[row, index + 1] * share)
+    length: float = law.face_width_m * (law.land[row, index] * (1.0 - share) + law.land[row, index + 1] * share)
+    return length
 
 
 @njit(cache=True)
 def slice_on_damage(law: SliceLaw, row: int, position_m: float) -> float:
     """Return the share of the face, 0 to 1, on which the contact line crosses pits: there the lands are rough too."""
     index, share = slice_place(law, position_m)
-    return law.on_damage[row, index] * (1.0 - share) + law.on_damage[row, index + 1] * share
+    crossed: float = law.on_damage[row, index] * (1.0 - share) + law.on_damage[row, index + 1] * share
+    return crossed
 
 
 def _chords(
@@ -296,11 +299,11 @@ def _chords(
     modulus = pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
     radius = relative_radius(position, pair.line_of_action_m)
     half_width = hertz_half_width(options.line_load_n_per_m, radius, modulus)
-    return contact_chords(pair, pinion, gear, position, half_width)
+    return contact_chords(pair, pinion, gear, position, np.asarray(half_width))
 
 
 def _sinks(pair: GearPair, chords: ContactChords, options: SliceOptions, position: FloatArray) -> FloatArray:
-    radius = relative_radius(position, pair.line_of_action_m)[:, None]
+    radius = np.asarray(relative_radius(position, pair.line_of_action_m))[:, None]
     return sink_depths(chords.edge_m, chords.depth_m, radius, options.edge_radius_m)
 
 

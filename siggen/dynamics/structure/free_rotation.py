@@ -26,7 +26,7 @@ def free_rotations(structure: Structure, stiffness: FloatArray) -> FloatArray:
     energy = lines.T @ stiffness @ lines
     scale = np.abs(lines).T @ np.abs(stiffness) @ np.abs(lines)
     values, vectors = np.linalg.eigh(energy / max(scale.max(), np.finfo(float).tiny))
-    return lines @ vectors[:, values < FREE_SHARE]
+    return np.asarray(lines @ vectors[:, values < FREE_SHARE])
 
 
 def static_solution(structure: Structure, stiffness: FloatArray, force: FloatArray) -> FloatArray:

@@ -58,7 +58,7 @@ def _low_pass(place: FloatArray, reach: float, steps_per_sample: int, *, droop: 
     ideal = (np.cos(place[:, None] * omega) * (weights * gain)).sum(axis=1) * 0.5 * cut / np.pi
     beta = 0.1102 * (ATTENUATION_DB - 8.7)
     taps = ideal * np.i0(beta * np.sqrt(1.0 - (place / reach) ** 2)) / np.i0(beta)
-    return taps / taps.sum()
+    return np.asarray(taps / taps.sum())
 
 
 def _frozen(taps: FloatArray) -> FloatArray:

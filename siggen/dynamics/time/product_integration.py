@@ -120,7 +120,7 @@ def _scaled_matrix(equations: Equations, law: MeshLaw, step_s: float) -> FloatAr
     n = equations.mesh_vector.size
     scale = np.concatenate([np.ones(n), np.full(n, step_s)])
     matrix = state_matrix(equations, equations.reference_stiffness, law.damping_n_s_per_m)
-    return step_s * matrix * scale[:, None] / scale[None, :]
+    return np.asarray(step_s * matrix * scale[:, None] / scale[None, :])
 
 
 def _input_responses(equations: Equations, law: MeshLaw, step_s: float) -> tuple[FloatArray, FloatArray]:
@@ -147,7 +147,7 @@ SHIFTED_LEGENDRE = np.array(
 
 
 def _legendre(t: float) -> FloatArray:
-    return SHIFTED_LEGENDRE @ np.array([1.0, t, t * t, t * t * t])
+    return np.asarray(SHIFTED_LEGENDRE @ np.array([1.0, t, t * t, t * t * t]))
 
 
 def _hermite(t: float) -> FloatArray:

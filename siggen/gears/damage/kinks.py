@@ -24,7 +24,7 @@ MERGED_M = 1e-16
 
 @njit(cache=True)
 def _value(poly: FloatArray, degree: int, t: float) -> float:
-    total = poly[degree]
+    total: float = poly[degree]
     for power in range(degree - 1, -1, -1):
         total = total * t + poly[power]
     return total

@@ -116,4 +116,4 @@ def _cut_normal(uniform: FloatArray, mean: float, spread: float, low: float, hig
         return np.full(uniform.size, min(max(mean, low), high))
     first, last = ndtr((low - mean) / spread), ndtr((high - mean) / spread)
     # Far out in a tail both probabilities round to the same number and the inverse leaves the limits.
-    return np.clip(mean + spread * ndtri(first + (last - first) * uniform), low, high)
+    return np.asarray(np.clip(mean + spread * ndtri(first + (last - first) * uniform), low, high))

@@ -95,28 +95,30 @@ def covered_length(left: FloatArray, right: FloatArray, count: int) -> float:
 @njit(cache=True)
 def curved(pits: FloatArray, i: int) -> bool:
     """Whether the depth of row i changes across the face."""
-    return pits[i, 5] != 0.0 and pits[i, 6] == 0.0
+    return bool(pits[i, 5] != 0.0 and pits[i, 6] == 0.0)
 
 
 @njit(cache=True)
 def level_depth(x: float, pits: FloatArray, i: int) -> float:
     """Return the depth at height x of a row whose depth does not change across the face [m]."""
+    depth: float = pits[i, 4]
     if pits[i, 5] == 0.0:
-        return pits[i, 4]
+        return depth
     u = (x - pits[i, 0]) / pits[i, 3]
-    return pits[i, 4] * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
+    return depth * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
 
 
 @njit(cache=True)
 def square_depth(x: float, w: float, pits: FloatArray, i: int) -> float:
     """Return the squared depth of row i at a point inside its outline [m2]."""
-    square = pits[i, 4] * pits[i, 4]
+    square: float = pits[i, 4] * pits[i, 4]
     if pits[i, 5] == 0.0:
         return square
     u, v = (x - pits[i, 0]) / pits[i, 3], (w - pits[i, 1]) / pits[i, 2]
     if pits[i, 6] != 0.0:
         v = 0.0
-    return square * max((1.0 - u) * (1.0 + u) - v * v, 0.0)
+    dished: float = square * max((1.0 - u) * (1.0 + u) - v * v, 0.0)
+    return dished
 
 
 @njit(cache=True)

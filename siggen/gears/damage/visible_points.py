@@ -24,13 +24,13 @@ def strictly_inside(x: float, w: float, row: FloatArray) -> bool:
     """Whether a point lies inside the outline of a row and not near it."""
     if row[6] == 0.0:
         u, v = (x - row[0]) / row[3], (w - row[1]) / row[2]
-        return u * u + v * v < 1.0 - INSIDE
+        return bool(u * u + v * v < 1.0 - INSIDE)
     span = row[8] - row[7]
     share, margin = (x - row[7]) / span, INSIDE * row[2]
     if not INSIDE < share < 1.0 - INSIDE:
         return False
     left, right = row[9] + share * (row[11] - row[9]), row[10] + share * (row[12] - row[10])
-    return left + margin < w < right - margin
+    return bool(left + margin < w < right - margin)
 
 
 @njit(cache=True)

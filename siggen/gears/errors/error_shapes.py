@@ -74,7 +74,7 @@ def _pitch(teeth: int, rng: np.random.Generator) -> FloatArray:
     for order, weight in HARMONICS:
         shape += weight * rng.uniform(0.3, 1.0) * np.cos(order * angle + 2.0 * np.pi * rng.random())
     shape += RANDOM_PLACE * rng.standard_normal(teeth)
-    return shape - shape.mean()
+    return np.asarray(shape - shape.mean())
 
 
 def _slope(teeth: int, rng: np.random.Generator) -> FloatArray:
@@ -95,7 +95,8 @@ def _form(waves: FloatArray, rng: np.random.Generator) -> FloatArray:
 
 def without_line(profiles: FloatArray) -> FloatArray:
     """Return profiles (z, FLANK_POINTS) without mean and least-squares line."""
-    return profiles - profiles.mean(axis=1, keepdims=True) - slopes(profiles)[:, None] * _centred()
+    level = profiles.mean(axis=1, keepdims=True)
+    return np.asarray(profiles - level - slopes(profiles)[:, None] * _centred())
 
 
 def slopes(profiles: FloatArray) -> FloatArray:

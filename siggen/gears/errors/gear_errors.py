@@ -148,7 +148,7 @@ def _eccentricity(
     unit = GearErrors(1.0, shapes.phase_rad, *_nothing(pair.member(which).teeth))
     found = deviations(pair, which, unit).largest
     wanted = 0.5 * runout_share * limits.runout_m
-    return min(wanted, *(getattr(limits, name) / found[name] for name in found))
+    return float(min(wanted, *(getattr(limits, name) / found[name] for name in found)))
 
 
 def _profile(turned: FloatArray, shapes: ErrorShapes, limits: FlankTolerances) -> tuple[FloatArray, FloatArray]:

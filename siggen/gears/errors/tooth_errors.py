@@ -55,4 +55,4 @@ def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatA
     place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
     points = np.linspace(0.0, 1.0, FLANK_POINTS)
     form = np.stack([np.interp(place, points, row) for row in errors.form_m])
-    return errors.slope_m[:, None] * place[None, :] + form
+    return np.asarray(errors.slope_m[:, None] * place[None, :] + form)

@@ -125,7 +125,7 @@ def _most_pairs(pair: GearPair, options: StiffnessOptions, newest_m: FloatArray,
     without_newest, without_oldest = alone.copy(), alone.copy()
     without_newest[:, 1:] = approach_forces(pair, options, newest_m + pair.base_pitch_m, alone[:, 1:])
     without_oldest[:, :-1] = approach_forces(pair, options, newest_m, alone[:, :-1])
-    shares = (1.0 - along) * without_newest + along * without_oldest
+    shares: FloatArray = (1.0 - along) * without_newest + along * without_oldest
     rest = approach_forces(pair, options, newest_m, alone).sum(axis=1) - shares.sum(axis=1)
     shares[:, 0] += (1.0 - along) * rest
     shares[:, last] += along * rest

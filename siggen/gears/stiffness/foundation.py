@@ -54,7 +54,7 @@ def foundation_compliance(
     lever = gear.base_radius_m / np.cos(slant) - gear.root_radius_m
     share = lever / (2.0 * gear.root_radius_m * angle)
     bracket = big_l * share**2 + big_m * share + big_p * (1.0 + big_q * np.tan(slant) ** 2)
-    return np.cos(slant) ** 2 * bracket / (youngs_modulus_pa * face_width_m)
+    return np.asarray(np.cos(slant) ** 2 * bracket / (youngs_modulus_pa * face_width_m))
 
 
 def outside_foundation_fit(gear: SpurGear, reading: str) -> tuple[str, ...]:

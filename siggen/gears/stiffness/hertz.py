@@ -65,7 +65,7 @@ def power_law_compliance(pair: GearPair, length_m: FloatArray, force_n: float) -
 
     Source: memory of the literature; see this module's docstring for what speaks for it.
     """
-    return POWER_LAW_FACTOR / (pair.youngs_modulus_pa**0.9 * length_m**0.8 * force_n**0.1)
+    return np.asarray(POWER_LAW_FACTOR / (pair.youngs_modulus_pa**0.9 * length_m**0.8 * force_n**0.1))
 
 
 def weber_banaschek_compliance(
