@@ -21,13 +21,14 @@ from diagnostics.audit.separability_findings import separability_findings, verdi
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.page.style import png_bytes, styled
+from siggen.dataset.reading import Dataset
 
 CACHE = "measured.parquet"
 UNPAIRED, PAIRED, CHANGE = "indicators", "indicators minus own healthy record", "change of the averaged waveform"
 
 
 def audit_set(
-    dataset: Any,
+    dataset: Dataset,
     folder: Path | None = None,
     seed: int = 0,
     *,
@@ -105,7 +106,7 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
     return notes
 
 
-def write_audit(audit: Audit, dataset: Any, folder: Path) -> Path:
+def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     """Write page, JSON and figures; return the page's path."""
     folder.mkdir(parents=True, exist_ok=True)
     with styled():
@@ -124,7 +125,7 @@ def write_audit(audit: Audit, dataset: Any, folder: Path) -> Path:
     return path
 
 
-def audit_numbers(audit: Audit, dataset: Any) -> dict[str, Any]:
+def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
     """Return the content of `audit.json`; undefined numbers are null."""
     return {
         "set": dataset.path.name,

@@ -20,6 +20,7 @@ from diagnostics.audit.speed_variation import speed_variation_percent
 from diagnostics.records.recording import TACHO_NAME, Recording
 from diagnostics.records.usable_records import RecordCheck
 from diagnostics.signal.order_domain import angle_grid
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 VERSION = "1"
@@ -73,7 +74,7 @@ class MeasuredSet:
         return tuple(sorted(order, key=lambda state: order[state]))
 
 
-def measured_set(dataset: Any, cache: Path | None = None, advance: Callable[[], None] | None = None) -> MeasuredSet:
+def measured_set(dataset: Dataset, cache: Path | None = None, advance: Callable[[], None] | None = None) -> MeasuredSet:
     """Measure a set, or read what an earlier call measured of this very set.
 
     Parameters
@@ -103,7 +104,7 @@ def measured_set(dataset: Any, cache: Path | None = None, advance: Callable[[], 
     return _as_set(dataset, table)
 
 
-def _key(dataset: Any) -> str:
+def _key(dataset: Dataset) -> str:
     """Return what the measured numbers depend on: identity, definitions, and the bytes of the signals."""
     files = dataset.manifest.get("files", {})
     data = sorted((name, facts["sha256"]) for name, facts in files.items() if name.startswith("data/"))
@@ -121,7 +122,7 @@ def _cached(cache: Path, key: str) -> pa.Table | None:
     return table if (table.schema.metadata or {}).get(CACHE_KEY) == key.encode() else None
 
 
-def _rows(dataset: Any, advance: Callable[[], None] | None) -> Iterator[dict[str, Any]]:
+def _rows(dataset: Dataset, advance: Callable[[], None] | None) -> Iterator[dict[str, Any]]:
     columns = [*NEEDED, *(channel.column for channel in dataset.channels), TACHO_NAME]
     check = RecordCheck()
     for split in dataset.splits:
@@ -135,14 +136,14 @@ def _rows(dataset: Any, advance: Callable[[], None] | None) -> Iterator[dict[str
     check.finish(dataset)
 
 
-def _recording(batch: Any, row: int, dataset: Any) -> Recording:
+def _recording(batch: Any, row: int, dataset: Dataset) -> Recording:
     labels = {name: batch.column(name)[row].as_py() for name in NEEDED}
     signals = {channel.name: np.asarray(batch.column(channel.column)[row].values) for channel in dataset.channels}
     tacho_s = np.asarray(batch.column(TACHO_NAME)[row].values, dtype=np.float64)
     return Recording(labels, signals, tacho_s, dataset.fs_hz)
 
 
-def _record_rows(record: Recording, dataset: Any) -> Iterator[dict[str, Any]]:
+def _record_rows(record: Recording, dataset: Dataset) -> Iterator[dict[str, Any]]:
     record_id, *teeth = (int(record.labels[name]) for name in NEEDED)
     tacho_s = record.tacho_s
     pulses = len(tacho_s)
@@ -187,7 +188,7 @@ def _interleaved(values: np.ndarray) -> np.ndarray:
     return np.asarray(values.astype(np.complex64).view(np.float32))
 
 
-def _as_set(dataset: Any, table: pa.Table) -> MeasuredSet:
+def _as_set(dataset: Dataset, table: pa.Table) -> MeasuredSet:
     labels = {name: _array(column) for name, column in _scalar_labels(dataset).items()}
     channels = tuple(channel.name for channel in dataset.channels)
     shape = (-1, len(channels))
@@ -212,7 +213,7 @@ def _as_set(dataset: Any, table: pa.Table) -> MeasuredSet:
     )
 
 
-def _scalar_labels(dataset: Any) -> dict[str, Any]:
+def _scalar_labels(dataset: Dataset) -> dict[str, Any]:
     signals = {channel.column for channel in dataset.channels} | {TACHO_NAME}
     names = [field.name for field in dataset.labels().schema if field.name not in signals]
     table = dataset.labels(columns=names)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
@@ -14,6 +13,7 @@ from diagnostics.page.html import Cell
 from diagnostics.page.provenance import provenance
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import counted, percent
+from siggen.dataset.reading import Dataset
 
 HOW = (
     "Logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels; cross-validated "
@@ -34,7 +34,7 @@ SIZE_CAPTION = (
 )
 
 
-def audit_page(audit: Audit, dataset: Any, drawn: dict[str, bytes]) -> str:
+def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
     parts = [html.heading(title, 1), *html.summary(audit_summary(audit)), html.heading("Traps")]

@@ -14,6 +14,7 @@ import pyarrow as pa
 from diagnostics.indicators.features import FeatureSettings, record_features
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.records.state_classes import CLASS, class_names
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
@@ -51,7 +52,7 @@ class FeatureMatrix:
 
 
 def feature_table(
-    dataset: Any,
+    dataset: Dataset,
     splits: Sequence[str] | None = None,
     settings: FeatureSettings | None = None,
     advance: Callable[[], None] | None = None,

@@ -30,6 +30,7 @@ from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.signal.order_domain import angle_grid
 from diagnostics.signal.shaft_signals import record_shafts
 from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 
 SETTINGS_KEY = b"diagnostics.indicators"
@@ -85,7 +86,7 @@ class IndicatorTable:
 
 
 def indicator_table(
-    dataset: Any,
+    dataset: Dataset,
     own: Sequence[OwnIndicator] = (),
     settings: IndicatorSettings | None = None,
     *,
@@ -268,7 +269,7 @@ def _pulses(record: Recording, channels: dict[str, np.ndarray], teeth: int, sett
     return tacholess_pulses(clearest, record.fs_hz, teeth, settings.speed_range_hz)
 
 
-def _table(dataset: Any, found: list[RecordIndicators], settings: IndicatorSettings) -> IndicatorTable:
+def _table(dataset: Dataset, found: list[RecordIndicators], settings: IndicatorSettings) -> IndicatorTable:
     channels = tuple(channel.name for channel in dataset.channels)
     labels = {name: np.asarray([result.labels[name] for result in found]) for name in LABEL_NAMES}
     labels |= _more_labels(dataset, labels["record_id"], channels)
@@ -290,7 +291,7 @@ def _table(dataset: Any, found: list[RecordIndicators], settings: IndicatorSetti
     return IndicatorTable(matrix, channels, revolutions, tuple(r.notes for r in found), problems, settings)
 
 
-def _more_labels(dataset: Any, record_ids: np.ndarray, channels: tuple[str, ...]) -> dict[str, np.ndarray]:
+def _more_labels(dataset: Dataset, record_ids: np.ndarray, channels: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Return further label columns that the set has, in the order of the records."""
     table = dataset.labels()
     wanted = [*OPTIONAL_LABELS, *(f"snr_{channel}_db" for channel in channels)]

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from diagnostics.records.record_problems import FEWEST_REVOLUTIONS, is_rate
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
+from siggen.dataset.reading import Dataset
 
 
-def needed_duration(dataset: Any, frame_samples: int) -> tuple[float, float]:
+def needed_duration(dataset: Dataset, frame_samples: int) -> tuple[float, float]:
     """Return the duration [s] that every record of a set has to have, and the speed [Hz] of the record that needs it.
 
     Whole revolutions lie between pulses, and the first pulse comes up to one revolution after the start: n of them are
@@ -36,7 +36,7 @@ def needed_duration(dataset: Any, frame_samples: int) -> tuple[float, float]:
     return max(float(needed_s[longest]), frames_s), float(speed_hz[longest])
 
 
-def duration_advice(dataset: Any, frame_samples: int) -> str:
+def duration_advice(dataset: Dataset, frame_samples: int) -> str:
     """Return what to do about records that are too short, as a line of its own; nothing where they are long enough."""
     if not is_rate(dataset.fs_hz):
         return ""

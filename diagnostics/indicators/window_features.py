@@ -12,6 +12,7 @@ from diagnostics.indicators.feature_table import FeatureMatrix
 from diagnostics.indicators.features import FeatureSettings, record_features
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.records.state_classes import CLASS, class_names
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 REVOLUTIONS = 8
@@ -19,7 +20,9 @@ MOST_WINDOWS = 3
 """Windows of a record: enough to leak, few enough to be quick."""
 
 
-def window_matrix(dataset: Any, advance: Callable[[], None] | None = None, healthy: str | None = None) -> FeatureMatrix:
+def window_matrix(
+    dataset: Dataset, advance: Callable[[], None] | None = None, healthy: str | None = None
+) -> FeatureMatrix:
     """Return the indicators of windows that follow each other without overlap, with the labels of their records.
 
     `healthy` names the healthy class where it is not the first healthy state of the set.

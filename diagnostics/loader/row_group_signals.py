@@ -18,6 +18,7 @@ import numpy as np
 
 from diagnostics.loader.window_index import StreamSettings, WindowIndex
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class RowGroupSignals:
         Folder of the cache; None decodes every time.
     """
 
-    dataset: Any
+    dataset: Dataset
     split: str
     groups: tuple[Any, ...]
     settings: StreamSettings

@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from diagnostics.records.state_classes import class_ids
+from siggen.dataset.reading import Dataset, RowGroup
 from siggen.errors import DatasetError, UsageError
 
 FEWEST_REVOLUTIONS = 8
@@ -92,7 +92,7 @@ class WindowIndex:
         return digest.hexdigest()[:16]
 
 
-def window_index(dataset: Any, split: str, settings: StreamSettings) -> WindowIndex:
+def window_index(dataset: Dataset, split: str, settings: StreamSettings) -> WindowIndex:
     """Return where the windows of a split lie; reads pulse times only.
 
     Raises
@@ -122,19 +122,19 @@ def window_index(dataset: Any, split: str, settings: StreamSettings) -> WindowIn
     return WindowIndex(found[0], found[1], found[2], found[3], samples, tuple(lengths), labels)
 
 
-def _columns(dataset: Any, split: str | None, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+def _columns(dataset: Dataset, split: str | None, names: tuple[str, ...]) -> dict[str, np.ndarray]:
     table = dataset.labels(split, list(names))
     return {name: np.asarray(table.column(name).to_pylist()) for name in names}
 
 
-def _class_id(dataset: Any, split: str) -> np.ndarray:
+def _class_id(dataset: Dataset, split: str) -> np.ndarray:
     """Return the class of every record of the split, (records,) int64: its state's, all healthy ones being one."""
     ids = class_ids(_columns(dataset, None, ("state", "state_id", "fault")))
     states = dataset.labels(split, ["state"]).column("state").to_pylist()
     return np.array([ids[state] for state in states], dtype=np.int64)
 
 
-def _pulses(dataset: Any, group: Any) -> Iterator[np.ndarray]:
+def _pulses(dataset: Dataset, group: RowGroup) -> Iterator[np.ndarray]:
     column = dataset.row_group(group, ["tacho_s"]).column("tacho_s")
     yield from (np.asarray(column[row].values, dtype=np.float64) for row in range(len(column)))
 

@@ -22,6 +22,7 @@ from torch.utils.data import DataLoader, IterableDataset, get_worker_info
 from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks, rank_windows
 from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 Batch = dict[str, torch.Tensor]
@@ -70,7 +71,7 @@ class WindowStream(IterableDataset[Batch]):  # type: ignore[misc]  # the type ch
 
     def __init__(
         self,
-        dataset: Any,
+        dataset: Dataset,
         split: str,
         settings: StreamSettings | None = None,
         *,

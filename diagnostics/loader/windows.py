@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from diagnostics.records.recording import Recording, recordings
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 SAMPLES_PER_TOOTH = 16
@@ -78,7 +78,7 @@ class OrderRecords:
 
 
 def order_records(
-    dataset: Any, settings: WindowSettings | None = None, advance: Callable[[], None] | None = None
+    dataset: Dataset, settings: WindowSettings | None = None, advance: Callable[[], None] | None = None
 ) -> OrderRecords:
     """Return all records of a set resampled to equal angle steps of the pinion.
 
@@ -107,7 +107,7 @@ def order_records(
     return OrderRecords(tuple(signals), np.array(numbers), names, settings)
 
 
-def _pinion_teeth(dataset: Any) -> int:
+def _pinion_teeth(dataset: Dataset) -> int:
     teeth = sorted(set(dataset.labels(columns=["teeth_pinion"]).column("teeth_pinion").to_pylist()))
     if len(teeth) > 1:
         raise DatasetError(

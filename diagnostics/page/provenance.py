@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import Any
 
 from diagnostics.page.wording import counted
+from siggen.dataset.reading import Dataset
 
 
-def provenance(dataset: Any, seed: int) -> str:
+def provenance(dataset: Dataset, seed: int) -> str:
     """Return what a reader needs to cite the page and to make it again: program, set, identity, seed."""
     records = dataset.labels(columns=["record_id"]).num_rows
     return (
@@ -19,6 +19,6 @@ def provenance(dataset: Any, seed: int) -> str:
     )
 
 
-def without_path(error: Exception, dataset: Any) -> str:
+def without_path(error: Exception, dataset: Dataset) -> str:
     """Return an error's message for a page that others read: the set by its name, not by its place on this machine."""
     return str(error).replace(str(dataset.path), dataset.path.name)

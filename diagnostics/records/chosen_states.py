@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from diagnostics.records.state_classes import HEALTHY
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 
-def chosen_states(dataset: Any, names: Sequence[str]) -> tuple[str, ...]:
+def chosen_states(dataset: Dataset, names: Sequence[str]) -> tuple[str, ...]:
     """Return all healthy states and the named ones, in the order of the set.
 
     A set may hold several ladders of damage, such as pits beside spalls of growing length. Sizes, trends and histories

@@ -10,6 +10,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from siggen.dataset.reading import Dataset
+
 LABEL_NAMES = (
     *("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split"),
     *("fault", "severity", "damaged_area_mm2", "damaged_area_share", "mesh_stiffness_loss"),
@@ -32,7 +34,7 @@ class Recording:
 
 
 def recordings(
-    dataset: Any, splits: Sequence[str] | None = None, states: Sequence[str] | None = None
+    dataset: Dataset, splits: Sequence[str] | None = None, states: Sequence[str] | None = None
 ) -> Iterator[Recording]:
     """Yield the records of a set.
 
@@ -55,7 +57,7 @@ def _in_states(batch: Any, states: Sequence[str]) -> Any:
     return batch.filter(pc.is_in(batch.column("state"), value_set=pa.array(states)))
 
 
-def _rows(batch: Any, dataset: Any) -> Iterator[Recording]:
+def _rows(batch: Any, dataset: Dataset) -> Iterator[Recording]:
     labels = batch.select(list(LABEL_NAMES)).to_pylist()
     # flatten() respects the offset of a sliced batch, .values does not
     signals = {

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from typing import Any
 
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 
-def with_channels(dataset: Any, names: Sequence[str]) -> Any:
+def with_channels(dataset: Dataset, names: Sequence[str]) -> Dataset:
     """Return the set with the named channels only, in the set's order; all where none is named.
 
     Raises

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from diagnostics.records.record_problems import (
@@ -13,6 +11,7 @@ from diagnostics.records.record_problems import (
     whole_record_problem,
 )
 from diagnostics.records.recording import Recording, recordings
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 RECORDS_SHOWN = 3
@@ -41,7 +40,7 @@ class RecordCheck:
                 self._clipped.setdefault(name, []).append(number)
         return not problems
 
-    def finish(self, dataset: Any, *, can_leave_channels: bool = False) -> tuple[str, ...]:
+    def finish(self, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
         """Return notes on single clipped records, which are used all the same.
 
         Raises
@@ -58,7 +57,7 @@ class RecordCheck:
         return tuple(f"channel {name} {CLIPPED} in {_shown(records)}" for name, records in self._clipped.items())
 
 
-def check_records(dataset: Any, *, can_leave_channels: bool = False) -> tuple[str, ...]:
+def check_records(dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
     """Check that every record has known gears, a usable angle, and channels that are finite, vary and are not clipped.
 
     Parameters
@@ -84,7 +83,7 @@ def check_records(dataset: Any, *, can_leave_channels: bool = False) -> tuple[st
     return check.finish(dataset, can_leave_channels=can_leave_channels)
 
 
-def check_states(dataset: Any) -> None:
+def check_states(dataset: Dataset) -> None:
     """Check that a set has healthy and damaged records to compare.
 
     Raises
@@ -123,7 +122,7 @@ def _varies(signal: np.ndarray) -> bool:
     return bool((signal != signal[0]).any())
 
 
-def _refusal(dataset: Any, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
+def _refusal(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
     lines = [
         f"  channel {channel} {text} in {_shown(records)}" if channel else f"  {_shown(records)}: {text}"
         for (channel, text), records in found.items()
@@ -140,7 +139,7 @@ def _refusal(dataset: Any, found: dict[tuple[str, str], list[int]], can_leave_ch
     )
 
 
-def _way_out(dataset: Any, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
+def _way_out(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
     broken = {channel for channel, _ in found}
     usable = [channel.name for channel in dataset.channels if channel.name not in broken]
     if can_leave_channels and usable and "" not in broken:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import Judged
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.splits import SpecimenSplit
 from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
 
 
-def model_card(training: Training, dataset: Any) -> str:
+def model_card(training: Training, dataset: Dataset) -> str:
     """Return the card as Markdown.
 
     Parameters
@@ -39,7 +38,7 @@ def model_card(training: Training, dataset: Any) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _data(training: Training, dataset: Any) -> str:
+def _data(training: Training, dataset: Dataset) -> str:
     count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
     channels = ", ".join(f"{channel.name} [{channel.unit}]" for channel in dataset.channels)
     return "\n".join(

@@ -16,6 +16,7 @@ import pyarrow.compute as pc
 from diagnostics.release.training_distance import TrainingDistance, distance_facts, distance_from_facts
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 FACTS_FILE = "model.json"
@@ -69,7 +70,7 @@ def manifest_digest(manifest: dict[str, Any]) -> str:
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def model_facts(dataset: Any, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
+def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
     """Return the facts of models trained on a set; ranges are those of its training and validation records.
 
     Parameters

@@ -20,6 +20,7 @@ from diagnostics.statistics.evaluation import Scores, scores
 from diagnostics.training.baselines import FeatureClassifier, calibrated_classifier, train_classifier
 from diagnostics.training.splits import SpecimenSplit
 from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
 
 REFERENCED = "referenced_"
 """Prefix of the files of the healthy-referenced variant."""
@@ -62,7 +63,7 @@ class Release:
     note: str
 
 
-def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) -> Release:
+def release(training: Training, table: pa.Table, dataset: Dataset, seed: int = 0) -> Release:
     """Return what goes along with the classifiers of a set; fitted on training, thresholds on held-out specimens.
 
     Parameters
@@ -94,7 +95,7 @@ def release(training: Training, table: pa.Table, dataset: Any, seed: int = 0) ->
     )
 
 
-def with_floor_features(matrix: FeatureMatrix, dataset: Any) -> FeatureMatrix:
+def with_floor_features(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
     """Return the features of a set with what lies between the lines as further columns, which only distances take.
 
     Parameters

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
@@ -13,6 +12,7 @@ from diagnostics.release.release import release, save_release
 from diagnostics.release.release_card import release_card
 from diagnostics.training.classifier_file import save_classifier
 from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
 
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
@@ -20,7 +20,7 @@ MODEL_FILES = (
 )
 
 
-def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path) -> list[str]:
+def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: Path) -> list[str]:
     """Write all models and the model card into a folder; return notes on what could not be written.
 
     Parameters
@@ -56,6 +56,6 @@ def save_models(training: Training, table: pa.Table, dataset: Any, folder: Path)
     return notes
 
 
-def set_identity(dataset: Any) -> str:
+def set_identity(dataset: Dataset) -> str:
     """Return the identity of a set, a SHA-256 of its configuration."""
     return str(dataset.manifest["identity"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from diagnostics.indicators.feature_table import FeatureMatrix
 from diagnostics.page.provenance import without_path
@@ -16,6 +16,7 @@ from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,7 +42,7 @@ class Drawing:
 
 
 def draw(
-    dataset: Any,
+    dataset: Dataset,
     matrix: FeatureMatrix,
     classes: tuple[str, ...],
     training: Training | None,
@@ -78,7 +79,7 @@ def distinct_features(found: list[Separability], count: int) -> list[Separabilit
     return list(chosen.values())[:count]
 
 
-def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> None:
+def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str]) -> None:
     examples = example_set(dataset)
     which = (
         f"specimen {examples.specimen_id}, channel {examples.channel}, {examples.speed_hz:.3g}\u00a0Hz, "
@@ -98,7 +99,7 @@ def _draw_vibration(drawing: Drawing, dataset: Any, colours: dict[str, str]) -> 
 
 
 def _draw_damage(
-    drawing: Drawing, dataset: Any, matrix: FeatureMatrix, classes: tuple[str, ...], colours: dict[str, str]
+    drawing: Drawing, dataset: Dataset, matrix: FeatureMatrix, classes: tuple[str, ...], colours: dict[str, str]
 ) -> None:
     figure = stiffness_figures.stiffness_loss_figure(matrix.labels, classes, colours)
     drawing.damage["stiffness_loss"] = (

@@ -10,6 +10,7 @@ import numpy as np
 from diagnostics.records.recording import TACHO_NAME
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.order_spectrum import OrderSpectrum, order_spectrum
+from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class ExampleSet:
         return next((example for example in self.examples if example.fault == HEALTHY), None)
 
 
-def example_set(dataset: Any, channel: int = 0) -> ExampleSet:
+def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     """Return the states of the specimen that has most of them, at its first operating point.
 
     Parameters

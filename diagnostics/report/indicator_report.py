@@ -29,6 +29,7 @@ from diagnostics.statistics.assessment import AssessmentSettings, Records, asses
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.noise_curve import NoiseCurve, noise_curve
 from diagnostics.training.realism import meaning_of_scores
+from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,7 +68,7 @@ class Evaluated:
 
 
 def write_indicator_report(
-    dataset: Any,
+    dataset: Dataset,
     table: IndicatorTable,
     folder: Path,
     settings: AssessmentSettings | None = None,
@@ -184,7 +185,7 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
 
 
-def report_numbers(dataset: Any, evaluated: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
+def report_numbers(dataset: Dataset, evaluated: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
     """Return the content of `indicators.json`; undefined and unreached numbers are null."""
     table = evaluated.table
     return {
@@ -212,7 +213,7 @@ def _note_counts(table: IndicatorTable) -> list[str]:
 
 
 def _write_page(
-    dataset: Any,
+    dataset: Dataset,
     folder: Path,
     evaluated: Evaluated,
     sentences: Sequence[str],
@@ -280,7 +281,7 @@ def _size_text(evaluated: Evaluated) -> str:
     )
 
 
-def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
+def _notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     table = evaluated.table
     angle = table.settings.speed_range_hz
     settings = json.dumps(asdict(table.settings.order_domain))
@@ -299,7 +300,7 @@ def _notes(dataset: Any, evaluated: Evaluated) -> list[str]:
     ]
 
 
-def kind_notes(dataset: Any, damaged: Sequence[str]) -> list[str]:
+def kind_notes(dataset: Dataset, damaged: Sequence[str]) -> list[str]:
     """Return a note where damaged states are of several kinds: sizes, trends and histories run across ladders."""
     present = set(dataset.labels().column_names)
     table = dataset.labels(columns=[name for name in ("state", "fault", "through_face") if name in present])

@@ -29,6 +29,7 @@ from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.studies import Studies, run_studies, studies_metrics
 from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
 from diagnostics.training.training_sets import other_table, set_table
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 SECTIONS = (
@@ -40,12 +41,12 @@ SECTIONS = (
 
 
 def write_report(
-    dataset: Any,
+    dataset: Dataset,
     folder: Path,
     seed: int,
     *,
     network: NetworkOptions | None = None,
-    other: Any = None,
+    other: Dataset | None = None,
     with_studies: bool = False,
     stage: Stage = silent_stage,
 ) -> Path:
@@ -102,7 +103,7 @@ def states(matrix: FeatureMatrix) -> tuple[str, ...]:
 
 
 def _trained(
-    dataset: Any,
+    dataset: Dataset,
     table: pa.Table,
     folder: Path,
     seed: int,
@@ -127,7 +128,7 @@ def _trained(
 
 
 def _studied(
-    dataset: Any, matrix: FeatureMatrix, training: Training | None, seed: int, other: Any, stage: Stage
+    dataset: Dataset, matrix: FeatureMatrix, training: Training | None, seed: int, other: Dataset | None, stage: Stage
 ) -> tuple[Studies | None, list[str]]:
     """Run the studies; a set that does not allow them gets a note."""
     if training is None:
@@ -145,7 +146,7 @@ def undefined_notes(table: pa.Table) -> list[str]:
     return [f"{count} of {records}: {reason}." for reason, count in zip(reasons, counts, strict=True)]
 
 
-def clipping_notes(dataset: Any) -> list[str]:
+def clipping_notes(dataset: Dataset) -> list[str]:
     """Return how many records each channel clips: their spectra carry lines that no gear made."""
     notes = []
     for channel in dataset.channels:
@@ -167,7 +168,7 @@ def _write_tables(table: pa.Table, found: list[Separability], folder: Path) -> N
 
 
 def report_metrics(
-    dataset: Any,
+    dataset: Dataset,
     table: pa.Table,
     seed: int,
     sentences: list[str],
@@ -200,7 +201,7 @@ def _entry(entry: Separability) -> dict[str, Any]:
 
 
 def _write_page(
-    dataset: Any,
+    dataset: Dataset,
     folder: Path,
     seed: int,
     matrix: FeatureMatrix,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score
 from diagnostics.training.baselines import permuted_target, state_index
 from diagnostics.training.splits import SpecimenSplit
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def check_device(device: str) -> None:
 
 
 def judge_networks(
-    dataset: Any, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, options: NetworkOptions, stage: Stage
+    dataset: Dataset, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, options: NetworkOptions, stage: Stage
 ) -> tuple[list[Judged], TrainedNetworkFile]:
     """Train and judge the network, and its twin without augmentation where asked for; the first one is saved."""
     from diagnostics.loader.augmentation import Augmentation

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -12,13 +11,14 @@ from diagnostics.records.state_classes import HEALTHY, class_names
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.baselines import FeatureClassifier, state_index
 from diagnostics.training.network_training import TrainedNetworkFile
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
 OTHER_SPECIMENS = 1 << 40
 """Added to specimen numbers of the other set where both sets are in one table: they share numbers, not gearboxes."""
 
 
-def check_other_set(dataset: Any, other: Any) -> None:
+def check_other_set(dataset: Dataset, other: Dataset) -> None:
     """Check that classifiers of a set can be judged on another one.
 
     Raises
@@ -48,7 +48,7 @@ def check_other_set(dataset: Any, other: Any) -> None:
         )
 
 
-def _states(dataset: Any) -> set[str]:
+def _states(dataset: Dataset) -> set[str]:
     """Return the states of a set, all healthy ones under one name."""
     table = dataset.labels(columns=["state", "state_id", "fault"])
     labels = {name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}
@@ -60,7 +60,7 @@ def classifier_predictions(model: FeatureClassifier, matrix: FeatureMatrix) -> P
     return replace(model, temperature=1.0).predict(matrix)
 
 
-def network_predictions_of(network: TrainedNetworkFile, other: Any, matrix: FeatureMatrix) -> Predictions:
+def network_predictions_of(network: TrainedNetworkFile, other: Dataset, matrix: FeatureMatrix) -> Predictions:
     """Return uncalibrated predictions of the other set by the network; its pinions may have other teeth."""
     from diagnostics.loader.windows import order_records
     from diagnostics.training.cnn import network_predictions

@@ -14,6 +14,7 @@ from diagnostics.indicators.window_features import window_matrix
 from diagnostics.training.learning_curve import CurvePoint, curve_sizes, learning_curve
 from diagnostics.training.split_study import SplitScore, rows_of_study, split_study
 from diagnostics.training.splits import SpecimenSplit
+from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +27,7 @@ class Studies:
 
 @single_thread
 def run_studies(
-    dataset: Any, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, other: Any, stage: Stage
+    dataset: Dataset, matrix: FeatureMatrix, split: SpecimenSplit, seed: int, other: Dataset | None, stage: Stage
 ) -> Studies:
     """Run both studies of a set.
 

@@ -45,13 +45,14 @@ from diagnostics.training.severity import (
     mean_areas,
 )
 from diagnostics.training.splits import SpecimenSplit, specimen_split
+from siggen.dataset.reading import Dataset
 
 
 @dataclass(frozen=True, slots=True)
 class OtherSet:
     """Another set to judge on: what `siggen.open` returned, and its feature table."""
 
-    dataset: Any
+    dataset: Dataset
     table: pa.Table
 
 
@@ -88,7 +89,7 @@ class Training:
 
 @single_thread
 def train_models(
-    dataset: Any,
+    dataset: Dataset,
     table: pa.Table,
     seed: int,
     *,

@@ -15,6 +15,7 @@ from diagnostics.records.usable_records import check_records
 from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet
 from siggen.dataset import reading
+from siggen.dataset.reading import Dataset
 
 
 def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tuple[Any, Any | None]:
@@ -35,7 +36,7 @@ def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tu
     return dataset, other
 
 
-def set_table(dataset: Any, stage: Stage, title: str = "indicators") -> pa.Table:
+def set_table(dataset: Dataset, stage: Stage, title: str = "indicators") -> pa.Table:
     """Return the feature table of a set whose records are usable, with notes on those to be taken with care.
 
     Raises
@@ -48,6 +49,6 @@ def set_table(dataset: Any, stage: Stage, title: str = "indicators") -> pa.Table
         return with_notes(feature_table(dataset, advance=advance), notes)
 
 
-def other_table(other: Any, stage: Stage) -> OtherSet:
+def other_table(other: Dataset, stage: Stage) -> OtherSet:
     """Return the other set with its feature table."""
     return OtherSet(other, set_table(other, stage, "indicators of the other set"))
