@@ -22,7 +22,7 @@ from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
 SCHEMA_VERSION = 1
@@ -32,7 +32,7 @@ BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
 
 
-CONFIG_NAME = Said("lower-case letters, digits, - and _, beginning with a letter or a digit")
+CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit")
 
 
 class Splits(Section):
@@ -107,28 +107,28 @@ class Config(Section):
         Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist;
         where a default has changed, its first value is what does not count (`first_default`).
         """
-        content = {**_told(self), "schema_version": SCHEMA_VERSION}
+        content = {**_identity_content(self), "schema_version": SCHEMA_VERSION}
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _told(value: Any) -> Any:
+def _identity_content(value: Any) -> Any:
     """Return a value as plain mappings and lists without the keys that are at first defaults; `kind` always counts."""
     match value:
         case Section():
             found: dict[str, Any] = {}
             for name, field in type(value).model_fields.items():
-                item, first = value.meant(name), uncounted(field)
-                told = _told(item)
+                item, first = value.identity_value(name), uncounted(field)
+                content = _identity_content(item)
                 # A section that has always been there counts by its keys, whose defaults may have changed.
                 counts = (
-                    bool(told) if isinstance(item, Section) and isinstance(first[0], Section) else item not in first
+                    bool(content) if isinstance(item, Section) and isinstance(first[0], Section) else item not in first
                 )
-                found |= {name: told} if counts or name == "kind" else {}
+                found |= {name: content} if counts or name == "kind" else {}
             return found
         case tuple():
-            return [_told(item) for item in value]
+            return [_identity_content(item) for item in value]
     return _plain(value)
 
 

@@ -16,7 +16,7 @@ from siggen.config.problems import refusal
 from siggen.config.section import Section, Whole
 from siggen.config.spall import ListedSpall, Spalls
 from siggen.config.teeth import Teeth
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
 
@@ -96,4 +96,4 @@ class ListedPits(Section):
 
 DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits
 
-DAMAGE = Said("null, or a mapping with kind: layered, clustered, spall or list")
+DAMAGE = AllowedText("null, or a mapping with kind: layered, clustered, spall or list")

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
-from siggen.config.first_default import Was
+from siggen.config.first_default import IdentityDefault
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
@@ -23,16 +23,16 @@ class Rotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), Was(8.5e7)] = Field(
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), IdentityDefault(8.5e7)] = Field(
         default=2e8, description="both bearings of the shaft, horizontal"
     )
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), Was(8.5e7)] = Field(
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), IdentityDefault(8.5e7)] = Field(
         default=2e8, description="both bearings of the shaft, vertical"
     )
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0), Was(2134.0)] = Field(
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0), IdentityDefault(2134.0)] = Field(
         default=1000.0, description="horizontal; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0), Was(2134.0)] = Field(
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0), IdentityDefault(2134.0)] = Field(
         default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
 
@@ -40,10 +40,10 @@ class Rotor(Section):
 class Coupling(Section):
     """Torsional spring and damper between a gear and the machine on its shaft."""
 
-    stiffness_nm_per_rad: Annotated[Number, Within(above=0), Was(330.0)] = Field(
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0), IdentityDefault(330.0)] = Field(
         default=6300.0, description="torsional stiffness"
     )
-    damping_nm_s_per_rad: Annotated[Number, Within(least=0), Was(0.231)] = Field(
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0), IdentityDefault(0.231)] = Field(
         default=0.0984, description="torsional damping"
     )
 
@@ -51,10 +51,10 @@ class Coupling(Section):
 class OutputCoupling(Coupling):
     """The same for the longer shaft to the driven machine; 5 % of critical between the inertias of a small stage."""
 
-    stiffness_nm_per_rad: Annotated[Number, Within(above=0), Was(330.0)] = Field(
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0), IdentityDefault(330.0)] = Field(
         default=2100.0, description="torsional stiffness"
     )
-    damping_nm_s_per_rad: Annotated[Number, Within(least=0), Was(0.231)] = Field(
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0), IdentityDefault(0.231)] = Field(
         default=0.286, description="torsional damping"
     )
 
@@ -62,11 +62,11 @@ class OutputCoupling(Coupling):
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Annotated[Literal["8dof", "6dof", "torsional", "casing"], Was("8dof")] = Field(
+    model: Annotated[Literal["8dof", "6dof", "torsional", "casing"], IdentityDefault("8dof")] = Field(
         default="casing",
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
-    integrator: Annotated[Literal["auto", "product", "runge_kutta"], Was("product", "auto")] = Field(
+    integrator: Annotated[Literal["auto", "product", "runge_kutta"], IdentityDefault("product", "auto")] = Field(
         default="auto",
         description="product integrates the tabulated stiffness exactly, with the linear mesh law alone; runge_kutta "
         "is plain, of first order where teeth enter and leave contact; auto: product where it can be",
@@ -80,10 +80,10 @@ class Dynamics(Section):
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
     )
-    motor_inertia_kg_m2: Annotated[Number, Within(above=0), Was(0.016107)] = Field(
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0), IdentityDefault(0.016107)] = Field(
         default=4e-3, description="of the driving machine"
     )
-    load_inertia_kg_m2: Annotated[Number, Within(above=0), Was(0.005153)] = Field(
+    load_inertia_kg_m2: Annotated[Number, Within(above=0), IdentityDefault(0.005153)] = Field(
         default=1e-2, description="of the driven machine"
     )
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")

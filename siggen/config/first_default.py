@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic.fields import FieldInfo
 
 
-class Was:
+class IdentityDefault:
     """Values of a key that leave an identity as it is; put beside the type in `Annotated` when a default changes.
 
     The first one is the default that sets were first written with; others may follow that mean the same.
@@ -18,6 +18,6 @@ class Was:
 def uncounted(field: FieldInfo) -> tuple[object, ...]:
     """Return the values of a key that do not count in an identity."""
     for marker in field.metadata:
-        if isinstance(marker, Was):
+        if isinstance(marker, IdentityDefault):
             return marker.values
     return (field.get_default(call_default_factory=True),)

@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from siggen.config.section import Section, Whole
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 
 ALL = "all"
-NAMES = Said("[all], or a list of names such as mesh_force_n")
+NAMES = AllowedText("[all], or a list of names such as mesh_force_n")
 
 
 class Internals(Section):

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from siggen.config.number import Number, Within
 from siggen.config.problems import refusal, section_problems
 from siggen.config.section import Section, Whole
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 
 
 class OperatingRange(Section):
@@ -48,4 +48,6 @@ OperatingRanges = Annotated[
     ),
 ]
 
-OPERATING_POINTS = Said("a list of at least one mapping with speed_hz and torque_nm, or one mapping that has count too")
+OPERATING_POINTS = AllowedText(
+    "a list of at least one mapping with speed_hz and torque_nm, or one mapping that has count too"
+)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from siggen.config.number import Number, Within
 from siggen.config.section import Section
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 
 
 class ModalPath(Section):
@@ -42,4 +42,4 @@ class MeasuredPath(Section):
 
 TransferPath: TypeAlias = ModalPath | MeasuredPath
 
-PATH = Said("null, or a mapping with kind: modal or measured")
+PATH = AllowedText("null, or a mapping with kind: modal or measured")

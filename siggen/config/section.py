@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 
 
 class Section(BaseModel):
@@ -14,7 +14,7 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    def meant(self, key: str) -> Any:
+    def identity_value(self, key: str) -> Any:
         """Return what the value of a key stands for, which is what counts in an identity; as a rule the value."""
         return getattr(self, key)
 
@@ -26,6 +26,6 @@ Whole = Annotated[int, Field(strict=True)]
 """A whole number: counts and indices; neither 18.0 nor true."""
 
 Position = Annotated[
-    tuple[Real, Real], Said("two numbers, [horizontal, vertical] in mm from the casing's centre of gravity")
+    tuple[Real, Real], AllowedText("two numbers, [horizontal, vertical] in mm from the casing's centre of gravity")
 ]
 """A place on the casing."""

@@ -12,10 +12,10 @@ from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
 from siggen.config.problems import received_text, refusal
 from siggen.config.section import Position, Real, Section, Whole
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
-SENSOR_NAME = Said("lower-case letters, digits and _, beginning with a letter")
+SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter")
 
 
 class NoiseFloor(Section):
@@ -74,7 +74,7 @@ class Sensor(Section):
         default=1.0,
         description="reading per true acceleration, drawn per specimen and axis; a list: one number per axis",
     )
-    noise: Annotated[Noise | None, Said("null, or a mapping with floor_m_s2 or with snr_db")] = Field(
+    noise: Annotated[Noise | None, AllowedText("null, or a mapping with floor_m_s2 or with snr_db")] = Field(
         default=None, description="added before clipping and quantisation"
     )
     range_m_s2: Annotated[Real, Field(gt=0)] = Field(

@@ -10,12 +10,12 @@ from pydantic import ConfigDict, Field, model_validator
 from siggen.config.damage import DAMAGE, DamageModel
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Section
-from siggen.config.wording import Said
+from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
 RESERVED_NAMES = ("previous", "none")
-STATE_NAME = Said("lower-case letters, digits, - and _, beginning with a letter")
+STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter")
 
 
 def _labels_are_optional(schema: dict[str, Any]) -> None:

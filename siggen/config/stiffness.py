@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from siggen.config.first_default import Was
+from siggen.config.first_default import IdentityDefault
 from siggen.config.problems import refusal
 from siggen.config.section import Real, Section, Whole
 from siggen.errors import Problem
@@ -37,7 +37,7 @@ class Stiffness(Section):
     table_points: Annotated[Whole, Field(ge=65, le=1_000_000)] = Field(
         default=2049, description="points of a stiffness table over one path of contact"
     )
-    coupling: Annotated[Literal["none", "body", "auto"], Was("none")] = Field(
+    coupling: Annotated[Literal["none", "body", "auto"], IdentityDefault("none")] = Field(
         default="auto",
         description="whether neighbouring teeth in contact deflect each other through the gear body; none: the mesh is "
         "the plain sum of its pairs (paper A); auto: body for calibrated, none otherwise",
@@ -50,9 +50,9 @@ class Stiffness(Section):
             return self.coupling
         return "body" if self.beam == "calibrated" and self.foundation == "sainsot" else "none"
 
-    def meant(self, key: str) -> Any:
+    def identity_value(self, key: str) -> Any:
         """Return what the value of a key stands for: a coupling that a beam brings along is the same when named."""
-        return self.coupled_by if key == "coupling" else super().meant(key)
+        return self.coupled_by if key == "coupling" else super().identity_value(key)
 
     @model_validator(mode="before")
     @classmethod

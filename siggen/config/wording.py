@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class AllowedText:
     """What a field may hold where the type does not say it well; put beside the type in `Annotated`."""
 
     allowed_text: str

@@ -35,8 +35,8 @@ from siggen.specimen.structure import structure
 
 __all__ = [
     "damage_rows",
-    "limits_of",
     "record_response",
+    "refused_as",
     "simulate",
     "simulate_specimen",
     "specimen_state",
@@ -64,14 +64,14 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         If what was drawn cannot be built (named in the reason).
     """
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    with limits_of("impossible_damage"):
+    with refused_as("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
         teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
         labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
-    with limits_of("outside_model"):
+    with refused_as("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
@@ -86,7 +86,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
 
 
 @contextmanager
-def limits_of(status: str) -> Iterator[None]:
+def refused_as(status: str) -> Iterator[None]:
     """Turn a refusal of what was drawn, which names the model's limit, into a status of the record."""
     try:
         yield
@@ -119,7 +119,7 @@ def record_response(
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
-    with limits_of("outside_model"):
+    with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
         response = response_of(
             specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
@@ -148,7 +148,7 @@ def _simulated(
     config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
 ) -> Record:
     with_internals = has_internals(config, planned)
-    with limits_of("outside_model"):
+    with refused_as("outside_model"):
         driven = _driven(config, specimen, state, planned)
     response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
     channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)

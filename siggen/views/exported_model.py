@@ -25,7 +25,7 @@ from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.record.simulation import limits_of, specimen_state, start_angle_rad
+from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.motion import specimen_motion
@@ -59,7 +59,7 @@ def exported_model(config: Config, record_id: int) -> Model:
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = specimen.dynamics.steps_per_sample
-    with limits_of("outside_model"):
+    with refused_as("outside_model"):
         motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps))
         angle = start_angle_rad(config, state.pair, record)
         driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)

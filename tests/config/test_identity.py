@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.config import Config, parse, parse_yaml, yaml_text
-from siggen.config.first_default import Was
+from siggen.config.first_default import IdentityDefault
 from siggen.config.section import Section
 from tests.config.minimal import config, minimal
 
@@ -237,7 +237,7 @@ def test_naming_the_integrator_of_the_linear_law_leaves_the_identity(integrator)
 def test_identities_count_from_the_first_defaults():
     # as if a later version had changed the default of a key in a section that may be left out
     class LaterWheel(Section):
-        width_mm: Annotated[float, Was(20.0)] = 30.0
+        width_mm: Annotated[float, IdentityDefault(20.0)] = 30.0
 
     class Later(Config):
         wheel: LaterWheel = LaterWheel()

@@ -100,8 +100,8 @@ class VaryingDrive:
         speed, quickening = 2.0 * np.pi * self.ramp.speed_hz(warped), 2.0 * np.pi * self.ramp.acceleration_hz_s(warped)
         if self.slow is None:
             return speed, quickening
-        haste = 1.0 + self.slow_rms * self.slow.value(time_s)
-        return speed * haste, quickening * haste**2 + speed * self.slow_rms * self.slow.slope(time_s)
+        speed_ratio = 1.0 + self.slow_rms * self.slow.value(time_s)
+        return speed * speed_ratio, quickening * speed_ratio**2 + speed * self.slow_rms * self.slow.slope(time_s)
 
     def _ahead_rad(self, carrier_rad: FloatArray) -> FloatArray:
         r = self.ripple

@@ -7,35 +7,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 NUMBERS = {
-    "contact_ratio": at.CONTACT_RATIO,
-    "intervals_per_pitch": at.PER_PITCH,
-    "missing_intervals_per_pitch": at.MISSING_PER_PITCH,
-    "reach_before": at.REACH_BEFORE,
-    "reach_after": at.REACH_AFTER,
-    "start_m": at.START_M,
-    "base_pitch_m": at.PITCH_M,
-    "line_of_action_m": at.LINE_M,
-    "backlash_m": at.BACKLASH_M,
-    "film_n_s_per_m": at.FILM,
-    "film_floor_m": at.FILM_FLOOR_M,
+    "contact_ratio": layout.CONTACT_RATIO,
+    "intervals_per_pitch": layout.PER_PITCH,
+    "missing_intervals_per_pitch": layout.MISSING_PER_PITCH,
+    "reach_before": layout.REACH_BEFORE,
+    "reach_after": layout.REACH_AFTER,
+    "start_m": layout.START_M,
+    "base_pitch_m": layout.PITCH_M,
+    "line_of_action_m": layout.LINE_M,
+    "backlash_m": layout.BACKLASH_M,
+    "film_n_s_per_m": layout.FILM,
+    "film_floor_m": layout.FILM_FLOOR_M,
 }
 DAMPING = {
-    "damping_structure_root_kg": at.DAMPING_STRUCTURE,
-    "damping_film_root_kg": at.DAMPING_FILM,
-    "damping_asperities_root_kg": at.DAMPING_ASPERITIES,
+    "damping_structure_root_kg": layout.DAMPING_STRUCTURE,
+    "damping_film_root_kg": layout.DAMPING_FILM,
+    "damping_asperities_root_kg": layout.DAMPING_ASPERITIES,
 }
 FRICTION = {
-    "friction.boundary": at.BOUNDARY,
-    "friction.slip_speed_m_s": at.SLIP_SPEED,
-    "friction.table.line_m": at.LUBRICATED_LINE,
-    "friction.table.start_m": at.LUBRICATED_START,
-    "friction.table.per_m": at.LUBRICATED_PER_M,
-    "friction.table.floor_n_per_m": at.LUBRICATED_FLOOR,
-    "friction.table.per_log": at.LUBRICATED_PER_LOG,
+    "friction.boundary": layout.BOUNDARY,
+    "friction.slip_speed_m_s": layout.SLIP_SPEED,
+    "friction.table.line_m": layout.LUBRICATED_LINE,
+    "friction.table.start_m": layout.LUBRICATED_START,
+    "friction.table.per_m": layout.LUBRICATED_PER_M,
+    "friction.table.floor_n_per_m": layout.LUBRICATED_FLOOR,
+    "friction.table.per_log": layout.LUBRICATED_PER_LOG,
 }
 
 
@@ -48,13 +48,13 @@ def law_tables(law: PairLaw) -> dict[str, Any]:
         Read as the compiled loop reads it, so that what a reader gets is what is integrated.
     """
     head, scalars = law.places, law.scalars
-    single = NUMBERS | (DAMPING if head[at.SHARE_DAMPS] else {"damping_root_kg": at.DAMPING_ROOT})
+    single = NUMBERS | (DAMPING if head[layout.SHARE_DAMPS] else {"damping_root_kg": layout.DAMPING_ROOT})
     tables = {name: float(scalars[place]) for name, place in single.items()} | _teeth(law)
-    if head[at.GROUPS]:
-        tables |= _slices(law) | {"slices.lead_m": float(scalars[at.LEAD_M])}
-    if head[at.APART]:
-        tables["coupling_m_per_n"] = _numbers(law, at.COUPLING_AT, (head[at.APART], head[at.POINTS]))
-    tables["rubs"] = bool(head[at.ROUGHNESSES])
+    if head[layout.GROUPS]:
+        tables |= _slices(law) | {"slices.lead_m": float(scalars[layout.LEAD_M])}
+    if head[layout.APART]:
+        tables["coupling_m_per_n"] = _numbers(law, layout.COUPLING_AT, (head[layout.APART], head[layout.POINTS]))
+    tables["rubs"] = bool(head[layout.ROUGHNESSES])
     if tables["rubs"]:
         tables |= _friction(law) | {name: float(scalars[place]) for name, place in FRICTION.items()}
     return tables
@@ -62,14 +62,17 @@ def law_tables(law: PairLaw) -> dict[str, Any]:
 
 def _teeth(law: PairLaw) -> dict[str, NDArray[Any]]:
     head = law.places
-    teeth = (int(head[at.TEETH_1]), int(head[at.TEETH_2]))
-    points, missing_points = int(head[at.POINTS]), int(head[at.MISSING_POINTS])
-    table_of_pair = _wholes(law, at.TABLE_AT, teeth)
+    teeth = (int(head[layout.TEETH_1]), int(head[layout.TEETH_2]))
+    points, missing_points = int(head[layout.POINTS]), int(head[layout.MISSING_POINTS])
+    table_of_pair = _wholes(law, layout.TABLE_AT, teeth)
     tables = {
-        "stiffness": _numbers(law, at.STIFFNESS_AT, (int(table_of_pair.max()) + 1, points)),
+        "stiffness": _numbers(law, layout.STIFFNESS_AT, (int(table_of_pair.max()) + 1, points)),
         "table_of_pair": table_of_pair,
     }
-    of_gears = ((at.MISSING_1_AT, at.OFFSET_1_AT, at.KIND_1_AT), (at.MISSING_2_AT, at.OFFSET_2_AT, at.KIND_2_AT))
+    of_gears = (
+        (layout.MISSING_1_AT, layout.OFFSET_1_AT, layout.KIND_1_AT),
+        (layout.MISSING_2_AT, layout.OFFSET_2_AT, layout.KIND_2_AT),
+    )
     for gear, (missing, offset, kind) in enumerate(of_gears):
         kinds = _wholes(law, kind, (teeth[gear],))
         tables[f"kind_of_tooth_{gear + 1}"] = kinds
@@ -79,22 +82,24 @@ def _teeth(law: PairLaw) -> dict[str, NDArray[Any]]:
 
 
 def _slices(law: PairLaw) -> dict[str, NDArray[Any]]:
-    points, groups = int(law.places[at.POINTS]), int(law.places[at.GROUPS])
-    rows = int(_wholes(law, at.TABLE_AT, (int(law.places[at.TEETH_1]), int(law.places[at.TEETH_2]))).max()) + 1
-    tables = {"slices.sink_m": _numbers(law, at.SINK_AT, (rows, points, groups))}
-    for name, place in (("flush", at.FLUSH_AT), ("land", at.LAND_AT), ("on_damage", at.ON_DAMAGE_AT)):
+    points, groups = int(law.places[layout.POINTS]), int(law.places[layout.GROUPS])
+    rows = (
+        int(_wholes(law, layout.TABLE_AT, (int(law.places[layout.TEETH_1]), int(law.places[layout.TEETH_2]))).max()) + 1
+    )
+    tables = {"slices.sink_m": _numbers(law, layout.SINK_AT, (rows, points, groups))}
+    for name, place in (("flush", layout.FLUSH_AT), ("land", layout.LAND_AT), ("on_damage", layout.ON_DAMAGE_AT)):
         tables[f"slices.{name}"] = _numbers(law, place, (rows, points))
-    tables["slices.contact_n_per_m"] = _numbers(law, at.CONTACT_AT, (points,))
+    tables["slices.contact_n_per_m"] = _numbers(law, layout.CONTACT_AT, (points,))
     return tables
 
 
 def _friction(law: PairLaw) -> dict[str, NDArray[Any]]:
     roughnesses, positions, loads = (
-        int(law.places[place]) for place in (at.ROUGHNESSES, at.LUBRICATED_POSITIONS, at.LUBRICATED_LOADS)
+        int(law.places[place]) for place in (layout.ROUGHNESSES, layout.LUBRICATED_POSITIONS, layout.LUBRICATED_LOADS)
     )
     return {
-        "friction.table.ratio": _numbers(law, at.RATIO_AT, (roughnesses, positions, loads)),
-        "friction.table.fluid": _numbers(law, at.FLUID_AT, (positions, loads)),
+        "friction.table.ratio": _numbers(law, layout.RATIO_AT, (roughnesses, positions, loads)),
+        "friction.table.fluid": _numbers(law, layout.FLUID_AT, (positions, loads)),
     }
 
 

@@ -13,7 +13,7 @@ from numba import njit
 from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
 from siggen.dynamics.friction.friction import friction_mixed
-from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import (
     ASPERITY_SHARE,
@@ -40,11 +40,13 @@ from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_
 @njit(cache=True, inline="always")
 def _film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
     """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
-    place = (position_m - scalars[at.START_M]) / scalars[at.PITCH_M]
-    if rate_m_s <= 0.0 or place < 0.0 or place > scalars[at.CONTACT_RATIO]:
+    place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
+    if rate_m_s <= 0.0 or place < 0.0 or place > scalars[layout.CONTACT_RATIO]:
         return 0.0
-    curvature_m = position_m * (scalars[at.LINE_M] - position_m) / scalars[at.LINE_M]
-    force_n: float = scalars[at.FILM] * (0.5 * curvature_m / max(gap_m, scalars[at.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+    curvature_m = position_m * (scalars[layout.LINE_M] - position_m) / scalars[layout.LINE_M]
+    force_n: float = (
+        scalars[layout.FILM] * (0.5 * curvature_m / max(gap_m, scalars[layout.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+    )
     return force_n
 
 
@@ -53,20 +55,21 @@ def _lubricate(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
 ) -> None:
     """Write asperity share and friction coefficient of slot i at a force; rough lands count by their share."""
-    loads, positions = index[at.LUBRICATED_LOADS], index[at.LUBRICATED_POSITIONS]
+    loads, positions = index[layout.LUBRICATED_LOADS], index[layout.LUBRICATED_POSITIONS]
     along, up, a, b = contact_cell(
-        positions, loads, scalars[at.LUBRICATED_LINE], scalars[at.LUBRICATED_START], scalars[at.LUBRICATED_PER_M],
-        scalars[at.LUBRICATED_FLOOR], scalars[at.LUBRICATED_PER_LOG], pairs[i, POSITION], force_n / pairs[i, CARRYING],
+        positions, loads, scalars[layout.LUBRICATED_LINE], scalars[layout.LUBRICATED_START],
+        scalars[layout.LUBRICATED_PER_M], scalars[layout.LUBRICATED_FLOOR], scalars[layout.LUBRICATED_PER_LOG],
+        pairs[i, POSITION], force_n / pairs[i, CARRYING],
     )  # fmt: skip
     corner = along * loads + up
-    share = min(cell_value(numbers, index[at.RATIO_AT] + corner, loads, a, b), 1.0)
+    share = min(cell_value(numbers, index[layout.RATIO_AT] + corner, loads, a, b), 1.0)
     rough = pairs[i, ROUGH]
-    if rough > 0.0 and index[at.ROUGHNESSES] > 1:
-        raised = cell_value(numbers, index[at.RATIO_AT] + positions * loads + corner, loads, a, b)
+    if rough > 0.0 and index[layout.ROUGHNESSES] > 1:
+        raised = cell_value(numbers, index[layout.RATIO_AT] + positions * loads + corner, loads, a, b)
         share = share * (1.0 - rough) + min(raised, 1.0) * rough
-    fluid = cell_value(numbers, index[at.FLUID_AT] + corner, loads, a, b)
+    fluid = cell_value(numbers, index[layout.FLUID_AT] + corner, loads, a, b)
     pairs[i, ASPERITY_SHARE] = share
-    pairs[i, COEFFICIENT] = friction_mixed(share, scalars[at.BOUNDARY], fluid)
+    pairs[i, COEFFICIENT] = friction_mixed(share, scalars[layout.BOUNDARY], fluid)
 
 
 @njit(cache=True, inline="always")
@@ -81,23 +84,23 @@ def _load(
     rate_m_s: float,
 ) -> None:
     """Write the forces of a touching slot: spring, damper, friction on the drive flank."""
-    root, driven = scalars[at.DAMPING_ROOT], pairs[i, FLANK] > 0.0
-    if index[at.SHARE_DAMPS] > 0:
-        root = scalars[at.DAMPING_STRUCTURE] + scalars[at.DAMPING_FILM]
+    root, driven = scalars[layout.DAMPING_ROOT], pairs[i, FLANK] > 0.0
+    if index[layout.SHARE_DAMPS] > 0:
+        root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM]
         if driven:
             _lubricate(scalars, numbers, index, pairs, i, elastic)
             share = pairs[i, ASPERITY_SHARE]
-            root = scalars[at.DAMPING_STRUCTURE] + scalars[at.DAMPING_FILM] * (1.0 - share)
-            root += scalars[at.DAMPING_ASPERITIES] * share
+            root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM] * (1.0 - share)
+            root += scalars[layout.DAMPING_ASPERITIES] * share
     pairs[i, DAMPING] = root * damping * pairs[i, STIFFNESS]
     force = elastic + pairs[i, DAMPING] * rate_m_s
     if not driven:
         pairs[i, NORMAL] = min(0.0, force)
     elif force > 0.0:
         pairs[i, NORMAL] = force
-        if index[at.ROUGHNESSES] > 0:
+        if index[layout.ROUGHNESSES] > 0:
             _lubricate(scalars, numbers, index, pairs, i, force)
-            pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[at.SLIP_SPEED])
+            pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[layout.SLIP_SPEED])
 
 
 @njit(cache=True)
@@ -116,7 +119,7 @@ def write_forces(
     if pairs[0, PLACED] != pitches:
         place_pairs(scalars, numbers, index, pitches, pairs)
     find_flanks(scalars, approach_m, pairs)
-    if index[at.APART] > 0:
+    if index[layout.APART] > 0:
         share_coupled(scalars, numbers, index, pairs)
     touching = 0.0
     for i in range(pairs.shape[0]):
@@ -143,7 +146,7 @@ def write_forces(
             elastic = pairs[i, NORMAL]
             pairs[i, NORMAL] = 0.0
             _load(scalars, numbers, index, pairs, i, elastic, damping, rate_m_s)
-        elif scalars[at.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
+        elif scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
             gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
             pairs[i, NORMAL] = _film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
 

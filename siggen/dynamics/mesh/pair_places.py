@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 (
@@ -56,27 +56,31 @@ def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitch
     for i in range(slots):
         pairs[i, WHOLE] = 0.0
     pairs[0, PLACED] = pitches
-    points = index[at.POINTS]
-    pair = int(np.floor(pitches + scalars[at.REACH_BEFORE]))
-    while pitches - pair < scalars[at.CONTACT_RATIO] + scalars[at.REACH_AFTER]:
+    points = index[layout.POINTS]
+    pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
+    while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
         place = pitches - pair
-        i, tooth_1, tooth_2 = pair % slots, pair % index[at.TEETH_1], pair % index[at.TEETH_2]
-        row = index[index[at.TABLE_AT] + tooth_1 * index[at.TEETH_2] + tooth_2]
-        cell, weight = _cell(place * scalars[at.PER_PITCH], points)
-        pairs[i, WHOLE] = between(numbers, index[at.STIFFNESS_AT] + row * points, cell, weight)
+        i, tooth_1, tooth_2 = pair % slots, pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
+        row = index[index[layout.TABLE_AT] + tooth_1 * index[layout.TEETH_2] + tooth_2]
+        cell, weight = _cell(place * scalars[layout.PER_PITCH], points)
+        pairs[i, WHOLE] = between(numbers, index[layout.STIFFNESS_AT] + row * points, cell, weight)
         pairs[i, ROW], pairs[i, CELL], pairs[i, WEIGHT] = row, cell, weight
-        pairs[i, POSITION] = scalars[at.START_M] + place * scalars[at.PITCH_M]
-        pairs[i, OFFSET] = numbers[index[at.OFFSET_1_AT] + tooth_1] + numbers[index[at.OFFSET_2_AT] + tooth_2]
-        count = index[at.MISSING_POINTS]
-        along, share = _cell((place + scalars[at.REACH_BEFORE]) * scalars[at.MISSING_PER_PITCH], count)
-        first = between(numbers, index[at.MISSING_1_AT] + index[index[at.KIND_1_AT] + tooth_1] * count, along, share)
-        first += between(numbers, index[at.MISSING_2_AT] + index[index[at.KIND_2_AT] + tooth_2] * count, along, share)
-        pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[at.LEAD_M]
+        pairs[i, POSITION] = scalars[layout.START_M] + place * scalars[layout.PITCH_M]
+        pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
+        count = index[layout.MISSING_POINTS]
+        along, share = _cell((place + scalars[layout.REACH_BEFORE]) * scalars[layout.MISSING_PER_PITCH], count)
+        first = between(
+            numbers, index[layout.MISSING_1_AT] + index[index[layout.KIND_1_AT] + tooth_1] * count, along, share
+        )
+        first += between(
+            numbers, index[layout.MISSING_2_AT] + index[index[layout.KIND_2_AT] + tooth_2] * count, along, share
+        )
+        pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[layout.LEAD_M]
         pairs[i, ROUGH] = 0.0
-        if index[at.GROUPS] > 0:
-            pairs[i, ROUGH] = between(numbers, index[at.ON_DAMAGE_AT] + row * points, cell, weight)
-        for a in range(min(index[at.APART], MOST_APART)):
-            pairs[i, COUPLED + a] = between(numbers, index[at.COUPLING_AT] + a * points, cell, weight)
+        if index[layout.GROUPS] > 0:
+            pairs[i, ROUGH] = between(numbers, index[layout.ON_DAMAGE_AT] + row * points, cell, weight)
+        for a in range(min(index[layout.APART], MOST_APART)):
+            pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
         pair -= 1
 
 
@@ -88,6 +92,6 @@ def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> No
             continue
         pairs[i, FLANK] = 0.0
         pairs[i, PENETRATION] = approach_m - pairs[i, GAP]
-        if pairs[i, PENETRATION] <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[at.BACKLASH_M]:
+        if pairs[i, PENETRATION] <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[layout.BACKLASH_M]:
             pairs[i, FLANK] = -1.0
-            pairs[i, PENETRATION] = approach_m - pairs[i, OFFSET] + scalars[at.BACKLASH_M]
+            pairs[i, PENETRATION] = approach_m - pairs[i, OFFSET] + scalars[layout.BACKLASH_M]

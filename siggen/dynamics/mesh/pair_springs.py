@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.dynamics.mesh import pair_law as at
+from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_places import (
     CELL,
     COUPLED,
@@ -40,16 +40,16 @@ def _spring(
     whole = pairs[i, WHOLE]
     if penetration_m <= 0.0:
         return 0.0, 0.0, 0.0
-    groups = index[at.GROUPS]
+    groups = index[layout.GROUPS]
     if groups > 0:
-        cell, weight, points = int(pairs[i, CELL]), pairs[i, WEIGHT], index[at.POINTS]
+        cell, weight, points = int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
         corner = int(pairs[i, ROW]) * points + cell
-        low = index[at.SINK_AT] + corner * groups
+        low = index[layout.SINK_AT] + corner * groups
         if numbers[low + groups - 1] != 0.0 or numbers[low + 2 * groups - 1] != 0.0:
-            flush = between(numbers, index[at.FLUSH_AT], corner, weight)
-            contact = between(numbers, index[at.CONTACT_AT], cell, weight)
+            flush = between(numbers, index[layout.FLUSH_AT], corner, weight)
+            contact = between(numbers, index[layout.CONTACT_AT], cell, weight)
             return grouped_force(numbers, low, groups, weight, flush, contact, whole, penetration_m)
-        land = between(numbers, index[at.LAND_AT], corner, weight)
+        land = between(numbers, index[layout.LAND_AT], corner, weight)
         return whole * penetration_m, whole, land
     return whole * penetration_m, whole, 1.0
 
@@ -57,14 +57,14 @@ def _spring(
 @njit(cache=True)
 def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
     """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
-    groups = index[at.GROUPS]
+    groups = index[layout.GROUPS]
     if groups == 0:
         return 0.0
     cell, weight = int(pairs[i, CELL]), pairs[i, WEIGHT]
-    corner = int(pairs[i, ROW]) * index[at.POINTS] + cell
-    if between(numbers, index[at.FLUSH_AT], corner, weight) > 0.0:
+    corner = int(pairs[i, ROW]) * index[layout.POINTS] + cell
+    if between(numbers, index[layout.FLUSH_AT], corner, weight) > 0.0:
         return 0.0
-    low = index[at.SINK_AT] + corner * groups
+    low = index[layout.SINK_AT] + corner * groups
     sink: float = numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
     return sink
 
@@ -84,7 +84,7 @@ def spring_of_flank(
 @njit(cache=True)
 def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
     """Return c of two slots [m/N]."""
-    away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[at.PITCH_M]))
+    away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[layout.PITCH_M]))
     if away == 0 or abs(away) > apart:
         return 0.0
     # The pair that entered later has the smaller s.
@@ -111,7 +111,7 @@ def _solve(work: FloatArray) -> None:
 @njit(cache=True)
 def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray) -> None:
     """Replace the penetration of every pair by itself with that under the forces of the others."""
-    slots, apart = pairs.shape[0], min(index[at.APART], MOST_APART)
+    slots, apart = pairs.shape[0], min(index[layout.APART], MOST_APART)
     coupling = MATRIX + slots
     work = np.zeros((slots, coupling + slots))  # one array: each costs as much as half a solution
     for i in range(slots):

@@ -107,8 +107,10 @@ class PairMotion:
     def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`; without inputs at Ω_0."""
         result = np.stack([pair_table(self.law)] * len(states))
-        haste = np.zeros(len(states)) if inputs is None or self._speed_input < 0 else inputs[:, self._speed_input]
-        _all_pairs(self.pair_equations, self.law, states, pitches, np.ascontiguousarray(haste), result)
+        speed_deviation = (
+            np.zeros(len(states)) if inputs is None or self._speed_input < 0 else inputs[:, self._speed_input]
+        )
+        _all_pairs(self.pair_equations, self.law, states, pitches, np.ascontiguousarray(speed_deviation), result)
         return result
 
     def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
@@ -149,9 +151,9 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
 
 
 @njit(cache=True)
-def _hastened(equations: PairEquations, haste: float) -> PairEquations:
-    """Return the equations at the speed Ω_0 (1 + haste)."""
-    ratio = 1.0 + haste
+def _at_speed(equations: PairEquations, speed_deviation: float) -> PairEquations:
+    """Return the equations at the speed Ω_0 (1 + speed_deviation)."""
+    ratio = 1.0 + speed_deviation
     return PairEquations(
         equations.rows,
         equations.static_force,
@@ -227,7 +229,7 @@ def _advance(
         external_push(equations.external_input, inputs[i], pushes[0])
         external_push(equations.external_input, inputs[i + 1], pushes[1])
         if speed_input >= 0:
-            model = (_hastened(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
+            model = (_at_speed(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
         runge_kutta_step(
             pair_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
         )
@@ -254,8 +256,8 @@ def _all_pairs(
     law: PairLaw,
     states: FloatArray,
     pitches: FloatArray,
-    haste: FloatArray,
+    speed_deviation: FloatArray,
     result: FloatArray,
 ) -> None:
     for i in range(states.shape[0]):
-        _load_pairs(_hastened(equations, haste[i]), law, result[i], states[i], pitches[i])
+        _load_pairs(_at_speed(equations, speed_deviation[i]), law, result[i], states[i], pitches[i])
