@@ -2,12 +2,12 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := diagnostics,cnn,onnx,dev
+EXTRAS := diagnostics,cnn,onnx,dev,docs
 DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench reports clean
+.PHONY: demo test test-slow lint bench reports reference docs clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -35,5 +35,15 @@ bench: $(STAMP)
 reports: $(STAMP)
 	$(BIN)/python docs/scripts/report_pages.py
 
+# The pages that are printed by a script; tests compare them with what it prints.
+reference: $(STAMP)
+	for page in yaml:yaml command:commands column:columns; do \
+		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
+	done
+
+# NO_MKDOCS_2_WARNING: the theme's note about a later mkdocs, which constraints.txt does not install.
+docs: $(STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
 clean:
-	rm -rf $(VENV) runs build dist
+	rm -rf $(VENV) runs build dist site

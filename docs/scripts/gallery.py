@@ -1,4 +1,4 @@
-"""Figures and numbers of docs/gallery.md: severity, position and size of pits on the gear pair of configs/paper_a.yaml."""
+"""Figures and numbers of docs/understand/gallery.md: severity, position and size of pits on the gear pair of configs/paper_a.yaml."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Table of docs/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
+"""Table of docs/understand/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
 
 from math import radians
 
@@ -54,7 +54,7 @@ def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print the table of docs/iso_6336.md."""
+    """Print the table of docs/understand/iso_6336.md."""
     print("| z1/z2 | ε | c'th | c' | cγα of c'th | cγα | " + " | ".join(MODELS) + " |")
     print("|---" * (6 + len(MODELS)) + "|")
     ratios = {name: [] for name in MODELS}

@@ -17,7 +17,7 @@ from siggen.dynamics.identification import (
     series_inertia,
 )
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "identification.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "identification.md"
 RATIOS = st.floats(0.002, 0.2)
 
 
