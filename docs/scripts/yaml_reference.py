@@ -292,7 +292,9 @@ def groups(keys: list[Key], top: str) -> Iterator[tuple[str, str, list[Key]]]:
             found.setdefault(begins[0], []).append(key)
     for start, inside in found.items():
         name = start.removesuffix(".")
-        yield (f"### {name}" if "(kind" in name or len(found) > 1 and name == top else ""), start, inside
+        mapping_too = len(found) > 1 and name == top and f"{top}[]." in found
+        heading = f"### {top} as one mapping" if mapping_too else f"### {name}" if "(kind" in name else ""
+        yield heading, start, inside
 
 
 def page() -> str:
