@@ -41,7 +41,7 @@ reference: $(STAMP)
 		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
 	done
 
-# NO_MKDOCS_2_WARNING: the theme's note about a later mkdocs, which constraints.txt does not install.
+# NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
 docs: $(STAMP)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
