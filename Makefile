@@ -7,12 +7,17 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench reports clean
+.PHONY: demo test test-slow lint bench reports reference docs clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q -c constraints.txt -e '.[$(EXTRAS)]'
 	touch $(STAMP)
+
+# What builds the site is not needed for anything else.
+$(VENV)/.documented: $(STAMP)
+	$(BIN)/python -m pip install -q -c constraints.txt -e '.[docs]'
+	touch $@
 
 demo: $(STAMP)
 	$(BIN)/siggen generate configs/quickstart.yaml --out $(DEMO)
@@ -26,7 +31,7 @@ lint: $(STAMP)
 test: lint
 	$(BIN)/python -m pytest
 
-test-slow: $(STAMP)
+test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow
 
 bench: $(STAMP)
@@ -35,5 +40,15 @@ bench: $(STAMP)
 reports: $(STAMP)
 	$(BIN)/python docs/scripts/report_pages.py
 
+# The pages that are printed by a script; tests compare them with what it prints.
+reference: $(STAMP)
+	for page in yaml:yaml command:commands column:columns; do \
+		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
+	done
+
+# NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
+docs: $(VENV)/.documented
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
 clean:
-	rm -rf $(VENV) runs build dist
+	rm -rf $(VENV) runs build dist site

@@ -6,12 +6,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from diagnostics.loader.epoch_order import Shuffling
     from diagnostics.loader.window_index import StreamSettings
     from diagnostics.loader.window_stream import WindowLoader, WindowStream
 
-__all__ = ["StreamSettings", "WindowLoader", "WindowStream"]
+__all__ = ["Shuffling", "StreamSettings", "WindowLoader", "WindowStream"]
 
-_HOMES = {"StreamSettings": "window_index", "WindowLoader": "window_stream", "WindowStream": "window_stream"}
+_HOMES = {
+    "Shuffling": "epoch_order",
+    "StreamSettings": "window_index",
+    "WindowLoader": "window_stream",
+    "WindowStream": "window_stream",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""The same record twice: integrated by siggen, and by scipy from an exported model (docs/exported_model.md)."""
+"""The same record twice: integrated by siggen, and by scipy from an exported model (docs/reference/exported_model.md)."""
 
 import sys
 import tempfile

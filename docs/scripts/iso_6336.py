@@ -1,12 +1,12 @@
-"""Table of docs/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
+"""Table of docs/understand/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
 
 from math import radians
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.geometry.gear_pair.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness.mesh_stiffness.mesh_stiffness import pair_stiffness
+from siggen.gears.stiffness.mesh_stiffness.stiffness_options import StiffnessOptions
 
 MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
 LINE_LOAD_N_PER_M = 300e3
@@ -56,7 +56,7 @@ def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print the table of docs/iso_6336.md."""
+    """Print the table of docs/understand/iso_6336.md."""
     print("| z1/z2 | ε | c'th | c' | cγα of c'th | cγα | " + " | ".join(MODELS) + " |")
     print("|---" * (6 + len(MODELS)) + "|")
     ratios = {name: [] for name in MODELS}

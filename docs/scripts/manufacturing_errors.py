@@ -1,4 +1,4 @@
-"""Tables of docs/manufacturing_errors.md: sidebands and mesh force of healthy gears of several classes at 30 N m."""
+"""Tables of docs/understand/manufacturing_errors.md: sidebands and mesh force of healthy gears of several classes at 30 N m."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Figures of docs/paper_a.md: spectra of the four states of configs/paper_a.yaml, and the energy of their sidebands."""
+"""Figures of docs/understand/paper_a.md: spectra of the four states of configs/paper_a.yaml, and the energy of their sidebands."""
 
 from pathlib import Path
 

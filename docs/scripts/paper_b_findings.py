@@ -1,4 +1,4 @@
-"""Figures and tables of docs/paper_b.md: speed, severity, friction and lubrication of the gearbox of configs/paper_b.yaml."""
+"""Figures and tables of docs/understand/paper_b.md: speed, severity, friction and lubrication of the gearbox of configs/paper_b.yaml."""
 
 import sys
 from pathlib import Path

@@ -49,7 +49,7 @@ FIGURES = {
     "bench_indicators.png": "bench_indicators/figures/separation.png",
     "bench_ladder.png": "bench_ladder/figures/detection.png",
 }
-"""Figures of docs/presets.md, and what writes them."""
+"""Figures of docs/understand/presets.md, and what writes them."""
 
 NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")}
 

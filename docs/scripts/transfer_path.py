@@ -1,4 +1,4 @@
-"""Numbers of docs/design/transfer_path.md: levels and noise of healthy channels, and how sensors of one gearbox differ.
+"""Numbers of docs/understand/transfer_path.md: levels and noise of healthy channels, and how sensors of one gearbox differ.
 
 `python docs/scripts/transfer_path.py`; it takes half a minute.
 """

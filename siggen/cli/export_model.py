@@ -16,7 +16,9 @@ def export_model(
         list[str] | None, typer.Option("--set", help="Override a key, such as duration_s=0.5.")
     ] = None,
 ) -> None:
-    """Write matrices, mesh law, start state and time grid of one record; docs/exported_model.md describes every key.
+    """Write matrices, mesh law, start state and time grid of one record.
+
+    docs/reference/exported_model.md describes every key.
 
     Example: siggen export-model configs/paper_a.yaml --record 1 --out model.npz
     """

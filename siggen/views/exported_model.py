@@ -1,6 +1,6 @@
 """One record's equations of motion as plain arrays, so that anybody can integrate the same record with other tools.
 
-Every key is described in docs/exported_model.md. Numbers and tables of a mesh law stand under `law.`.
+Every key is described in docs/reference/exported_model.md. Numbers and tables of a mesh law stand under `law.`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ FORMAT_VERSION = 1
 ENDING = ".npz"
 
 Model = Mapping[str, Any]
-"""Key -> array or plain value, see docs/exported_model.md."""
+"""Key -> array or plain value, see docs/reference/exported_model.md."""
 
 
 def exported_model(config: Config, record_id: int) -> Model:

@@ -1,4 +1,4 @@
-"""docs/physics_checks.md names tests that exist."""
+"""docs/develop/physics_checks.md names tests that exist."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMED = re.findall(r"`([\w/]+\.py)::(\w+)`", (ROOT / "docs" / "physics_checks.md").read_text())
+NAMED = re.findall(r"`([\w/]+\.py)::(\w+)`", (ROOT / "docs" / "develop" / "physics_checks.md").read_text())
 
 
 def test_every_named_test_exists() -> None:

@@ -1,4 +1,4 @@
-"""The Python blocks of README.md run as they stand there, on a smaller set."""
+"""The Python blocks of README.md and of the page on loading a set run as they stand there, on a smaller set."""
 
 from __future__ import annotations
 
@@ -11,9 +11,16 @@ import pytest
 import siggen
 
 ROOT = Path(__file__).resolve().parents[2]
-BLOCKS = re.findall(
-    r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
-)
+
+
+def blocks(page: str) -> list[str]:
+    """Return the Python blocks of a page."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+BLOCKS = blocks("README.md")
+LOADING = blocks("docs/start/load_a_set.md")
 GIVEN = '"specimens=40"'
 QUICK = '"specimens=2", "duration_s=0.3", "states=[{name: healthy}]"'
 
@@ -27,3 +34,10 @@ def test_python_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
         exec(compile(block.replace(GIVEN, QUICK), "README.md", "exec"), {"__name__": "__main__"})
     first = siggen.open("runs/forty").labels("train").to_pylist()[0]
     assert str(first) in capsys.readouterr().out
+
+    assert len(LOADING) == 2
+    names: dict[str, object] = {}
+    for block in LOADING:
+        exec(compile(block.replace("runs/quickstart", "runs/forty"), "load_a_set.md", "exec"), names)
+    assert names["signals"].shape[1] == 0.3 * 25600
+    assert names["batch"]["windows"].shape[1:] == (2, 8 * 288)

@@ -16,7 +16,7 @@ from siggen.views.exported_model import FORMAT_VERSION, exported_model
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "docs" / "scripts" / "exported_model.py"
-PAGE = (ROOT / "docs" / "exported_model.md").read_text()
+PAGE = (ROOT / "docs" / "reference" / "exported_model.md").read_text()
 runner = CliRunner()
 
 
@@ -88,7 +88,7 @@ def test_what_the_script_does_not_know_is_refused_by_name() -> None:
 def test_every_key_is_described(name: str, record: int, overrides: list[str]) -> None:
     model = exported_model(load_config(ROOT / "configs" / f"{name}.yaml", ["duration_s=0.01", *overrides]), record)
     missing = [key for key in model if f"`{key}`" not in PAGE]
-    assert not missing, f"docs/exported_model.md does not describe {missing}"
+    assert not missing, f"docs/reference/exported_model.md does not describe {missing}"
     assert model["format_version"] == FORMAT_VERSION
 
 

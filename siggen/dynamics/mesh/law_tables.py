@@ -40,7 +40,7 @@ FRICTION = {
 
 
 def law_tables(law: PairLaw) -> dict[str, Any]:
-    """Return name -> array or number of everything that this law uses, in the shapes of docs/exported_model.md.
+    """Return name -> array or number of everything that this law uses (docs/reference/exported_model.md).
 
     Parameters
     ----------

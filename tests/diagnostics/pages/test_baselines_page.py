@@ -1,4 +1,4 @@
-"""The example of docs/baselines.md for one's own classifier runs, and its baseline is that of the report."""
+"""The example of docs/understand/baselines.md for one's own classifier runs, and its baseline is that of the report."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 import siggen
 from diagnostics.training.training import NetworkOptions, train_models
 
-PAGE = (Path(__file__).resolve().parents[3] / "docs" / "baselines.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "understand" / "baselines.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow  # trains the baselines and their permuted labels
@@ -23,7 +23,7 @@ def test_own_classifier_is_judged_beside_the_baseline_of_the_report(
     (block,) = [code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if "RandomForest" in code]
     monkeypatch.setattr(siggen, "open", lambda path: dataset)
     names: dict[str, Any] = {"__name__": "__main__"}
-    exec(compile(block, "docs/baselines.md", "exec"), names)
+    exec(compile(block, "docs/understand/baselines.md", "exec"), names)
     reported = train_models(dataset, features, 0, network=NetworkOptions(cnn=False)).judged
     (indicators,) = [found for found in reported if found.name == "indicators"]
     # the report trains in one BLAS thread, a reader in as many as there are: sums round differently

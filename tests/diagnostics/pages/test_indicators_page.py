@@ -1,4 +1,4 @@
-"""The page docs/indicators.md runs as it stands, and its table is that of the registry."""
+"""The page docs/understand/indicators.md runs as it stands, and its table is that of the registry."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from diagnostics.indicators.definitions import DEFINITIONS, definition_table
 from diagnostics.indicators.own_indicator import unregister
 from siggen.cli.app import main as siggen_main
 
-PAGE = (Path(__file__).resolve().parents[3] / "docs" / "indicators.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "understand" / "indicators.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -51,7 +51,7 @@ def test_page_runs_from_yaml_to_ranking(
             elif language == "sh":
                 assert command(code, monkeypatch) == 0, capsys.readouterr().err
             else:
-                exec(compile(code, "docs/indicators.md", "exec"), {"__name__": "page"})
+                exec(compile(code, "docs/understand/indicators.md", "exec"), {"__name__": "page"})
     finally:
         unregister("peak_to_peak")
     ranking = pq.read_table("ranking/evaluation.parquet")

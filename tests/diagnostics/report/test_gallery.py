@@ -52,7 +52,7 @@ def test_places_on_a_machine_are_found_and_other_words_are_not(script: ModuleTyp
 
 
 def test_the_commands_that_make_the_bench_are_those_of_the_presets_page(script: ModuleType) -> None:
-    page = re.sub(r"(?:\\|\s)+", " ", (ROOT / "docs" / "presets.md").read_text(encoding="utf-8"))
+    page = re.sub(r"(?:\\|\s)+", " ", (ROOT / "docs" / "understand" / "presets.md").read_text(encoding="utf-8"))
     for command in (*script.SETS["bench"], *script.SETS["other"]):
         assert command in page
     for _, command in script.REPORTS["bench"].values():

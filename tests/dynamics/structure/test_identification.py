@@ -17,7 +17,7 @@ from siggen.dynamics.structure.identification import (
     series_inertia,
 )
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "identification.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "understand" / "identification.md"
 RATIOS = st.floats(0.002, 0.2)
 
 

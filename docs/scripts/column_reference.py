@@ -1,0 +1,165 @@
+"""Print docs/reference/columns.md: `python docs/scripts/column_reference.py > docs/reference/columns.md`.
+
+Names, types, units and meanings are those that the files of a set carry; which section of the YAML file brings a column
+is found by leaving that section out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import pyarrow as pa
+
+import siggen
+from siggen.columns.record import damage_schema, record_schema
+from siggen.record.quantities import quantity_column
+from siggen.checks.quantity_names import available_quantities
+
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
+FULL = CONFIGS / "transfer_path.yaml"
+ADDED = {"manufacture": "manufacture={accuracy_class: 6}", "variation": "variation.speed.random_rms=0.001"}
+"""With these a configuration that has every part with columns of its own."""
+SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")
+NAMES = {
+    r"theta_\w+_rad": "rotation of motor (m), pinion (1), gear (2) and load (l) about the mean rotation",
+    r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of pinion (1), gear (2) and casing (c)",
+    r"phi_c_rad": "rocking of the casing",
+    r"clean_accel_.*": "acceleration at this place without path, sensor and noise",
+    r"bearing_force_.*": "force on the housing at both bearings of this shaft",
+    r"pair_k_force_n": "force of this pair along the line of action",
+    r"pair_k_load_share": "force of this pair over that of all",
+    r"pair_k_friction_n": "friction of this pair",
+    r"pair_k_sliding_m_s": "sliding speed at the contact",
+    r"pair_k_position_m": "place of the contact on the path of contact, from its start",
+    r"pair_k_friction_moment_pinion_nm": "moment of the pair's friction about the pinion's axis",
+    r"pair_k_friction_moment_gear_nm": "moment of the pair's friction about the gear's axis",
+    r"pair_k_friction_coefficient": "friction coefficient",
+    r"pair_k_damping_n_s_per_m": "damping of the pair",
+    r"pair_k_hertz_pressure_pa": "largest pressure in the contact",
+    r"pair_k_central_film_m": "central film thickness",
+    r"pair_k_film_ratio": "film thickness over the roughness of both flanks",
+    r"pair_k_asperity_share": "share of the load that asperities carry",
+}
+"""Meanings of quantities whose column says no more than their name."""
+
+HEAD = """# Columns of a set
+
+This page is printed by `python docs/scripts/column_reference.py` from the columns that siggen writes. The files carry
+the same texts as metadata of their fields (`unit`, `meaning`).
+
+`CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. The last column names the section of the YAML file that
+a set needs to have the column; without an entry every set has it.
+"""
+
+
+def schema(overrides: Iterable[str] = (), without: str = "") -> pa.Schema:
+    """Return the columns of the full configuration with overrides, or without one of the added sections."""
+    added = [text for section, text in ADDED.items() if section != without]
+    return record_schema(siggen.load_config(FULL, [*added, *overrides]))
+
+
+def general(name: str, channels: Iterable[str]) -> str:
+    """Return a name with the channel left open."""
+    for channel in sorted(channels, key=len, reverse=True):
+        name = name.replace(channel, "CHANNEL")
+    return name
+
+
+def needs(full: pa.Schema) -> dict[str, str]:
+    """Return column -> section that brings it."""
+    found: dict[str, str] = {}
+    for section in ADDED:
+        found |= {name: f"`{section}`" for name in set(full.names) - set(schema(without=section).names)}
+    silent = schema(["housing.force_noise=null"])
+    found |= {name: "`housing.force_noise`" for name in set(full.names) - set(silent.names)}
+    sensors = len(siggen.load_config(FULL).sensors)
+    for part in SENSOR_PARTS:
+        # a path is what lets a sensor look along the shafts, so that column and axis go together
+        axes = ("sensors.{}.axes=[vertical]",) if part == "path" else ()
+        keys = [text.format(k) for k in range(sensors) for text in (f"sensors.{{}}.{part}=null", *axes)]
+        left = {general(name, channels(full)) for name in schema(keys).names}
+        found |= {name: f"`sensors[].{part}`" for name in full.names if general(name, channels(full)) not in left}
+    return found
+
+
+def channels(full: pa.Schema) -> list[str]:
+    """Return the names of the channels of a schema."""
+    facts = [field.metadata or {} for field in full]
+    return [f"{fact[b'sensor'].decode()}_{fact[b'axis'].decode()}" for fact in facts if b"sensor" in fact]
+
+
+def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable[str]) -> Iterator[str]:
+    """Yield one row for every column, channels together."""
+    yield "| column | meaning | unit | type | needs |"
+    yield "| --- | --- | --- | --- | --- |"
+    seen = set()
+    for field in fields:
+        name = general(field.name, named)
+        if name in seen:
+            continue
+        seen.add(name)
+        facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
+        meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
+        kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
+        yield f"| `{name}` | {meaning} | {facts.get('unit', '')} | {kind} | {brought.get(field.name, '')} |"
+
+
+def internals() -> Iterator[str]:
+    """Yield one row for every internal quantity of a gearbox with casing, tooth pairs and oil friction."""
+    yield "| quantity | meaning | unit |"
+    yield "| --- | --- | --- |"
+    seen = set()
+    for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml")):
+        column = quantity_column(name)
+        shown = re.sub(r"pair_\d+", "pair_k", name)
+        if shown in seen:
+            continue
+        seen.add(shown)
+        spelled = column.meaning.startswith(name.replace("_", " "))
+        note = column.meaning.removeprefix(name.replace("_", " ")) if spelled else ""
+        meaning = next((text for pattern, text in NAMES.items() if re.fullmatch(pattern, shown)), "") if spelled else ""
+        yield f"| `{shown}` | {meaning + note if spelled else column.meaning} | {column.unit} |"
+
+
+def page() -> str:
+    """Return the page."""
+    full = schema()
+    brought, named = needs(full), channels(full)
+    signals = [field for field in full if pa.types.is_fixed_size_list(field.type) or field.name == "tacho_s"]
+    labels = [field for field in full if field not in signals]
+    return "\n".join(
+        (
+            HEAD,
+            "## Labels",
+            "",
+            "In `data/*.parquet` and, without signals, in `metadata/*.parquet`.",
+            "",
+            *rows(labels, brought, named),
+            "",
+            "## Signals",
+            "",
+            "In `data/*.parquet` only.",
+            "",
+            *rows(signals, brought, named),
+            "",
+            "## Damage",
+            "",
+            "In `damage/*.parquet`: one row per pit or spall of a record.",
+            "",
+            *rows(damage_schema(siggen.load_config(FULL)), {}, ()),
+            "",
+            "## Internal quantities",
+            "",
+            "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of the record.",
+            "`siggen simulate` writes them for one record. The table shows those of `configs/quickstart.yaml`; other models",
+            "have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1, ...",
+            "",
+            *internals(),
+        )
+    )
+
+
+if __name__ == "__main__":
+    print(page())

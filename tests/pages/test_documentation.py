@@ -1,0 +1,86 @@
+"""The documentation: links lead somewhere, named files exist, and printed pages are what their scripts print."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+SCRIPTS = {"yaml": "yaml_reference", "commands": "command_reference", "columns": "column_reference"}
+"""Printed page of docs/reference -> the script in docs/scripts that prints it."""
+NAMING = [
+    *(page for page in PAGES if page.stem not in SCRIPTS),
+    *(ROOT / "docs" / "scripts").glob("*.py"),
+    *(ROOT / "configs").glob("*.yaml"),
+    *(ROOT / "tests").rglob("*.py"),
+    *(ROOT / "benchmarks").rglob("*.py"),
+]
+LINK = re.compile(r"\]\(([^)\s#]*)(?:#([^)\s]*))?\)|(?:src|href)=\"([^\"#]+)\"")
+NAMED = re.compile(r"(?<![\w/.])(?:docs|configs|benchmarks)/[\w/-]+\.(?:md|py|yaml|png|html)\b")
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors of a page's headings, as GitHub and the site make them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    titles = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", title.lower()).strip().replace(" ", "-") for title in titles}
+
+
+def broken(page: Path) -> list[str]:
+    """Return the links of a page that lead nowhere in the repository."""
+    text = re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S))
+    found = []
+    for path, anchor, source in LINK.findall(text):
+        target = path or source
+        if re.match(r"\w+:", target):
+            continue
+        file = (page.parent / target).resolve() if target else page
+        if not file.exists() or (anchor and file.suffix == ".md" and anchor not in anchors(file)):
+            found.append(f"{target}#{anchor}" if anchor else target)
+    return found
+
+
+def test_every_relative_link_leads_somewhere() -> None:
+    assert len(PAGES) > 20
+    assert {str(page.relative_to(ROOT)): links for page in PAGES if (links := broken(page))} == {}
+
+
+def test_a_broken_link_is_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("# Here\n[a](#here) [b](#there) [c](gone.md) [d](https://example.org/x) `[e](code.md)`\n")
+    assert broken(page) == ["#there", "gone.md"]
+
+
+def test_every_file_that_is_named_exists() -> None:
+    missing = {
+        f"{file.relative_to(ROOT)}: {name}"
+        for file in NAMING
+        for name in NAMED.findall(file.read_text(encoding="utf-8"))
+        if not (ROOT / name).exists()
+    }
+    assert missing == set()
+
+
+@pytest.mark.parametrize(("page", "script"), SCRIPTS.items(), ids=SCRIPTS)
+def test_a_printed_page_is_what_its_script_prints(page: str, script: str) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
+    command = [sys.executable, str(ROOT / "docs" / "scripts" / f"{script}.py")]
+    printed = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
+    written = (ROOT / "docs" / "reference" / f"{page}.md").read_text(encoding="utf-8")
+    assert printed == written, f"docs/reference/{page}.md is out of date: run `make reference`"
+
+
+@pytest.mark.slow  # builds the whole site
+def test_the_site_builds_without_warnings_and_fetches_nothing(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path / "site")]
+    built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    fetched = re.compile(r"<(?:script|img)[^>]*\ssrc=\"?https?:|<link[^>]*stylesheet[^>]*href=\"?https?:")
+    for page in (tmp_path / "site").rglob("*.html"):
+        assert not fetched.search(page.read_text(encoding="utf-8")), page
