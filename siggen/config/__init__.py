@@ -19,6 +19,7 @@ from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
+from siggen.config.shafts import Shaft, Shafts
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
@@ -64,6 +65,8 @@ __all__ = [
     "Resonance",
     "Rotor",
     "Sensor",
+    "Shaft",
+    "Shafts",
     "SpallSize",
     "Spalls",
     "SpeedVariation",

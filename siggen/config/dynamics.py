@@ -12,6 +12,7 @@ from siggen.config.first_default import IdentityDefault
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
+from siggen.config.shafts import Shafts
 
 
 class Rotor(Section):
@@ -96,6 +97,9 @@ class Dynamics(Section):
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
     bearing_tones: BearingTones = Field(default=BearingTones(), description="forces of rolling bearings")
+    shafts: Shafts | None = Field(
+        default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
+    )
 
     @property
     def method(self) -> str:

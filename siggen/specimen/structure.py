@@ -9,10 +9,12 @@ from siggen.config import Caps as CapsSection
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Dynamics, Rotor, Sensor, constant
+from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.structure.bearing_caps import Caps
 from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
+from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
@@ -40,7 +42,7 @@ def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()
         output_coupling=_coupling(dynamics.output_coupling),
     )
     if dynamics.model == "casing":
-        return casing_structure(stage, _casing(dynamics.casing, pair, sensors))
+        return casing_structure(stage, _casing(dynamics.casing, pair, sensors), _shafts(dynamics, stage, pair))
     return ASSEMBLIES[dynamics.model](stage)
 
 
@@ -66,6 +68,26 @@ def _rotor(section: Rotor, gear: SpurGear, face_width_m: float) -> RotorNumbers:
             damping_x_n_s_per_m=constant(section.bearing_damping_x_n_s_per_m),
             damping_y_n_s_per_m=constant(section.bearing_damping_y_n_s_per_m),
         ),
+    )
+
+
+def _shafts(dynamics: Dynamics, stage: SpurStage, pair: GearPair) -> tuple[Shaft, Shaft] | None:
+    """Return the shafts that bend, each with the moment of inertia of its gear about a diameter: J/2 + m b²/12."""
+    if dynamics.shafts is None:
+        return None
+    pairs = ((dynamics.shafts.pinion, stage.pinion), (dynamics.shafts.gear, stage.gear))
+    pinion, gear = (_shaft(section, rotor, pair) for section, rotor in pairs)
+    return pinion, gear
+
+
+def _shaft(section: ShaftSection, rotor: RotorNumbers, pair: GearPair) -> Shaft:
+    return Shaft(
+        span_m=1e-3 * constant(section.bearing_span_mm),
+        gear_share=constant(section.gear_position),
+        diameter_m=1e-3 * constant(section.diameter_mm),
+        youngs_modulus_pa=pair.youngs_modulus_pa,
+        poisson_ratio=pair.poisson_ratio,
+        tilt_inertia_kg_m2=0.5 * rotor.inertia_kg_m2 + rotor.mass_kg * pair.face_width_m**2 / 12.0,
     )
 
 

@@ -6,7 +6,7 @@ and cap, and the cap's own seat in the casing behind it. Caps that sit rigidly l
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import sqrt
 
@@ -14,6 +14,8 @@ from siggen.dynamics.structure.structure import Element
 
 SIDES = ("a", "b")
 """Ends of a shaft; without tilting shafts both caps of a shaft move alike."""
+
+GEAR_MOTIONS = ("x_1", "y_1", "x_2", "y_2")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,44 +46,48 @@ class CappedBearings:
     motions: Mapping[str, Mapping[str, float]]
 
 
-def capped(bearings: Mapping[str, Element], caps: Caps) -> CappedBearings:
-    """Return caps between the ends of bearing elements, which are named place/axis and begin at a gear's x and y."""
+def capped(ends: Mapping[str, Mapping[str, Element]], caps: Caps) -> CappedBearings:
+    """Return caps between gears and casing; `ends`: what lies between them, by place/axis and end of the shaft."""
     inner: list[Element] = []
     seats: dict[str, tuple[Element, ...]] = {}
     motions: dict[str, Mapping[str, float]] = {}
-    for name, bearing in bearings.items():
+    for name, bearings in ends.items():
         place, axis = name.split("/")
-        halves = list(_halves(bearing, axis, caps))
-        inner += [half for half, _ in halves]
-        seats[name] = tuple(seat for _, seat in halves)
-        motions[f"{place.removesuffix('bearing')}cap/{axis}"] = _on_cap(bearing, SIDES[0])
+        parted = [_parted(bearing, side, axis, caps) for side, bearing in bearings.items()]
+        inner += [spring for spring, _ in parted]
+        seats[name] = tuple(seat for _, seat in parted)
+        motions[f"{place.removesuffix('bearing')}cap/{axis}"] = _on_cap(bearings[SIDES[0]], SIDES[0])
     masses = {f"{axis}_{gear}{side}": caps.mass_kg for gear in "12" for side in SIDES for axis in "xy"}
     outer = [seat for pair in seats.values() for seat in pair]
     return CappedBearings(masses, (*inner, *outer), seats, motions)
 
 
-def uncapped(bearings: Mapping[str, Element]) -> CappedBearings:
+def uncapped(ends: Mapping[str, Mapping[str, Element]]) -> CappedBearings:
     """Return bearings that sit in the casing itself."""
-    return CappedBearings({}, tuple(bearings.values()), {name: (e,) for name, e in bearings.items()}, {})
+    seats = {name: tuple(bearings.values()) for name, bearings in ends.items()}
+    return CappedBearings({}, tuple(e for bearings in seats.values() for e in bearings), seats, {})
 
 
-def _halves(bearing: Element, axis: str, caps: Caps) -> Iterator[tuple[Element, Element]]:
-    """Yield spring between gear and cap, and seat of the cap, at both ends of the shaft."""
+def halves(bearing: Element) -> dict[str, Element]:
+    """Return the two bearings of a shaft that does not tilt."""
+    return {side: Element(bearing.direction, 0.5 * bearing.stiffness, 0.5 * bearing.damping) for side in SIDES}
+
+
+def _parted(bearing: Element, side: str, axis: str, caps: Caps) -> tuple[Element, Element]:
+    """Return the spring between gear and cap, and the seat of the cap."""
     stiffness = caps.horizontal_stiffness_n_per_m if axis == "horizontal" else caps.vertical_stiffness_n_per_m
     damping = 2.0 * caps.damping_ratio * sqrt(stiffness * caps.mass_kg)
     gear = {name: share for name, share in bearing.direction.items() if _is_gear(name)}
     casing = {name: share for name, share in bearing.direction.items() if not _is_gear(name)}
-    for side in SIDES:
-        cap = _on_cap(bearing, side)
-        away = {name: -share for name, share in cap.items()}
-        yield (
-            Element({**gear, **away}, 0.5 * bearing.stiffness, 0.5 * bearing.damping),
-            Element({**cap, **casing}, stiffness, damping),
-        )
+    cap = _on_cap(bearing, side)
+    away = {name: -share for name, share in cap.items()}
+    spring = Element({**gear, **away}, bearing.stiffness, bearing.damping)
+    return spring, Element({**cap, **casing}, stiffness, damping)
 
 
 def _on_cap(bearing: Element, side: str) -> dict[str, float]:
-    return {f"{name}{side}": share for name, share in bearing.direction.items() if _is_gear(name)}
+    moved = {name: share for name, share in bearing.direction.items() if name in GEAR_MOTIONS}
+    return {f"{name}{side}": share for name, share in moved.items()}
 
 
 def _is_gear(name: str) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.bearing_caps import Caps, capped, uncapped
+from siggen.dynamics.structure.bearing_caps import CappedBearings, Caps, capped, halves, uncapped
 from siggen.dynamics.structure.structure import (
     Element,
     Rotor,
@@ -26,6 +26,7 @@ from siggen.dynamics.structure.structure import (
     sliding_vectors,
     vector,
 )
+from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
 
 Point = tuple[float, float]
 """Horizontal and vertical distance from the casing's centre of gravity [m]."""
@@ -68,11 +69,12 @@ def torsional(stage: SpurStage) -> Structure:
     return _structure(stage, inertias, stiffness, damping, {}, rims, {})
 
 
-def casing_structure(stage: SpurStage, casing: Casing) -> Structure:
+def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
     """Return the gears in a bolted casing, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, x_c, y_c, φ_c].
 
     Sensors at the bearings sit on the casing. A sensor of another name is seen as `casing_<name>`.
-    With caps, x and y of four of them come behind.
+    With shafts that bend, the tilts [φ_x1, φ_y1, φ_x2, φ_y2] come behind: what a gear moves along x and y at a distance
+    along its axis, per distance. The casing itself does not tilt. With caps, x and y of four of them come behind.
 
     Raises
     ------
@@ -91,9 +93,10 @@ def casing_structure(stage: SpurStage, casing: Casing) -> Structure:
         **_bearings("1", "pinion_bearing", stage.pinion, casing.pinion_place_m, angle),
         **_bearings("2", "gear_bearing", stage.gear, gear_place, angle),
     }
-    held = uncapped(bearings) if casing.caps is None else capped(bearings, casing.caps)
+    held = _held(bearings, casing.caps, shafts_of_gears)
     places = {**seats, **{f"casing_{name}": place for name, place in casing.sensor_places_m.items()}}
-    inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing), **held.masses}
+    inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing)}
+    inertias |= _tilt_inertias(shafts_of_gears) | dict(held.masses)
     coordinates = tuple(inertias)
     stiffness, damping = assemble(coordinates, (*shafts(stage), *held.elements, *bolt_elements(casing, angle)))
     motions = {
@@ -106,7 +109,35 @@ def casing_structure(stage: SpurStage, casing: Casing) -> Structure:
     across = {"x_1": 1.0, "x_2": -1.0}
     forces = {name: _force_rows(coordinates, elements) for name, elements in held.seats.items()}
     structure = _structure(stage, inertias, stiffness, damping, line_of_action, motions, across)
-    return replace(structure, bearing_forces=forces)
+    tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
+    return replace(structure, bearing_forces=forces, tilt_vector=tilt)
+
+
+def _held(
+    bearings: Mapping[str, Element], caps: Caps | None, shafts_of_gears: tuple[Shaft, Shaft] | None
+) -> CappedBearings:
+    """Return what lies between the gears and the casing."""
+    if shafts_of_gears is None and caps is None:
+        return uncapped({name: {"both": bearing} for name, bearing in bearings.items()})
+    if shafts_of_gears is None:
+        ends = {name: halves(bearing) for name, bearing in bearings.items()}
+    else:
+        of_gear = {"pinion_bearing": ("1", shafts_of_gears[0]), "gear_bearing": ("2", shafts_of_gears[1])}
+        ends = {}
+        for name, bearing in bearings.items():
+            index, shaft = of_gear[name.split("/")[0]]
+            ends[name] = tilting_ends(bearing, shaft, index)
+    return uncapped(ends) if caps is None else capped(ends, caps)
+
+
+def _tilt_inertias(shafts_of_gears: tuple[Shaft, Shaft] | None) -> dict[str, float]:
+    if shafts_of_gears is None:
+        return {}
+    return {
+        f"phi_{axis}_{index}": shaft.tilt_inertia_kg_m2
+        for index, shaft in zip("12", shafts_of_gears, strict=True)
+        for axis in "xy"
+    }
 
 
 def _force_rows(coordinates: tuple[str, ...], elements: Sequence[Element]) -> tuple[FloatArray, FloatArray]:

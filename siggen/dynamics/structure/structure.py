@@ -40,6 +40,8 @@ class Structure:
     equivalent_mesh_mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²)
     motions : place/axis -> (n,), displacement at that place = vector · q
     bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
+    tilt_vector : (n,) t, tilt of the pinion's flanks against the gear's in the plane of action = tᵀ q; None where gears
+        stay parallel. A moment of the mesh across the face acts as -t
     """
 
     coordinates: tuple[str, ...]
@@ -52,6 +54,7 @@ class Structure:
     equivalent_mesh_mass_kg: float
     motions: Mapping[str, FloatArray]
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
+    tilt_vector: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)
