@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline
 
 FIGURE = Path(__file__).resolve().parents[1] / "figures" / "exported_model.png"
 
@@ -42,7 +43,8 @@ def pair_force(model, approach, rate, pitches):
     touching = []
     for n in range(first, int(np.floor(pitches - model["law.contact_ratio"] - after)), -1):
         one, two = n % model["law.offset_1"].size, n % model["law.offset_2"].size
-        missing = model["law.offset_1"][one] + model["law.offset_2"][two] + model.get("law.slices.lead_m", 0.0)
+        missing = model["law.offset_1"][one] + model["law.offset_2"][two]
+        missing += model.get("law.slices.lead_m", 0.0) + model.get("law.contact.lead_m", 0.0)
         at = (pitches - n + before) * model["law.missing_intervals_per_pitch"]
         missing += table(model["law.missing_1"][model["law.kind_of_tooth_1"][one]], at)
         missing += table(model["law.missing_2"][model["law.kind_of_tooth_2"][two]], at)
@@ -60,6 +62,8 @@ def spring(model, row, place, penetration):
     whole = table(model["law.stiffness"][row], place)
     if penetration <= 0.0:
         return 0.0, 0.0
+    if "law.contact.curves" in model:
+        return face_spring(model, row, place, penetration)
     if "law.slices.sink_m" not in model:
         return whole * penetration, whole
     sinks = between(model["law.slices.sink_m"][row], place)
@@ -73,6 +77,22 @@ def spring(model, row, place, penetration):
     forces = (stiffness * penetration - preload) / (1.0 + compliance * stiffness)
     last = int(np.argmax(forces))
     return forces[last], stiffness[last] / (1.0 + compliance * stiffness[last])
+
+
+def face_spring(model, row, place, penetration):
+    """Return the same from the table of the contact across the face."""
+    approach = penetration - table(model["law.contact.touch_m"][row], place)
+    if approach <= 0.0:
+        return 0.0, 0.0
+    place = min(max(place, 0.0), model["law.contact.column"].shape[1])
+    cell = min(int(place), model["law.contact.column"].shape[1] - 1)
+    column = model["law.contact.column"][row, cell] + model["law.contact.gain"][row, cell] * (place - cell)
+    curve = between(model["law.contact.curves"], column)
+    nodes = model["law.contact.reach_m"] * (np.arange(len(curve)) / (len(curve) - 1)) ** 2
+    if approach > nodes[-1]:
+        return curve[-1, 0] + curve[-1, 1] * (approach - nodes[-1]), curve[-1, 1]
+    cubic = CubicHermiteSpline(nodes, curve[:, 0], curve[:, 1])
+    return float(cubic(approach)), float(cubic(approach, 1))
 
 
 def integrate(model, times):

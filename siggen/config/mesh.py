@@ -40,6 +40,11 @@ class Mesh(Section):
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
         default=0.1, description="rounding of the edges of pits and spalls (damage: geometry or all)"
     )
+    contact: Literal["slices", "face"] = Field(
+        default="slices",
+        description="slices: linear contact, slices across the face that do not feel each other; face: the contact "
+        "solved across the face, load-dependent after Weber and Banaschek, with elastic edges of damage",
+    )
     damping: Literal["constant", "asperity_share"] = Field(
         default="constant",
         description="constant: mesh_damping_ratio; asperity_share: structure + film (1 - La) + asperities La with the "

@@ -24,7 +24,7 @@ from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, operating_labels
 from siggen.record.quantities import internal_quantities
 from siggen.seeding import Stage, generator
-from siggen.specimen.contact import mean_line_load_n_per_m, tooth_tables
+from siggen.specimen.contact import largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
 from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_errors
@@ -69,7 +69,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
-        teeth = tooth_tables(specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead)
+        teeth = tooth_tables(
+            specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead,
+            largest_force_n=largest_force_n(config.operating_points, pair),
+        )  # fmt: skip
         labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
     with refused_as("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
@@ -80,7 +83,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         pair,
         options,
         damage,
-        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n),
+        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n, teeth.contact),
         labels,
     )
 

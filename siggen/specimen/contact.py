@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
+from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table, face_slices
+from siggen.gears.damage.flank_chords import has_extent
 from siggen.gears.damage.flank_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 LEAST_LINE_LOAD_N_PER_M = 1e3
@@ -30,10 +32,13 @@ class ToothTables:
     tables: MeshTables
     slices: SliceLaw | None
     coupling_m_per_n: FloatArray | None
+    contact: ContactTable | None = None
 
     @property
     def sink_depth_m(self) -> float:
         """How far a flank sinks at most where damage leaves no land [m]."""
+        if self.contact is not None:
+            return float(self.contact.touch_m.max())
         return 0.0 if self.slices is None else largest_sink_m(self.slices)
 
 
@@ -50,6 +55,8 @@ def tooth_tables(
     points: int,
     line_load_n_per_m: float,
     lead_m: Callable[[int], FloatArray] | None = None,
+    *,
+    largest_force_n: float = 0.0,
 ) -> ToothTables:
     """Return the tables of a drawn `dynamics` section.
 
@@ -60,6 +67,8 @@ def tooth_tables(
     """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
+    if dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face":
+        return _across_the_face(dynamics, pair, damage, options, points, largest_force_n, lead_m, coupling)
     # Misaligned faces need slices in the healthy state too: states must not differ by it.
     if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
         return ToothTables(mesh_tables(pair, damage, options, points=points), None, coupling)
@@ -71,6 +80,40 @@ def tooth_tables(
     )
     slices = slice_law(pair, damage, options, sliced, points, lead_m=None if lead_m is None else lead_m(sliced.slices))
     return ToothTables(slice_tables(pair, damage, slices), slices, coupling)
+
+
+def _across_the_face(
+    dynamics: Dynamics,
+    pair: GearPair,
+    damage: Damage,
+    options: StiffnessOptions,
+    points: int,
+    largest_force_n: float,
+    lead_m: Callable[[int], FloatArray] | None,
+    coupling: FloatArray | None,
+) -> ToothTables:
+    """Return the table of the contact across the face; the linear tables of healthy teeth are what it deviates from."""
+    face = TableOptions(
+        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
+        section_loss=dynamics.mesh.damage == "all",
+    )  # fmt: skip
+    lead = None if lead_m is None else lead_m(face_slices(pair, face))
+    table = contact_table(pair, damage, options, face, points, lead)
+    return ToothTables(whole_face(pair, damage, options, points), None, coupling, table)
+
+
+def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:
+    """Return the healthy stiffness for every kind of pair: what the equations of motion count deviations from."""
+    healthy = mesh_tables(pair, (), options, points=points)
+    kinds = pair_kinds(pair, tuple(pit for pit in damage if has_extent(pit)))
+    stiffness = np.repeat(healthy.pair_stiffness_n_per_m, len(kinds), axis=0)
+    return replace(healthy, pair_stiffness_n_per_m=stiffness, table_of_pair=table_of_pair(pair, kinds))
+
+
+def largest_force_n(points: Sequence[OperatingRange], pair: GearPair) -> float:
+    """Return the force up to which contacts are tabulated [N]: three times that of the largest torque of a set."""
+    torque = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
+    return max(3.0 * torque / pair.pinion.base_radius_m, LEAST_LINE_LOAD_N_PER_M * pair.face_width_m)
 
 
 def mean_line_load_n_per_m(points: Sequence[OperatingRange], pair: GearPair) -> float:

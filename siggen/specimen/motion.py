@@ -19,6 +19,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.stiffness.mesh_tables import MeshTables
@@ -38,6 +39,7 @@ class SpecimenMesh:
     missing: MissingMaterial
     slices: SliceLaw | None = None
     coupling_m_per_n: NDArray[np.float64] | None = None
+    contact: ContactTable | None = None
 
 
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
@@ -104,6 +106,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=damage_is_geometry(dynamics)),
         film=film if section.squeeze_film == "on" else None,
         slices=mesh.slices,
+        contact=mesh.contact,
         coupling_m_per_n=mesh.coupling_m_per_n,
     )
 

@@ -12,6 +12,7 @@ from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
@@ -69,6 +70,8 @@ def law(
     mass: float = 0.2124,
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
+    contact: ContactTable | None = None,
+    coupling_m_per_n: np.ndarray | None = None,
 ) -> PairLaw:
     return pair_law(
         tables() if over is None else over,
@@ -79,6 +82,8 @@ def law(
         backlash_m=backlash_m,
         friction=friction,
         film=film,
+        contact=contact,
+        coupling_m_per_n=coupling_m_per_n,
     )
 
 

@@ -56,6 +56,12 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     assert max(coarse) > 2.0 * max(fine)
 
 
+def test_scipy_integrates_the_exported_contact_across_the_face_to_the_same_motion() -> None:
+    # Contacts begin without a step of the stiffness, so that Runge-Kutta errs less than with springs.
+    face = ("dynamics.mesh.contact=face", "dynamics.steps_per_sample=16")
+    assert max(differences("configs/paper_b.yaml", *STIFF, *PINION, *face, samples=100)) < 2e-3
+
+
 @pytest.mark.slow
 def test_scipy_integrates_the_exported_slices_of_a_spall_to_the_same_motion() -> None:
     # Record 16: spalled through the face, 25 Hz; 2200 samples hold a whole revolution, hence the spalled tooth. Its
@@ -83,6 +89,7 @@ def test_what_the_script_does_not_know_is_refused_by_name() -> None:
         ("linear_pits", 0, []),
         ("paper_b", 0, []),
         ("paper_b", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
+        ("paper_b", 16, ["dynamics.mesh.contact=face"]),
     ],
 )
 def test_every_key_is_described(name: str, record: int, overrides: list[str]) -> None:

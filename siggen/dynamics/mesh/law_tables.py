@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.contact_spring import VALUES
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 NUMBERS = {
@@ -52,6 +53,8 @@ def law_tables(law: PairLaw) -> dict[str, Any]:
     tables = {name: float(scalars[place]) for name, place in single.items()} | _teeth(law)
     if head[layout.GROUPS]:
         tables |= _slices(law) | {"slices.lead_m": float(scalars[layout.LEAD_M])}
+    if head[layout.CONTACT_NODES]:
+        tables |= _contact(law)
     if head[layout.APART]:
         tables["coupling_m_per_n"] = _numbers(law, layout.COUPLING_AT, (head[layout.APART], head[layout.POINTS]))
     tables["rubs"] = bool(head[layout.ROUGHNESSES])
@@ -91,6 +94,21 @@ def _slices(law: PairLaw) -> dict[str, NDArray[Any]]:
         tables[f"slices.{name}"] = _numbers(law, place, (rows, points))
     tables["slices.contact_n_per_m"] = _numbers(law, layout.CONTACT_AT, (points,))
     return tables
+
+
+def _contact(law: PairLaw) -> dict[str, Any]:
+    points, nodes, columns = (
+        int(law.places[place]) for place in (layout.POINTS, layout.CONTACT_NODES, layout.CONTACT_COLUMNS)
+    )
+    rows = int(_wholes(law, layout.TABLE_AT, (int(law.places[layout.TEETH_1]), int(law.places[layout.TEETH_2]))).max())
+    return {
+        "contact.touch_m": _numbers(law, layout.TOUCH_AT, (rows + 1, points)),
+        "contact.column": _numbers(law, layout.COLUMN_AT, (rows + 1, points - 1)),
+        "contact.gain": _numbers(law, layout.GAIN_AT, (rows + 1, points - 1)),
+        "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, VALUES)),
+        "contact.reach_m": float(law.scalars[layout.CONTACT_REACH]),
+        "contact.lead_m": float(law.scalars[layout.LEAD_M]),
+    }
 
 
 def _friction(law: PairLaw) -> dict[str, NDArray[Any]]:

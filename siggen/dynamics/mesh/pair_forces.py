@@ -14,8 +14,8 @@ from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
 from siggen.dynamics.friction.friction import friction_mixed
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import (
+from siggen.dynamics.mesh.contact_spring import contact_shares
+from siggen.dynamics.mesh.pair_columns import (
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
@@ -30,10 +30,9 @@ from siggen.dynamics.mesh.pair_places import (
     SLIDING,
     STIFFNESS,
     WHOLE,
-    find_flanks,
-    pair_table,
-    place_pairs,
 )
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import find_flanks, pair_table, place_pairs
 from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
 
 
@@ -133,11 +132,13 @@ def write_forces(
             continue
         pairs[i, SLIDING] = sliding_0_m_s + pairs[i, POSITION] * sliding_1_per_s
         # NORMAL holds the elastic force until the damping is known, which needs the stiffness of all that touch.
-        elastic, tangent, carrying = spring_of_flank(numbers, index, pairs, i, pairs[i, PENETRATION])
+        elastic, tangent, carrying = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
         if elastic == 0.0:
             pairs[i, FLANK], pairs[i, STIFFNESS] = 0.0, pairs[i, WHOLE]
             continue
         pairs[i, FLANK] = 1.0 if elastic > 0.0 else -1.0
+        if elastic > 0.0 and index[layout.CONTACT_NODES] > 0:
+            carrying, pairs[i, ROUGH] = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
         pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, CARRYING] = elastic, tangent, carrying
         touching += tangent
     damping = 1.0 / np.sqrt(touching) if touching > 0.0 else 0.0

@@ -18,7 +18,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.friction.contact_kinematics import hertz_pressure, relative_radius
 from siggen.dynamics.friction.lubrication import LubricatedMesh, film_ratio, masjedi_khonsari_central
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, PER_CONTACT, PER_FILM
-from siggen.dynamics.mesh.pair_places import (
+from siggen.dynamics.mesh.pair_columns import (
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,

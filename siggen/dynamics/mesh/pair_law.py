@@ -8,7 +8,8 @@ Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the lin
     c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
     F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
 
-f_n(p) = k_n p, or the force of slices across pitted flanks (`slice_law`). c_nm is the deflection at one pair per unit
+f_n(p) = k_n p, or the force of slices across pitted flanks (`slice_law`), or that of the contact solved across the face
+(`contact_spring`). c_nm is the deflection at one pair per unit
 force at another, through the gear bodies that they share; 0 without coupling. Between flanks that approach without
 touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders, iso-viscous; derived); its force
 jumps where the flanks touch, from that of the thinnest film to the mesh damper's, since a film in closed contact is as
@@ -31,6 +32,7 @@ from siggen.dynamics.mesh.packed_tables import PackedTables
 if TYPE_CHECKING:
     from siggen.dynamics.mesh.damping import DampingLaw
     from siggen.dynamics.mesh.slice_law import SliceLaw
+    from siggen.gears.contact.contact_table import ContactTable
     from siggen.gears.geometry.missing_material import MissingMaterial
     from siggen.gears.stiffness.mesh_tables import MeshTables
 
@@ -38,19 +40,21 @@ if TYPE_CHECKING:
 (
     CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
     BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
-    LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG,
-) = range(23)  # fmt: skip
+    LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG, CONTACT_REACH,
+) = range(24)  # fmt: skip
 """Places of single numbers in `PairLaw.scalars`."""
-SCALARS = 23
+SCALARS = 24
 
 (
     TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
     SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
-    ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT,
-) = range(26)  # fmt: skip
-"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction)
-and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
-HEAD = 26
+    ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT, CONTACT_NODES,
+    CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT,
+) = range(32)  # fmt: skip
+"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction;
+0 nodes: no table of the contact across the face) and, ending in _AT, where a table begins in `numbers`, or in `places`
+itself."""
+HEAD = 32
 
 
 class PairLaw(NamedTuple):
@@ -114,6 +118,7 @@ def pair_law(
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
     slices: SliceLaw | None = None,
+    contact: ContactTable | None = None,
     coupling_m_per_n: FloatArray | None = None,
 ) -> PairLaw:
     """Return the law of these tables.
@@ -129,6 +134,8 @@ def pair_law(
     friction, film : FrictionLaw, SqueezeFilm or None
     slices : SliceLaw or None
         On the grid of `tables`: forces of pitted or misaligned flanks.
+    contact : ContactTable or None
+        On the grid of `tables`, in place of slices: forces of all pairs with the contact solved across the face.
     coupling_m_per_n : (apart, points) or None
         Deflection at one pair per unit force at the pair a + 1 base pitches away, over the position of the pair that
         entered later, on the grid of `tables` [m/N].
@@ -154,6 +161,8 @@ def pair_law(
     _pack_teeth(packed, tables, missing)
     if slices is not None:
         _pack_slices(packed, scalars, slices, tables)
+    if contact is not None:
+        _pack_contact(packed, scalars, contact, tables)
     if coupling_m_per_n is not None:
         _pack_coupling(packed, coupling_m_per_n, points)
     if friction is not None:
@@ -211,6 +220,21 @@ def _pack_slices(packed: PackedTables, scalars: FloatArray, slices: SliceLaw, ta
     ):  # fmt: skip
         packed.add(place, values)
     scalars[LEAD_M] = slices.lead_m
+
+
+def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTable, tables: MeshTables) -> None:
+    if contact.touch_m.shape != tables.pair_stiffness_n_per_m.shape:
+        raise ValueError(
+            f"contact: received tables of shape {contact.touch_m.shape}; allowed are those of the stiffness, "
+            f"{tables.pair_stiffness_n_per_m.shape}"
+        )
+    packed.head(CONTACT_COLUMNS, contact.curves.shape[0])
+    packed.head(CONTACT_NODES, contact.curves.shape[1])
+    for place, values in (
+        (TOUCH_AT, contact.touch_m), (COLUMN_AT, contact.column), (GAIN_AT, contact.gain), (CURVES_AT, contact.curves),
+    ):  # fmt: skip
+        packed.add(place, values)
+    scalars[CONTACT_REACH], scalars[LEAD_M] = contact.reach_m, contact.lead_m
 
 
 def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:

@@ -11,20 +11,25 @@ from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.contact_spring import place_contact
+from siggen.dynamics.mesh.pair_columns import (
+    CELL,
+    COLUMNS,
+    COUPLED,
+    FLANK,
+    GAP,
+    MOST_APART,
+    OFFSET,
+    PENETRATION,
+    PLACED,
+    POSITION,
+    ROUGH,
+    ROW,
+    WEIGHT,
+    WHOLE,
+    between,
+)
 from siggen.dynamics.mesh.pair_law import PairLaw
-
-(
-    NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,
-    PLACED, WHOLE, GAP, OFFSET, CELL, WEIGHT, ROW, ROUGH, COUPLED,
-) = range(20)  # fmt: skip
-"""Columns of the table of pairs: forces [N]; penetration p [m]; stiffness f' where a pair touches, of the whole face
-where not, 0 for an empty slot [N/m]; sliding speed [m/s]; position s [m]; +1, -1, 0 for the drive flank, the back flank
-and no contact; share of the face that carries; asperity share; friction coefficient; damping [N s/m]. Then what is kept
-per angle: the angle [base pitches], stiffness of the whole face, missing material, place of the teeth, cell of the
-tables and weight of its upper end, row, share of the face on damage; from COUPLED on the coupling to older pairs."""
-MOST_APART = 3
-"""Pairs further apart than this do not couple: no gear has more in contact."""
-COLUMNS = COUPLED + MOST_APART
 
 
 def pair_table(law: PairLaw) -> FloatArray:
@@ -32,13 +37,6 @@ def pair_table(law: PairLaw) -> FloatArray:
     pairs = np.zeros((law.slots, COLUMNS))
     pairs[0, PLACED] = np.nan
     return pairs
-
-
-@njit(cache=True)
-def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
-    """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
-    value: float = numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight
-    return value
 
 
 @njit(cache=True)
@@ -79,6 +77,8 @@ def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitch
         pairs[i, ROUGH] = 0.0
         if index[layout.GROUPS] > 0:
             pairs[i, ROUGH] = between(numbers, index[layout.ON_DAMAGE_AT] + row * points, cell, weight)
+        if index[layout.CONTACT_NODES] > 0:
+            place_contact(numbers, index, pairs, i)
         for a in range(min(index[layout.APART], MOST_APART)):
             pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
         pair -= 1

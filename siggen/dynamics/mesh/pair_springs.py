@@ -1,8 +1,8 @@
 """Elastic forces of tooth pairs, compiled: the spring of each by itself, and how pairs on one gear body share the load.
 
-With coupling the penetrations solve p_n = d_n - Σ c_nm f_m(p_m) (derived): f is piecewise linear, so Newton's method
-ends after a few steps with the exact solution; it exists and is unique while the coupling of a pair stays below its own
-compliance, since then the energy is strictly convex.
+With coupling the penetrations solve p_n = d_n - Σ c_nm f_m(p_m) (derived): f is piecewise linear, or smooth and
+monotone, so Newton's method ends after a few steps with the solution; it exists and is unique while the coupling of a
+pair stays below its own compliance, since then the energy is strictly convex.
 """
 
 from __future__ import annotations
@@ -12,14 +12,17 @@ from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.pair_places import (
+from siggen.dynamics.mesh.contact_spring import contact_spring
+from siggen.dynamics.mesh.pair_columns import (
     CELL,
     COUPLED,
     FLANK,
     MOST_APART,
+    NORMAL,
     PENETRATION,
     POSITION,
     ROW,
+    TOUCH,
     WEIGHT,
     WHOLE,
     between,
@@ -28,18 +31,23 @@ from siggen.dynamics.mesh.slice_law import grouped_force
 
 ALONE, FORCE, SLOPE, RIGHT, MATRIX = range(5)
 """Columns of the solution: penetration by itself, force, slope, right side; the matrix, and behind it the coupling."""
+SETTLED_CHANGE = 1e-5
+"""Of smooth forces: Newton's error is the square of the last step, so that less than 1e-9 of the force is left."""
 MOST_STEPS = 50
 """Beyond half of these, pairs are solved one at a time; Newton's method was never seen to need more than 5."""
 
 
 @njit(cache=True, inline="always")
 def _spring(
-    numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
     """Return force [N], stiffness [N/m] and carrying share of the face of slot i on its drive flank."""
     whole = pairs[i, WHOLE]
     if penetration_m <= 0.0:
         return 0.0, 0.0, 0.0
+    if index[layout.CONTACT_NODES] > 0:
+        force, slope = contact_spring(scalars, numbers, index, pairs, i, penetration_m)
+        return force, slope, 1.0
     groups = index[layout.GROUPS]
     if groups > 0:
         cell, weight, points = int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
@@ -57,6 +65,9 @@ def _spring(
 @njit(cache=True)
 def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
     """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
+    if index[layout.CONTACT_NODES] > 0:
+        touch: float = pairs[i, TOUCH]
+        return touch
     groups = index[layout.GROUPS]
     if groups == 0:
         return 0.0
@@ -71,11 +82,11 @@ def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) 
 
 @njit(cache=True, inline="always")
 def spring_of_flank(
-    numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
     """Return the same on the flank of column FLANK; the back flank has no damage and pushes the other way."""
     if pairs[i, FLANK] >= 0.0:
-        return _spring(numbers, index, pairs, i, penetration_m)
+        return _spring(scalars, numbers, index, pairs, i, penetration_m)
     if penetration_m >= 0.0:
         return 0.0, 0.0, 0.0
     return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE], 1.0
@@ -113,22 +124,16 @@ def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pai
     """Replace the penetration of every pair by itself with that under the forces of the others."""
     slots, apart = pairs.shape[0], min(index[layout.APART], MOST_APART)
     coupling = MATRIX + slots
+    smooth = index[layout.CONTACT_NODES] > 0
     work = np.zeros((slots, coupling + slots))  # one array: each costs as much as half a solution
-    for i in range(slots):
-        work[i, ALONE], work[i, SLOPE] = pairs[i, PENETRATION], -1.0
-        for j in range(slots):
-            if i != j and pairs[i, WHOLE] > 0.0 and pairs[j, WHOLE] > 0.0:
-                work[i, coupling + j] = _coupling(scalars, pairs, apart, i, j)
+    _prepare(scalars, pairs, work, apart, smooth)
     for step in range(MOST_STEPS):
         settled = True
         for i in range(slots):
             found, tangent = 0.0, 0.0
             if pairs[i, WHOLE] > 0.0:
-                others = 0.0
-                for j in range(slots):
-                    others += work[i, coupling + j] * work[j, FORCE]
-                pairs[i, PENETRATION] = work[i, ALONE] - others
-                found, tangent, _ = spring_of_flank(numbers, index, pairs, i, pairs[i, PENETRATION])
+                pairs[i, PENETRATION] = _under_others(work, coupling, i)
+                found, tangent, _ = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
             settled = settled and tangent == work[i, SLOPE]
             work[i, SLOPE], work[i, RIGHT] = tangent, found - work[i, FORCE]
             if step > MOST_STEPS // 2:
@@ -137,10 +142,48 @@ def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pai
         # One at a time, the same pieces twice are no proof: all steps are taken, each far nearer than the one before.
         if settled and step <= MOST_STEPS // 2:
             return
-        for i in range(slots):
-            for j in range(slots):
-                work[i, MATRIX + j] = work[i, SLOPE] * work[i, coupling + j]
-            work[i, MATRIX + i] += 1.0
-        _solve(work)
-        for i in range(slots):
-            work[i, FORCE] += work[i, RIGHT]
+        if _newton_step(work, coupling) <= SETTLED_CHANGE and smooth:
+            for i in range(slots):
+                pairs[i, PENETRATION] = _under_others(work, coupling, i)
+            return
+
+
+@njit(cache=True, inline="always")
+def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: int, smooth: bool) -> None:
+    """Write penetrations by themselves, first guesses and couplings."""
+    slots = pairs.shape[0]
+    for i in range(slots):
+        work[i, ALONE], work[i, SLOPE] = pairs[i, PENETRATION], -1.0
+        if pairs[i, WHOLE] == 0.0:
+            continue
+        if smooth:
+            work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
+        for j in range(slots):
+            if i != j and pairs[j, WHOLE] > 0.0:
+                work[i, MATRIX + slots + j] = _coupling(scalars, pairs, apart, i, j)
+
+
+@njit(cache=True, inline="always")
+def _newton_step(work: FloatArray, coupling: int) -> float:
+    """Add Newton's step to the forces; return the largest step over the largest force."""
+    slots = work.shape[0]
+    for i in range(slots):
+        for j in range(slots):
+            work[i, MATRIX + j] = work[i, SLOPE] * work[i, coupling + j]
+        work[i, MATRIX + i] += 1.0
+    _solve(work)
+    change, force = 0.0, 1e-300
+    for i in range(slots):
+        work[i, FORCE] += work[i, RIGHT]
+        change, force = max(change, abs(work[i, RIGHT])), max(force, abs(work[i, FORCE]))
+    return change / force
+
+
+@njit(cache=True, inline="always")
+def _under_others(work: FloatArray, coupling: int, i: int) -> float:
+    """Return the penetration of a slot under the forces of the others [m]."""
+    left: float = work[i, ALONE]
+    others = 0.0
+    for j in range(work.shape[0]):
+        others += work[i, coupling + j] * work[j, FORCE]
+    return left - others

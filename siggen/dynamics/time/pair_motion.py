@@ -12,10 +12,11 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, POSITION
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import FLANK, FRICTION, NORMAL, POSITION, pair_table
+from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.equations import Equations, equations_about, external_push, inverse_times

@@ -14,7 +14,7 @@ from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariati
 from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_places import FRICTION, SLIDING
+from siggen.dynamics.mesh.pair_columns import FRICTION, SLIDING
 from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
 from siggen.dynamics.time.equations import state_rate
 from siggen.dynamics.time.linear_motion import LinearMotion

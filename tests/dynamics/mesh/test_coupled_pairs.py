@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
+from siggen.dynamics.mesh.pair_columns import NORMAL, WHOLE
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
-from siggen.dynamics.mesh.pair_places import NORMAL, WHOLE, pair_table
+from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.slice_law import SliceLaw
 from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.casing_stage import make_structure

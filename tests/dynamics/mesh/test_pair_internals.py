@@ -11,10 +11,7 @@ from siggen.dynamics.friction.asperity_table import asperity_table
 from siggen.dynamics.friction.friction import BOUNDARY_FRICTION, FLUID_FRICTION, composite_friction
 from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.dynamics.mesh.damping import DampingLaw
-from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
-from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
-from siggen.dynamics.mesh.pair_places import (
+from siggen.dynamics.mesh.pair_columns import (
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
@@ -23,8 +20,11 @@ from siggen.dynamics.mesh.pair_places import (
     NORMAL,
     POSITION,
     STIFFNESS,
-    pair_table,
 )
+from siggen.dynamics.mesh.pair_forces import pair_forces
+from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, slice_law, slice_tables
 from siggen.gears.damage.flank_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material

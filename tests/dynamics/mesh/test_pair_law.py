@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dynamics.friction.friction import constant_friction
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
-from siggen.dynamics.mesh.pair_places import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS, pair_table
+from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from tests.dynamics.pair_runs import constant_tables, exact_involutes, gear_pair, law, tables
 

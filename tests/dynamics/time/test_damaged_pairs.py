@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.friction.contact_kinematics import relative_radius
 from siggen.dynamics.friction.friction import constant_friction
+from siggen.dynamics.mesh.pair_columns import CARRYING, FLANK, NORMAL
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
-from siggen.dynamics.mesh.pair_places import CARRYING, FLANK, NORMAL, pair_table
+from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.slice_law import (
     SliceLaw,
     SliceOptions,

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_places import FLANK, FRICTION, SLIDING
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, SLIDING
 from siggen.dynamics.structure.casing_structure import torsional
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import eight_dof

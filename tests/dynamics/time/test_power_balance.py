@@ -8,10 +8,16 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_places import FLANK, FRICTION, SLIDING
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, SLIDING
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.gears.contact.contact_table import TableOptions, contact_table
+from siggen.gears.damage.flank_damage import Spall
+from siggen.gears.damage.outlines import rectangle
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
+from siggen.gears.stiffness.body_coupling import body_coupling
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.specimen.contact import whole_face
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 
@@ -85,3 +91,25 @@ def test_power_is_balanced_over_the_hunting_period(length_m: float, allowed_w: f
     assert 30.0 < found["friction"] < 60.0  # 0.171 μ P with equal sharing is 48 W
     assert (found["apart"] > 0.0) == (length_m > 0.0)  # the pit makes the teeth part
     assert abs(residual) < allowed_w
+
+
+@pytest.mark.slow
+def test_power_is_balanced_with_the_contact_across_the_face_and_coupled_bodies() -> None:
+    pair, teeth, points = gear_pair(), StiffnessOptions(), 1025
+    height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
+    spall = Spall("pinion", 5, rectangle((height - 0.7e-3, height + 0.7e-3), (-5e-3, 25e-3)), 0.2e-3, "flat")
+    along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    face = law(
+        with_errors(missing_material(pair, RELIEF)),
+        whole_face(pair, (spall,), teeth, points),
+        friction=constant_friction(0.05),
+        contact=contact_table(pair, (spall,), teeth, TableOptions(4000.0), points),
+        coupling_m_per_n=body_coupling(pair, teeth, along),
+    )
+    step = 1.0 / (MESHES * 30.0 * STEPS_PER_MESH)
+    run = motion(locked_load(make_structure()), face, step_s=step)
+    pitches, states = settled(run, 30.0, step, MESHES_OF_HUNTING * STEPS_PER_MESH, settle_s=4.0)
+    found = powers(run, states[:-1], pitches[:-1])
+    residual = found["in"] - found["out"] - found["friction"] - found["mesh"] - found["dampers"]
+    assert found["in"] == pytest.approx(5655.0, abs=0.5)
+    assert abs(residual) < 0.05
