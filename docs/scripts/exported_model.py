@@ -36,8 +36,8 @@ def linear_force(model, approach, rate, pitches):
     return stiffness * (approach - side * gap) + model["law.damping_n_s_per_m"] * rate
 
 
-def pair_force(model, approach, rate, pitches):
-    """Return the mesh force of the law pairs on the drive flank, without friction, squeezed film and coupling."""
+def pair_force(model, approach, rate, pitches, tilt=0.0, tilt_rate=0.0):
+    """Return mesh force and moment of the law pairs on the drive flank, without friction, squeezed film and coupling."""
     before, after = model["law.reach_before"], model["law.reach_after"]
     first = int(np.floor(pitches + before))
     touching = []
@@ -49,23 +49,28 @@ def pair_force(model, approach, rate, pitches):
         missing += table(model["law.missing_1"][model["law.kind_of_tooth_1"][one]], at)
         missing += table(model["law.missing_2"][model["law.kind_of_tooth_2"][two]], at)
         row, place = model["law.table_of_pair"][one, two], (pitches - n) * model["law.intervals_per_pitch"]
-        elastic, tangent = spring(model, row, place, approach - missing)
-        if elastic > 0.0:
-            touching.append((elastic, tangent))
-    total = sum(tangent for _, tangent in touching)
+        found = spring(model, row, place, approach - missing, tilt)
+        if found[0] > 0.0:
+            touching.append(found)
+    total = sum(tangent for _, tangent, *_ in touching)
     damping = model["law.damping_root_kg"] / np.sqrt(total) if touching else 0.0
-    return sum(max(0.0, elastic + damping * tangent * rate) for elastic, tangent in touching)
+    force = moment = 0.0
+    for elastic, tangent, turned, cross, turning in touching:
+        normal = elastic + damping * (tangent * rate + cross * tilt_rate)
+        if normal > 0.0:
+            force, moment = force + normal, moment + turned + damping * (cross * rate + turning * tilt_rate)
+    return force, moment
 
 
-def spring(model, row, place, penetration):
-    """Return force and stiffness of one pair; with slices the face's groups touch one after the other."""
+def spring(model, row, place, penetration, tilt):
+    """Return force, stiffness, moment and its two derivatives; with slices groups of the face touch one by one."""
     whole = table(model["law.stiffness"][row], place)
     if penetration <= 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     if "law.contact.curves" in model:
-        return face_spring(model, row, place, penetration)
+        return face_spring(model, row, place, penetration, tilt)
     if "law.slices.sink_m" not in model:
-        return whole * penetration, whole
+        return whole * penetration, whole, 0.0, 0.0, 0.0
     sinks = between(model["law.slices.sink_m"][row], place)
     flush, contact = table(model["law.slices.flush"][row], place), table(model["law.slices.contact_n_per_m"], place)
     # Springs in the order in which they touch: what is flush, then groups that stand for 1, 3, 5, ... parts of the rest.
@@ -76,23 +81,35 @@ def spring(model, row, place, penetration):
     # The force is the largest of those with the first 1, 2, 3, ... springs in contact.
     forces = (stiffness * penetration - preload) / (1.0 + compliance * stiffness)
     last = int(np.argmax(forces))
-    return forces[last], stiffness[last] / (1.0 + compliance * stiffness[last])
+    return forces[last], stiffness[last] / (1.0 + compliance * stiffness[last]), 0.0, 0.0, 0.0
 
 
-def face_spring(model, row, place, penetration):
+def face_spring(model, row, place, penetration, tilt):
     """Return the same from the table of the contact across the face."""
     approach = penetration - table(model["law.contact.touch_m"][row], place)
     if approach <= 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     place = min(max(place, 0.0), model["law.contact.column"].shape[1])
     cell = min(int(place), model["law.contact.column"].shape[1] - 1)
     column = model["law.contact.column"][row, cell] + model["law.contact.gain"][row, cell] * (place - cell)
     curve = between(model["law.contact.curves"], column)
     nodes = model["law.contact.reach_m"] * (np.arange(len(curve)) / (len(curve) - 1)) ** 2
     if approach > nodes[-1]:
-        return curve[-1, 0] + curve[-1, 1] * (approach - nodes[-1]), curve[-1, 1]
-    cubic = CubicHermiteSpline(nodes, curve[:, 0], curve[:, 1])
-    return float(cubic(approach)), float(cubic(approach, 1))
+        raise ValueError(f"an approach of {approach} m lies beyond the last node; this script does not go on from there")
+    force, slope, _ = cubic(nodes, curve[:, 0:2], approach)
+    if curve.shape[1] == 4:
+        return force, slope, 0.0, 0.0, 0.0
+    moment, cross, bend = cubic(nodes, curve[:, 4:6], approach)
+    turning, turning_slope, turning_bend = cubic(nodes, curve[:, 6:8], approach)
+    force += tilt * cross + 0.5 * tilt**2 * turning_slope
+    slope += tilt * bend + 0.5 * tilt**2 * turning_bend
+    return max(force, 0.0), max(slope, 0.0), moment + turning * tilt, cross + turning_slope * tilt, turning
+
+
+def cubic(nodes, values, at):
+    """Return value and two derivatives of the cubic of Hermite with values and slopes (n, 2)."""
+    spline = CubicHermiteSpline(nodes, values[:, 0], values[:, 1])
+    return float(spline(at)), float(spline(at, 1)), float(spline(at, 2))
 
 
 def integrate(model, times):
@@ -104,20 +121,25 @@ def integrate(model, times):
     law = {"linear": linear_force, "pairs": pair_force}[str(model["law"])]
     inverse = np.linalg.inv(model["mass"])
 
-    def force(t, z):
+    turn = model.get("tilt_vector", np.zeros(n))
+
+    def mesh(t, z):
         pitches = (model["start_angle_rad"] + 2 * np.pi * model["speed_hz"] * t) * model["pitches_per_rad"]
-        return law(model, model["static_approach_m"] + p @ z[:n], p @ z[n:], pitches)
+        tilt = (model["static_tilt_rad"] + turn @ z[:n], turn @ z[n:]) if "tilt_vector" in model else ()
+        found = law(model, model["static_approach_m"] + p @ z[:n], p @ z[n:], pitches, *tilt)
+        return found if isinstance(found, tuple) else (found, 0.0)
 
     def rate(t, z):
-        moved = model["stiffness"] @ z[:n] + model["damping"] @ z[n:] + p * (force(t, z) - model["static_force_n"])
-        return np.concatenate([z[n:], -inverse @ moved])
+        force, moment = mesh(t, z)
+        moved = model["stiffness"] @ z[:n] + model["damping"] @ z[n:] + p * (force - model["static_force_n"])
+        return np.concatenate([z[n:], -inverse @ (moved + turn * moment)])
 
     # A step must not pass over a whole engagement: a tenth of one at most.
     longest = 0.1 / (model["speed_hz"] * 2 * np.pi * model["pitches_per_rad"])
     found = solve_ivp(
         rate, (model["start_s"], times[-1]), model["start_state"], "RK45", times, rtol=1e-7, atol=1e-14, max_step=longest
     )
-    return model["static_approach_m"] + p @ found.y[:n], np.array([force(t, z) for t, z in zip(times, found.y.T)])
+    return model["static_approach_m"] + p @ found.y[:n], np.array([mesh(t, z)[0] for t, z in zip(times, found.y.T)])
 
 
 def compare(config, overrides, samples=600, record=0):

@@ -30,6 +30,8 @@ MEANINGS = {
     "friction_force_n": "friction of all pairs across the line of action",
     "friction_moment_pinion_nm": "moment of the friction about the pinion's axis",
     "friction_moment_gear_nm": "moment of the friction about the gear's axis",
+    "mesh_tilt_rad": "tilt of the pinion's flanks against the gear's in the plane of action, static tilt included",
+    "mesh_moment_nm": "moment of all pairs across the face, positive with the load at the far end",
     "pinion_angle_rad": "angle of the pinion within its revolution, from 0 to 2 pi",
 }
 

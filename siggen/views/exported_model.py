@@ -17,7 +17,7 @@ from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
@@ -79,6 +79,7 @@ def exported_model(config: Config, record_id: int) -> Model:
         "record_id": record_id,
         "state": config.states[record.state_id].name,
         **_structure(motion.structure),
+        **_tilt(motion.structure, motion.equations),
         **_static_part(motion.equations),
         "torque_nm": point.torque_nm,
         "integrator": specimen.dynamics.method,
@@ -138,6 +139,17 @@ def _structure(structure: Structure) -> dict[str, Any]:
         "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
         "bearing_force_stiffness_rows": np.array([k for k, _ in forces]) if forces else empty,
         "bearing_force_damping_rows": np.array([c for _, c in forces]) if forces else empty,
+    }
+
+
+def _tilt(structure: Structure, equations: Equations) -> dict[str, Any]:
+    """Return how gears tilt, where they do."""
+    if structure.tilt_vector is None:
+        return {}
+    return {
+        "tilt_vector": structure.tilt_vector,
+        "tilt_friction_vector": friction_tilt_vector(structure),
+        "static_tilt_rad": float(structure.tilt_vector @ equations.static_deflection),
     }
 
 

@@ -10,7 +10,7 @@ from tests.config.minimal import minimal
 
 
 def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
-    return minimal(dynamics={"model": model, "shafts": {"pinion": pinion}})
+    return minimal(dynamics={"model": model, "shafts": {"pinion": pinion}, "mesh": {"contact": "face"}})
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,8 @@ def test_models_without_a_casing_have_no_shafts_that_bend() -> None:
 def test_no_section_and_the_default_have_the_same_identity() -> None:
     assert load_config(minimal()).identity == load_config(minimal(dynamics={"shafts": None})).identity
     assert load_config(with_shafts()).identity != load_config(minimal()).identity
+
+
+def test_a_contact_that_feels_no_tilt_is_refused() -> None:
+    with pytest.raises(ConfigError, match="no other contact feels a tilt"):
+        load_config(minimal(dynamics={"model": "casing", "shafts": {}}))

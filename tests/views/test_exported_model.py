@@ -62,6 +62,16 @@ def test_scipy_integrates_the_exported_contact_across_the_face_to_the_same_motio
     assert max(differences("configs/paper_b.yaml", *STIFF, *PINION, *face, samples=100)) < 2e-3
 
 
+SHAFTS = "dynamics.shafts={pinion: {gear_position: 0.4}, gear: {gear_position: 0.4}}"
+
+
+@pytest.mark.slow
+def test_scipy_integrates_the_exported_tilt_of_a_damaged_gearbox_to_the_same_motion() -> None:
+    frictionless = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.steps_per_sample=16")
+    tilting = ("dynamics.mesh.contact=face", SHAFTS, "stiffness.coupling=none")
+    assert max(differences("configs/paper_b.yaml", *frictionless, *tilting, record=16, samples=300)) < 2e-3
+
+
 @pytest.mark.slow
 def test_scipy_integrates_the_exported_slices_of_a_spall_to_the_same_motion() -> None:
     # Record 16: spalled through the face, 25 Hz; 2200 samples hold a whole revolution, hence the spalled tooth. Its
@@ -90,6 +100,7 @@ def test_what_the_script_does_not_know_is_refused_by_name() -> None:
         ("paper_b", 0, []),
         ("paper_b", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
         ("paper_b", 16, ["dynamics.mesh.contact=face"]),
+        ("paper_b", 0, ["dynamics.mesh.contact=face", "dynamics.shafts={}"]),
     ],
 )
 def test_every_key_is_described(name: str, record: int, overrides: list[str]) -> None:

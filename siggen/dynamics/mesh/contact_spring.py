@@ -1,7 +1,7 @@
 """Force of one pair from the table of the contact across the face, compiled: the narrow function of the time loop.
 
 Equations: `siggen.gears.contact.contact_table`. A monotone cubic in the approach at the two columns beside the
-position, linear between them.
+position, linear between them; an expansion in the tilt. Numbers of one node stand side by side.
 """
 
 from __future__ import annotations
@@ -12,10 +12,7 @@ from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TOUCH, WEIGHT, between
-
-VALUES = 4
-"""Force, slope, carrying share and share of the load on damage stand side by side at every node."""
+from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TOUCH, WEIGHT, between
 
 
 @njit(cache=True, inline="always")
@@ -26,7 +23,7 @@ def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: in
     place = row * (points - 1) + cell
     column = numbers[index[layout.COLUMN_AT] + place] + numbers[index[layout.GAIN_AT] + place] * weight
     whole = min(int(column), index[layout.CONTACT_COLUMNS] - 2)
-    pairs[i, CURVES] = index[layout.CURVES_AT] + whole * index[layout.CONTACT_NODES] * VALUES
+    pairs[i, CURVES] = index[layout.CURVES_AT] + whole * index[layout.CONTACT_NODES] * index[layout.CONTACT_VALUES]
     pairs[i, SHARE] = column - whole
 
 
@@ -54,20 +51,69 @@ def contact_spring(
     span = unit_m * (2.0 * node + 1.0)
     over = approach - unit_m * (node * node)
     t = over / span
-    here = int(pairs[i, CURVES]) + node * VALUES
-    there = here + nodes * VALUES
+    values = index[layout.CONTACT_VALUES]
+    here = int(pairs[i, CURVES]) + node * values
+    there = here + nodes * values
     share = pairs[i, SHARE]
     rest = 1.0 - share
-    f_0, f_1 = numbers[here] * rest + numbers[there] * share, numbers[here + 4] * rest + numbers[there + 4] * share
+    f_0, f_1 = (
+        numbers[here] * rest + numbers[there] * share,
+        numbers[here + values] * rest + numbers[there + values] * share,
+    )
     s_0, s_1 = (
         numbers[here + 1] * rest + numbers[there + 1] * share,
-        numbers[here + 5] * rest + numbers[there + 5] * share,
+        numbers[here + values + 1] * rest + numbers[there + values + 1] * share,
     )
     if t > 1.0:  # beyond the last node the slope stays
-        return f_1 + s_1 * (over - span), s_1
+        force, slope = f_1 + s_1 * (over - span), s_1
+    else:
+        rise = (f_1 - f_0) / span
+        bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
+        force, slope = f_0 + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
+    tilt = pairs[i, TILT]
+    if values == 4 or tilt == 0.0:
+        return force, slope
+    _, m_slope, m_bend = _cubic(numbers, here + 4, there + 4, values, share, over, span)
+    _, r_slope, r_bend = _cubic(numbers, here + 6, there + 6, values, share, over, span)
+    force += tilt * (m_slope + 0.5 * tilt * r_slope)
+    slope += tilt * (m_bend + 0.5 * tilt * r_bend)
+    return max(force, 0.0), max(slope, 0.0)
+
+
+@njit(cache=True)
+def _cubic(
+    numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, span: float
+) -> tuple[float, float, float]:
+    """Return value, first and second derivative of the cubic whose value and slope stand at `here` of both columns."""
+    rest, t = 1.0 - share, over / span
+    f_0 = numbers[here] * rest + numbers[there] * share
+    s_0 = numbers[here + 1] * rest + numbers[there + 1] * share
+    f_1 = numbers[here + values] * rest + numbers[there + values] * share
+    s_1 = numbers[here + values + 1] * rest + numbers[there + values + 1] * share
+    if t > 1.0:
+        return f_1 + s_1 * (over - span), s_1, 0.0
     rise = (f_1 - f_0) / span
     bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-    return f_0 + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
+    value = f_0 + over * (s_0 + t * (bend + t * twist))
+    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) / span
+
+
+@njit(cache=True)
+def contact_moment(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
+) -> tuple[float, float, float]:
+    """Return the moment across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m] of slot i, arguments as above."""
+    nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
+    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
+    approach = max(penetration_m - pairs[i, TOUCH], 0.0)
+    node = min(int(sqrt(approach / unit_m)), nodes - 2)
+    span, over = unit_m * (2.0 * node + 1.0), approach - unit_m * (node * node)
+    here = int(pairs[i, CURVES]) + node * values
+    there = here + nodes * values
+    share, tilt = pairs[i, SHARE], pairs[i, TILT]
+    moment, slope, _ = _cubic(numbers, here + 4, there + 4, values, share, over, span)
+    turning, turning_slope, _ = _cubic(numbers, here + 6, there + 6, values, share, over, span)
+    return moment + turning * tilt, slope + turning_slope * tilt, turning
 
 
 @njit(cache=True, inline="always")
@@ -80,11 +126,12 @@ def contact_shares(
     approach = max(penetration_m - pairs[i, TOUCH], 0.0)
     node = min(int(sqrt(approach / unit_m)), nodes - 2)
     t = min((approach - unit_m * (node * node)) / (unit_m * (2.0 * node + 1.0)), 1.0)
-    here = int(pairs[i, CURVES]) + node * VALUES
-    there = here + nodes * VALUES
+    values = index[layout.CONTACT_VALUES]
+    here = int(pairs[i, CURVES]) + node * values
+    there = here + nodes * values
     share = pairs[i, SHARE]
-    carrying_0 = numbers[here + 2] * (1.0 - t) + numbers[here + 6] * t
-    carrying_1 = numbers[there + 2] * (1.0 - t) + numbers[there + 6] * t
-    rough_0 = numbers[here + 3] * (1.0 - t) + numbers[here + 7] * t
-    rough_1 = numbers[there + 3] * (1.0 - t) + numbers[there + 7] * t
+    carrying_0 = numbers[here + 2] * (1.0 - t) + numbers[here + values + 2] * t
+    carrying_1 = numbers[there + 2] * (1.0 - t) + numbers[there + values + 2] * t
+    rough_0 = numbers[here + 3] * (1.0 - t) + numbers[here + values + 3] * t
+    rough_1 = numbers[there + 3] * (1.0 - t) + numbers[there + values + 3] * t
     return carrying_0 + share * (carrying_1 - carrying_0), rough_0 + share * (rough_1 - rough_0)

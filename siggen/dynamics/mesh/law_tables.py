@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import VALUES
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 NUMBERS = {
@@ -97,15 +96,16 @@ def _slices(law: PairLaw) -> dict[str, NDArray[Any]]:
 
 
 def _contact(law: PairLaw) -> dict[str, Any]:
-    points, nodes, columns = (
-        int(law.places[place]) for place in (layout.POINTS, layout.CONTACT_NODES, layout.CONTACT_COLUMNS)
+    points, nodes, columns, values = (
+        int(law.places[place])
+        for place in (layout.POINTS, layout.CONTACT_NODES, layout.CONTACT_COLUMNS, layout.CONTACT_VALUES)
     )
     rows = int(_wholes(law, layout.TABLE_AT, (int(law.places[layout.TEETH_1]), int(law.places[layout.TEETH_2]))).max())
     return {
         "contact.touch_m": _numbers(law, layout.TOUCH_AT, (rows + 1, points)),
         "contact.column": _numbers(law, layout.COLUMN_AT, (rows + 1, points - 1)),
         "contact.gain": _numbers(law, layout.GAIN_AT, (rows + 1, points - 1)),
-        "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, VALUES)),
+        "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, values)),
         "contact.reach_m": float(law.scalars[layout.CONTACT_REACH]),
         "contact.lead_m": float(law.scalars[layout.LEAD_M]),
     }

@@ -14,14 +14,16 @@ from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
 from siggen.dynamics.friction.friction import friction_mixed
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import contact_shares
+from siggen.dynamics.mesh.contact_spring import contact_moment, contact_shares
 from siggen.dynamics.mesh.pair_columns import (
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
+    CROSS,
     DAMPING,
     FLANK,
     FRICTION,
+    MOMENT,
     NORMAL,
     PENETRATION,
     PLACED,
@@ -29,6 +31,8 @@ from siggen.dynamics.mesh.pair_columns import (
     ROUGH,
     SLIDING,
     STIFFNESS,
+    TILT_RATE,
+    TURNING,
     WHOLE,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -93,6 +97,11 @@ def _load(
             root += scalars[layout.DAMPING_ASPERITIES] * share
     pairs[i, DAMPING] = root * damping * pairs[i, STIFFNESS]
     force = elastic + pairs[i, DAMPING] * rate_m_s
+    if driven and index[layout.CONTACT_VALUES] > 4:
+        # The damper answers to the rate of the whole state as the spring's tangent does: it never gives work.
+        force += root * damping * pairs[i, CROSS] * pairs[i, TILT_RATE]
+        turned = pairs[i, CROSS] * rate_m_s + pairs[i, TURNING] * pairs[i, TILT_RATE]
+        pairs[i, MOMENT] = pairs[i, MOMENT] + root * damping * turned if force > 0.0 else 0.0
     if not driven:
         pairs[i, NORMAL] = min(0.0, force)
     elif force > 0.0:
@@ -100,6 +109,17 @@ def _load(
         if index[layout.ROUGHNESSES] > 0:
             _lubricate(scalars, numbers, index, pairs, i, force)
             pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[layout.SLIP_SPEED])
+
+
+@njit(cache=True, inline="always")
+def _spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
+    """Write share on damage, and moment where gears tilt, of a slot; return the carrying share of its face."""
+    carrying, pairs[i, ROUGH] = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+    if index[layout.CONTACT_VALUES] > 4:
+        pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING] = contact_moment(
+            scalars, numbers, index, pairs, i, pairs[i, PENETRATION]
+        )
+    return carrying
 
 
 @njit(cache=True)
@@ -126,6 +146,7 @@ def write_forces(
             pairs[i, column] = 0.0
         for column in range(CARRYING, DAMPING + 1):
             pairs[i, column] = 0.0
+        pairs[i, MOMENT] = 0.0
         if pairs[i, WHOLE] == 0.0:
             for column in range(PENETRATION, FLANK + 1):
                 pairs[i, column] = 0.0
@@ -138,7 +159,7 @@ def write_forces(
             continue
         pairs[i, FLANK] = 1.0 if elastic > 0.0 else -1.0
         if elastic > 0.0 and index[layout.CONTACT_NODES] > 0:
-            carrying, pairs[i, ROUGH] = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+            carrying = _spread(scalars, numbers, index, pairs, i)
         pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, CARRYING] = elastic, tangent, carrying
         touching += tangent
     damping = 1.0 / np.sqrt(touching) if touching > 0.0 else 0.0

@@ -49,12 +49,12 @@ SCALARS = 24
     TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
     SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
     ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT, CONTACT_NODES,
-    CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT,
-) = range(32)  # fmt: skip
+    CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT, CONTACT_VALUES,
+) = range(33)  # fmt: skip
 """Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction;
 0 nodes: no table of the contact across the face) and, ending in _AT, where a table begins in `numbers`, or in `places`
 itself."""
-HEAD = 32
+HEAD = 33
 
 
 class PairLaw(NamedTuple):
@@ -230,6 +230,7 @@ def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTab
         )
     packed.head(CONTACT_COLUMNS, contact.curves.shape[0])
     packed.head(CONTACT_NODES, contact.curves.shape[1])
+    packed.head(CONTACT_VALUES, contact.curves.shape[2])
     for place, values in (
         (TOUCH_AT, contact.touch_m), (COLUMN_AT, contact.column), (GAIN_AT, contact.gain), (CURVES_AT, contact.curves),
     ):  # fmt: skip

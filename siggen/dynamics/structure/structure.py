@@ -255,3 +255,8 @@ def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mappin
     result = np.array([still, vector(coordinates, {"theta_1": 1.0, "theta_2": 1.0})])
     result.setflags(write=False)
     return result
+
+
+def friction_tilt_vector(structure: Structure) -> FloatArray:
+    """Return t_x (n,): a friction force F at the distance ζ from the middle of the face acts as -t_x ζ F too."""
+    return vector(structure.coordinates, {"phi_x_1": 1.0, "phi_x_2": -1.0})

@@ -2,6 +2,8 @@
 
 Equations (derived, signs by power): M ẅ + C w' + K w = -p (ΣN - F_s) - r_0 ΣF - r_1 Σ s F, about the static state at
 the mean mesh stiffness; p and r are the mesh and sliding vectors of the structure. The phase of the mesh is prescribed.
+Where gears tilt, - t Σμ - t_x Σ ζ F come to the right side, with the moments μ of the pairs across the face and the
+centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some 1e-6 of it, is left out.
 """
 
 from __future__ import annotations
@@ -12,25 +14,27 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, POSITION
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, MOMENT, NORMAL, POSITION, TILT, TILT_RATE
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.dynamics.structure.structure import Structure, friction_tilt_vector, vector
 from siggen.dynamics.time.equations import Equations, equations_about, external_push, inverse_times
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
 MOTION = ("approach_m", "approach_rate_m_s")
+ACROSS = ("mesh_tilt_rad", "mesh_moment_nm")
 
 
 class PairEquations(NamedTuple):
     """Constant numbers of the equations of motion and how sliding enters them.
 
     `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
-    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
+    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; where gears tilt (2n + 9, n) with t, M⁻¹ t and M⁻¹ t_x behind; `static_tilt`: of the state;
+    `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
     `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s];
     `external_input` (m, n): see `Equations`.
     """
@@ -41,6 +45,7 @@ class PairEquations(NamedTuple):
     rigid_sliding_0: float
     rigid_sliding_1: float
     external_input: FloatArray
+    static_tilt: float
 
 
 class PairMotion:
@@ -75,7 +80,9 @@ class PairMotion:
         self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
         self.base_pitch_m = law.base_pitch_m
-        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *_names(structure))
+        self.tilts = structure.tilt_vector is not None
+        across = ACROSS if self.tilts else ()
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *_names(structure))
         self._pairs = pair_table(law)
         self._step_s = step_s
         self._speed_input = speed_input
@@ -117,11 +124,14 @@ class PairMotion:
     def internals(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
         n = self.equations.mesh_vector.size
-        found = pair_internals(self.pairs(states, pitches, inputs), self.law.line_of_action_m, self.contact)
+        pairs = self.pairs(states, pitches, inputs)
+        found = pair_internals(pairs, self.law.line_of_action_m, self.contact)
         approach = [
             self.equations.static_approach + (states[:, :n] * self.equations.mesh_vector).sum(axis=1),
             (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
         ]
+        if self.tilts:
+            approach += [pairs[:, 0, TILT], pairs[:, :, MOMENT].sum(axis=1)]
         moved = states[:, :n] + self.equations.static_deflection
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
@@ -141,6 +151,12 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
     inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
     parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
     parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
+    static_tilt = 0.0
+    if structure.tilt_vector is not None:
+        arms = np.stack([structure.tilt_vector, friction_tilt_vector(structure)], axis=1)
+        turned = inverse_times(structure.mass, arms).T
+        parts += [structure.tilt_vector[None], turned]
+        static_tilt = float(structure.tilt_vector @ equations.static_deflection)
     return PairEquations(
         np.ascontiguousarray(np.concatenate(parts)),
         equations.static_force,
@@ -148,6 +164,7 @@ def _pair_equations(structure: Structure, equations: Equations, speed_hz: float)
         float(rigid[0]),
         float(rigid[1]),
         equations.external_input,
+        static_tilt,
     )
 
 
@@ -162,6 +179,7 @@ def _at_speed(equations: PairEquations, speed_deviation: float) -> PairEquations
         equations.rigid_sliding_0 * ratio,
         equations.rigid_sliding_1 * ratio,
         equations.external_input,
+        equations.static_tilt,
     )
 
 
@@ -169,8 +187,8 @@ def _at_speed(equations: PairEquations, speed_deviation: float) -> PairEquations
 @njit(cache=True, inline="always")
 def _load_pairs(
     equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
-) -> tuple[float, float, float]:
-    """Write the table of pairs of a state; return ΣN, ΣF and Σ s F."""
+) -> tuple[float, float, float, float, float]:
+    """Write the table of pairs of a state; return ΣN, ΣF, Σ s F, Σμ and Σ ζ F."""
     rows = equations.rows
     n = rows.shape[1]
     approach, approach_rate = equations.static_approach, 0.0
@@ -180,13 +198,23 @@ def _load_pairs(
         approach_rate += rows[2 * n, i] * state[n + i]
         sliding_0 += rows[2 * n + 1, i] * state[n + i]
         sliding_1 += rows[2 * n + 2, i] * state[n + i]
+    if rows.shape[0] > 2 * n + 6:
+        tilt, tilt_rate = equations.static_tilt, 0.0
+        for i in range(n):
+            tilt += rows[2 * n + 6, i] * state[i]
+            tilt_rate += rows[2 * n + 6, i] * state[n + i]
+        for i in range(pairs.shape[0]):
+            pairs[i, TILT], pairs[i, TILT_RATE] = tilt, tilt_rate
     write_forces(law.scalars, law.numbers, law.places, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
-    normal, friction, moment = 0.0, 0.0, 0.0
+    normal, friction, moment, across, rubbed = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(pairs.shape[0]):
         normal += pairs[i, NORMAL]
         friction += pairs[i, FRICTION]
         moment += pairs[i, POSITION] * pairs[i, FRICTION]
-    return normal, friction, moment
+        across += pairs[i, MOMENT]
+        if pairs[i, NORMAL] > 0.0:
+            rubbed += pairs[i, FRICTION] * pairs[i, MOMENT] / pairs[i, NORMAL]
+    return normal, friction, moment, across, rubbed
 
 
 # Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
@@ -196,13 +224,16 @@ def pair_rate(
 ) -> None:
     """Write ż (2n,) of a state into `rate`; the form that integrators call."""
     equations, law, pairs = model
-    normal, friction, moment = _load_pairs(equations, law, pairs, state, pitches)
+    normal, friction, moment, across, rubbed = _load_pairs(equations, law, pairs, state, pitches)
     excess = normal - equations.static_force
     rows = equations.rows
     n = rows.shape[1]
     for i in range(n):
         rate[i] = state[n + i]
         rate[n + i] = -(rows[2 * n + 3, i] * excess + rows[2 * n + 4, i] * friction + rows[2 * n + 5, i] * moment)
+    if rows.shape[0] > 2 * n + 6:
+        for i in range(n):
+            rate[n + i] -= rows[2 * n + 7, i] * across + rows[2 * n + 8, i] * rubbed
     # Columns outside, so that the inner loop carries no sum and runs on several rates at once; displacement and
     # velocity of a coordinate together, which halves the traffic to memory.
     for j in range(n):

@@ -6,6 +6,14 @@ approach beyond first touch: what a gap without land does most, the sink of the 
 fine grid of the stiffness, so that columns only carry how the load spreads. Away from damage all kinds share the
 columns of the healthy pair.
 
+Where gears tilt, the energy is expanded about no tilt, W = W_0(d) + M(d) θ + ½ M_θ(d) θ², so that force and moment,
+
+    F = W_0' + M' θ + ½ M_θ' θ²,   moment = M + M_θ θ,
+
+are derivatives of one energy: no closed loop in (d, θ) does work. Loaded tilts are small beside the approach, since
+shafts are much stiffer against tilting than the contact is; what misalignment takes away stands in the lead, not in
+θ.
+
 Nodes lie at D (k/(n - 1))² up to the largest approach D; beyond it the force goes on with the last slope.
 """
 
@@ -19,8 +27,9 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
-from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.newton_matrix import SolverRoom, solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_faces
 from siggen.gears.damage.flank_chords import flank_chords, has_extent
 from siggen.gears.damage.flank_damage import Damage, pits_of
@@ -31,8 +40,9 @@ from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-FORCE, SLOPE, CARRYING, ROUGH = range(4)
-"""Columns of the curves: force [N], dF/dd [N/m], carrying share of the face, share of the load on damage."""
+FORCE, SLOPE, CARRYING, ROUGH, MOMENT, MOMENT_SLOPE, TURNING, TURNING_SLOPE = range(8)
+"""Columns of the curves: force [N], dF/dd [N/m], carrying share of the face, share of the load on damage; where gears
+tilt, also the moment at no tilt M [N m], dM/dd [N], dM/dθ = M_θ [N m], and dM_θ/dd [N]."""
 FELT_HALF_WIDTHS = 4.0
 """Gaps farther from the contact than this many Hertz half widths are not felt."""
 COARSEST = 64
@@ -47,7 +57,7 @@ class TableOptions(NamedTuple):
     `largest_force_n`: at which the nodes end; `edge_radius_m`: of damage; `cell_m`: width of a slice, 1 to 1.5 Hertz
     half widths; `nodes`: approaches; `healthy_columns`; `finest`: intervals of the fine grid below which columns are
     not refined; `section_loss`: whether damage also weakens the tooth's sections; `coupled`: whether slices feel each
-    other.
+    other; `tilt_rad`: at which dM/dθ is taken, 0 where gears stay parallel.
     """
 
     largest_force_n: float
@@ -58,14 +68,15 @@ class TableOptions(NamedTuple):
     finest: int = 2
     section_loss: bool = False
     coupled: bool = True
+    tilt_rad: float = 0.0
 
 
 class ContactTable(NamedTuple):
     """Tables on the fine grid of the stiffness, `points` positions from s_A to s_E.
 
     `touch_m` (rows, points): approach at which a pair of this kind first touches [m]; `column`, `gain` (rows, points -
-    1): column at the start of a fine interval, and how many columns it spans; `curves` (columns, nodes, 4): see FORCE;
-    `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add.
+    1): column at the start of a fine interval, and how many columns it spans; `curves` (columns, nodes, 4 or 8): see
+    FORCE; `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add.
     """
 
     touch_m: FloatArray
@@ -261,7 +272,7 @@ def _touch(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
 
 
 def _curves(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
-    """Return the curves (chosen, nodes, 4) at fine points (chosen,)."""
+    """Return the curves (chosen, nodes, 4 or 8) at fine points (chosen,)."""
     from scipy.interpolate import pchip_interpolate
 
     pair, options, node = solver.pair, solver.options, solver.node_m
@@ -275,14 +286,34 @@ def _curves(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
         solver.lead_m,
     )
     touch = _touch(solver, row, chosen)
-    curves = np.zeros((chosen.size, options.nodes, 4))
+    tilts = options.tilt_rad > 0.0
+    curves = np.zeros((chosen.size, options.nodes, 8 if tilts else 4))
     room = solver_room(solver.lead_m.size)
     for i, slices in enumerate(faces):
         found = force_curve(slices, touch[i] + node[1:], 0.0, np.zeros(solver.lead_m.size), room)
         curves[i, 1:, FORCE] = found.force_n
         curves[i, 1:, CARRYING] = found.carrying_m / pair.face_width_m
         curves[i, 1:, ROUGH] = found.on_damage
+        if tilts:
+            curves[i, 1:, MOMENT] = found.moment_n_m
+            curves[i, :, TURNING] = _turning(slices, touch[i], node, options.tilt_rad, room)
     curves[:, 0, CARRYING:] = curves[:, 1, CARRYING:]
     curves[:, :, SLOPE] = pchip_interpolate(node, curves[:, :, FORCE].T, node, der=1).T
+    for value in (MOMENT, TURNING) if tilts else ():
+        curves[:, :, value + 1] = pchip_interpolate(node, curves[:, :, value].T, node, der=1).T
     curves[:, 0, SLOPE] = 0.0  # Weber and Banaschek's tangent, which no mean of secants finds
     return curves
+
+
+def _turning(slices: FaceSlices, touch_m: float, node_m: FloatArray, tilt_rad: float, room: SolverRoom) -> FloatArray:
+    """Return dM/dθ (nodes,) [N m] from tilts to both sides, at every third node and monotone between."""
+    from scipy.interpolate import pchip_interpolate
+
+    chosen = np.unique(np.append(np.arange(1, node_m.size, 3), node_m.size - 1))
+    zeros = np.zeros(slices.face_m.size)
+    one, two = (
+        force_curve(slices, touch_m + node_m[chosen], tilt, zeros.copy(), room).moment_n_m
+        for tilt in (tilt_rad, -tilt_rad)
+    )
+    known = np.append(0.0, (one - two) / (2.0 * tilt_rad))
+    return np.asarray(pchip_interpolate(np.append(0.0, node_m[chosen]), known, node_m))

@@ -8,8 +8,20 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
 
-from siggen.gears.contact.contact_table import CARRYING, FORCE, SLOPE, ContactTable, TableOptions, contact_table
+from siggen.gears.contact.contact_table import (
+    CARRYING,
+    FORCE,
+    MOMENT,
+    MOMENT_SLOPE,
+    SLOPE,
+    TURNING,
+    TURNING_SLOPE,
+    ContactTable,
+    TableOptions,
+    contact_table,
+)
 from siggen.gears.contact.face_gaps import face_gaps
+from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
@@ -67,6 +79,10 @@ def from_table(found: ContactTable, row: int, place: float, approach_m: np.ndarr
 
 def solved(damage: Damage, place: float, approach_m: np.ndarray) -> np.ndarray:
     """Force of the solver itself at the same place, with edges of its own."""
+    return force_curve(slices_at(damage, place), approach_m, 0.0, np.zeros(200), solver_room(200)).force_n
+
+
+def slices_at(damage: Damage, place: float) -> FaceSlices:
     pair = gear_pair()
     fine = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     position = np.array([np.interp(place, np.arange(POINTS), fine)])
@@ -80,9 +96,7 @@ def solved(damage: Damage, place: float, approach_m: np.ndarray) -> np.ndarray:
         for which, roll in zip(("pinion", "gear"), rolls_at(pair, position), strict=True)
     )
     options = FaceOptions(TYPICAL, OPTIONS.edge_radius_m)
-    slices = pair_faces(pair, face_gaps(pair, *chords, position), position, rest, options)[0]
-    room = solver_room(200)
-    return force_curve(slices, approach_m, 0.0, np.zeros(200), room).force_n
+    return pair_faces(pair, face_gaps(pair, *chords, position), position, rest, options)[0]
 
 
 @pytest.mark.parametrize("damage", [through_the_face(), skewed()], ids=["through the face", "skewed, with land"])
@@ -159,3 +173,36 @@ def test_missing_material_across_the_face_is_carried_by_the_near_end_first() -> 
     middle = OPTIONS.healthy_columns // 2
     assert tilted.curves[middle, 2, CARRYING] < 0.5 * even.curves[middle, 2, CARRYING]
     assert tilted.curves[middle, 2, FORCE] < even.curves[middle, 2, FORCE]
+
+
+@pytest.mark.parametrize("damage", [(), skewed()], ids=["healthy", "skewed, with land"])
+def test_the_expansion_in_the_tilt_gives_force_and_moment_of_the_solver(damage: Damage) -> None:
+    tilting = contact_table(gear_pair(), damage, STIFFNESS, OPTIONS._replace(tilt_rad=2e-5), POINTS)
+    node = tilting.reach_m * (np.arange(OPTIONS.nodes) / (OPTIONS.nodes - 1.0)) ** 2
+    row = len(tilting.touch_m) - 1
+    place = float(np.flatnonzero(tilting.column[row] >= OPTIONS.healthy_columns)[40]) if damage else 512.0
+    # A column of the table, so that only the expansion is judged.
+    column = round(tilting.column[row, int(place)])
+    while tilting.column[row, int(place)] != column:
+        place += 1.0
+        column = round(tilting.column[row, int(place)])
+    curve = tilting.curves[column]
+    for tilt in (1e-5, -1e-5, 3e-5):
+        for k in (6, 9, 12):
+            force, moment = solved_with_tilt(damage, place, tilting.touch_m[row, int(place)] + node[k], tilt)
+            expanded = curve[k, FORCE] + tilt * curve[k, MOMENT_SLOPE] + 0.5 * tilt**2 * curve[k, TURNING_SLOPE]
+            turned = curve[k, MOMENT] + tilt * curve[k, TURNING]
+            # Third order in the tilt: 0.3 um at the ends beside an approach of 4 um and more.
+            assert expanded == pytest.approx(force, rel=1e-2)
+            assert turned == pytest.approx(moment, rel=0.05, abs=2e-5 * force)
+
+
+def solved_with_tilt(damage: Damage, place: float, approach_m: float, tilt_rad: float) -> tuple[float, float]:
+    found = force_curve(slices_at(damage, place), np.array([approach_m]), tilt_rad, np.zeros(200), solver_room(200))
+    return float(found.force_n[0]), float(found.moment_n_m[0])
+
+
+def test_a_face_without_damage_and_lead_has_no_moment() -> None:
+    tilting = contact_table(gear_pair(), (), STIFFNESS, OPTIONS._replace(tilt_rad=2e-5), POINTS)
+    assert np.abs(tilting.curves[:, :, MOMENT]).max() < 1e-9 * FORCE_N
+    assert (tilting.curves[:, 1:, TURNING] > 0.0).all()  # the contact resists tilting
