@@ -18,6 +18,7 @@ FLOORS = {
     "siggen.dataset.plan": 1.5,
     "siggen.dataset.specimen": 1.5,
     "siggen.gears": 2,
+    "siggen.gears.contact": 2.5,
     "siggen.dynamics": 3,
     "siggen.sensing": 4,
     # The composition, in the order of the data; dataset lies between, since simulate makes its records.

@@ -1,0 +1,180 @@
+r"""Force and moment across the face of one tooth pair at one position, from the approach and the tilt.
+
+The face is cut into equal slices that carry the line loads q_j = u_j/κ >= 0. Derived: the complementary energy
+
+    Ψ = (w/κ) [½ u·K(a) u + Σ_j ∫ e_j du] + ½ C F²,   F = w Σ q_j,   a² = 2 R √(w Σ u²/L)
+
+holds the elastic line with its neighbours (`line_kernel`), the sink e_j of a slice at the edges of missing material
+(`two_edges`) and the compliance C of everything else, rigid across the face. Its least value over u >= 0 at a given
+approach d and tilt θ solves
+
+    δ_j = d + θ y_j - lead_j = C F + (K u)_j + β u_j + e_j(u_j),   β = ¼ u·(dK/d ln a)u/u·u,
+
+a half width a that belongs to the load that is carried: the mean square over the length L. For an even load on the
+whole face it is Weber and Banaschek's secant law exactly, and β = -¼ makes good for the energy's ε. Force F and moment
+M = w Σ q y are the derivatives of the stored energy W = w Σ q δ - Ψ to d and θ, so that no closed loop in (d, θ) does
+work. K + β is positive definite (`line_kernel.reckoned_width`), so F and dF/dd > 0 are continuous; from first touch on
+dF/dd grows from 0.
+
+Solved by Newton's method on the slices that touch; the matrix takes a number of steps proportional to the slices.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.gears.contact.exponential_matrix import products
+from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
+from siggen.gears.contact.line_kernel import diagonal, strengths
+from siggen.gears.contact.newton_matrix import SolverRoom, add_low_rank, solve_local
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-5
+"""Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
+are good to 1e-9."""
+LARGEST_PASSES = 80
+RETURNS = 4
+"""How often a slice may lose touch before its load is cut down step by step instead."""
+
+
+class FaceForce(NamedTuple):
+    """What the pair answers to an approach and a tilt.
+
+    `force_n`: F; `moment_n_m`: M, positive with the load at positive y; `stiffness_n_per_m`: dF/dd to 0.2 %;
+    `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on slices whose normal lies in
+    damage; `passes` of the solver, -1: not solved.
+    """
+
+    force_n: float
+    moment_n_m: float
+    stiffness_n_per_m: float
+    carrying_m: float
+    on_damage: float
+    passes: int
+
+
+@njit(cache=True)
+def face_force(
+    slices: FaceSlices, approach_m: float, tilt_rad: float, loads_m: FloatArray, room: SolverRoom
+) -> FaceForce:
+    """Return the answer to an approach d [m] and tilt θ [rad]; `loads_m` (n,) κq goes in as a guess, comes out solved.
+
+    A guess of a neighbouring approach or position saves passes; zeros are allowed.
+    """
+    room.losses[:] = 0
+    _first_guess(slices, approach_m, tilt_rad, loads_m)
+    for passes in range(1, LARGEST_PASSES + 1):
+        square = 0.0
+        for i in range(loads_m.size):
+            square += loads_m[i] * loads_m[i]
+        if square == 0.0:
+            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, passes)
+        work, bend = _prepare(slices, loads_m, square, room)
+        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, room)
+        if not solve_local(slices, room, chosen):
+            break
+        step, stiffness = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
+        largest, kept = _move(loads_m, room, chosen)
+        if settled and kept and step <= TOLERANCE * largest:
+            return _answer(slices, loads_m, stiffness, passes)
+    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, -1)
+
+
+@njit(cache=True)
+def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatArray) -> None:
+    """Put loads on the slices that the approach reaches if none carries yet."""
+    for i in range(loads.size):
+        if loads[i] > 0.0:
+            return
+    own = 4.0 + slices.compliance_m_per_n * slices.carrying_m / slices.kappa_per_pa
+    for i in range(loads.size):
+        sunk = slice_sink(slices, i, 0.0).sink_m
+        loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - sunk, 0.0) / own
+
+
+@njit(cache=True)
+def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverRoom) -> tuple[float, float]:
+    """Fill K u and (dK/d ln a) u into the room; return u·(dK/d ln a) u and what the bend of `reckoned_width` adds."""
+    width, growth, bend = contact_half_width(slices, square)
+    own, own_slope = diagonal(slices.kernel, width)
+    room.product[:] = 0.0
+    room.growth[:] = 0.0
+    if slices.kernel.coupled:
+        strengths(slices.kernel, width, room.strength, room.strength_slope)
+        products(slices.kernel.decay, room.strength, room.strength_slope, loads, room.product, room.growth)
+    room.diagonal[:] = own
+    work = 0.0
+    for i in range(loads.size):
+        room.product[i] += own * loads[i]
+        room.growth[i] = growth * (room.growth[i] + own_slope * loads[i])
+        work += loads[i] * room.growth[i]
+    return work, work * bend / growth if bend != 0.0 else 0.0
+
+
+@njit(cache=True)
+def _assemble(
+    slices: FaceSlices, approach: float, tilt: float, loads: FloatArray, beta: float, room: SolverRoom
+) -> tuple[int, bool]:
+    """Fill matrix and right sides; return how many slices carry, and whether none of them is new."""
+    per_load = slices.kernel.cell_m / slices.kappa_per_pa
+    total = 0.0
+    for i in range(loads.size):
+        total += loads[i]
+    rest = slices.compliance_m_per_n * per_load * total
+    own = room.diagonal[0]
+    chosen, settled = 0, True
+    for i in range(loads.size):
+        gap = slice_sink(slices, i, loads[i])
+        wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
+        residual = wanted - beta * loads[i] - gap.sink_m
+        if loads[i] == 0.0:
+            if residual <= 0.0:
+                continue
+            settled = False
+            # small beside the neighbours but not 0, where sinks are infinitely soft
+            loads[i] = min(residual / (own + 4.0), 0.05 * total / loads.size + 1e-15)
+            gap = slice_sink(slices, i, loads[i])
+            residual = wanted - (own + beta) * loads[i] - gap.sink_m
+        room.rows[chosen] = i
+        chosen += 1
+        room.diagonal[i] = own + beta + gap.slope
+        room.right[i, 0] = residual
+        room.right[i, 1] = 1.0
+        room.right[i, 2] = loads[i]
+        room.right[i, 3] = room.growth[i]
+    return chosen, settled
+
+
+@njit(cache=True)
+def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool]:
+    """Take the step; return the largest load, and whether every slice keeps touch."""
+    largest, kept = 0.0, True
+    for n in range(chosen):
+        i = room.rows[n]
+        largest = max(largest, loads[i])
+        moved = loads[i] + room.right[i, 0]
+        if moved > 0.0:
+            loads[i] = moved
+            continue
+        kept = False
+        room.losses[i] += 1
+        loads[i] = 0.0 if room.losses[i] <= RETURNS else 0.2 * loads[i]
+    return largest, kept
+
+
+@njit(cache=True)
+def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, passes: int) -> FaceForce:
+    total = square = moment = damaged = 0.0
+    for i in range(loads.size):
+        total += loads[i]
+        square += loads[i] * loads[i]
+        moment += loads[i] * slices.face_m[i]
+        damaged += loads[i] * slices.on_damage[i]
+    per_load = slices.kernel.cell_m / slices.kappa_per_pa
+    length = slices.kernel.cell_m * total * total / square
+    return FaceForce(per_load * total, per_load * moment, stiffness, length, damaged / total, passes)

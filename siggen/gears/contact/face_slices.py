@@ -1,0 +1,61 @@
+"""FaceSlices: one tooth pair at one position, cut into slices across the face, and what a slice answers on its own."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.gears.contact.line_kernel import LineKernel, reckoned_width
+from siggen.gears.contact.two_edges import GapSink, gap_sink
+
+FloatArray = NDArray[np.float64]
+
+
+class FaceSlices(NamedTuple):
+    """The slices at one position (a named tuple, since compiled code takes no dataclass); arrays are (n,).
+
+    `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `on_damage`:
+    1 where the normal lies in a gap of the damage, 0 elsewhere; `lead_m`: missing material across the face, of any
+    sign; `face_m`: y from the middle of the face; `kernel`: K; `radius_m`: R; `rounding_m`: radius of the edges;
+    `kappa_per_pa`: κ; `compliance_m_per_n`: C; `carrying_m`: L.
+    """
+
+    left_m: FloatArray
+    right_m: FloatArray
+    notch_m: FloatArray
+    floor_m: FloatArray
+    on_damage: FloatArray
+    lead_m: FloatArray
+    face_m: FloatArray
+    kernel: LineKernel
+    radius_m: float
+    rounding_m: float
+    kappa_per_pa: float
+    compliance_m_per_n: float
+    carrying_m: float
+
+
+@njit(cache=True)
+def slice_sink(slices: FaceSlices, i: int, load: float) -> GapSink:
+    """Return the sink of slice i under a load κq [m]."""
+    return gap_sink(
+        slices.left_m[i],
+        slices.right_m[i],
+        slices.notch_m[i],
+        slices.floor_m[i],
+        slices.radius_m,
+        slices.rounding_m,
+        load,
+    )
+
+
+@njit(cache=True)
+def contact_half_width(slices: FaceSlices, square: float) -> tuple[float, float, float]:
+    """Return a [m] of loads with the sum of squares `square`, as `reckoned_width` does."""
+    cell = slices.kernel.cell_m
+    width = sqrt(2.0 * slices.radius_m * sqrt(cell * square / slices.carrying_m))
+    return reckoned_width(width, cell) if slices.kernel.coupled else (width, 1.0, 0.0)

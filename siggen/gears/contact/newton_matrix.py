@@ -1,0 +1,130 @@
+"""The matrix of Newton's method for the slices: a diagonal, exponentials of the distance, and three vectors."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.gears.contact.exponential_matrix import solve_rows
+from siggen.gears.contact.face_slices import FaceSlices
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class SolverRoom(NamedTuple):
+    """Arrays that the solver reuses, made by `solver_room`.
+
+    `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
+    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 4): right sides residual, 1, u, v, then the solutions; `steps`,
+    `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
+    """
+
+    rows: IntArray
+    losses: IntArray
+    product: FloatArray
+    diagonal: FloatArray
+    right: FloatArray
+    growth: FloatArray
+    steps: FloatArray
+    factors: FloatArray
+    strength: FloatArray
+    strength_slope: FloatArray
+
+
+def solver_room(slices: int, exponentials: int) -> SolverRoom:
+    """Return room for faces of so many slices and exponentials of their kernel."""
+    return SolverRoom(
+        rows=np.zeros(slices, np.int64),
+        losses=np.zeros(slices, np.int64),
+        product=np.zeros(slices),
+        diagonal=np.zeros(slices),
+        right=np.zeros((slices, 4)),
+        growth=np.zeros(slices),
+        steps=np.zeros((slices, exponentials)),
+        factors=np.zeros((slices, exponentials + 1)),
+        strength=np.zeros(exponentials),
+        strength_slope=np.zeros(exponentials),
+    )
+
+
+@njit(cache=True)
+def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
+    """Solve for the four right sides with the local part of the matrix."""
+    if slices.kernel.coupled:
+        return solve_rows(
+            slices.kernel.decay, room.strength, room.diagonal, room.rows, chosen, room.right, room.steps, room.factors
+        )
+    for n in range(chosen):
+        i = room.rows[n]
+        if room.diagonal[i] <= 0.0:
+            return False
+        for side in range(4):
+            room.right[i, side] /= room.diagonal[i]
+    return True
+
+
+@njit(cache=True)
+def add_low_rank(
+    slices: FaceSlices, room: SolverRoom, chosen: int, loads: FloatArray, square: float, slope: float, bend: float
+) -> tuple[float, float]:
+    """Add what C and the growth of a with the load do to the solution; return the largest step and dF/dd [N/m].
+
+    With v = (dK/d ln a) u the matrix gains c 1 1ᵀ + p (v uᵀ + u vᵀ) - p (s - ¼ s') u uᵀ, p = 1/(2 u·u), s = u·v/u·u
+    (`slope`), s' = u·(d²K/d(ln a)²)u/u·u, of which `bend` is all but a part that an even load does not have.
+    """
+    per_load = slices.kernel.cell_m / slices.kappa_per_pa
+    c = slices.compliance_m_per_n * per_load
+    p = 0.5 / square
+    gram = np.zeros((3, 4))
+    for n in range(chosen):
+        i = room.rows[n]
+        for side in range(4):
+            gram[0, side] += room.right[i, side]
+            gram[1, side] += loads[i] * room.right[i, side]
+            gram[2, side] += room.growth[i] * room.right[i, side]
+    # x = z_b - z_1 c (1·x) - z_u (p (v·x) - p s (u·x)) - z_v p (u·x); unknown are 1·x, u·x, v·x
+    matrix = np.zeros((3, 3))
+    sides = np.zeros((3, 2))
+    for j in range(3):
+        matrix[j, 0] = c * gram[j, 1]
+        matrix[j, 1] = p * (gram[j, 3] - (slope - 0.25 * bend) * gram[j, 2])
+        matrix[j, 2] = p * gram[j, 2]
+        matrix[j, j] += 1.0
+        sides[j, 0] = gram[j, 0]
+        sides[j, 1] = gram[j, 1]
+    _solve_three(matrix, sides)
+    largest = 0.0
+    ones, by_load, by_growth = c * sides[0, 0], p * (sides[2, 0] - (slope - 0.25 * bend) * sides[1, 0]), p * sides[1, 0]
+    for n in range(chosen):
+        i = room.rows[n]
+        room.right[i, 0] -= ones * room.right[i, 1] + by_load * room.right[i, 2] + by_growth * room.right[i, 3]
+        largest = max(largest, abs(room.right[i, 0]))
+    return largest, per_load * sides[0, 1]
+
+
+@njit(cache=True)
+def _solve_three(matrix: FloatArray, sides: FloatArray) -> None:
+    """Solve three equations for two right sides in place, by elimination with pivots (LAPACK would cost more)."""
+    for j in range(3):
+        best = j
+        for k in range(j + 1, 3):
+            if abs(matrix[k, j]) > abs(matrix[best, j]):
+                best = k
+        for k in range(3):
+            matrix[j, k], matrix[best, k] = matrix[best, k], matrix[j, k]
+        for k in range(2):
+            sides[j, k], sides[best, k] = sides[best, k], sides[j, k]
+        for i in range(3):
+            if i != j:
+                ratio = matrix[i, j] / matrix[j, j]
+                for k in range(j, 3):
+                    matrix[i, k] -= ratio * matrix[j, k]
+                for k in range(2):
+                    sides[i, k] -= ratio * sides[j, k]
+    for j in range(3):
+        for k in range(2):
+            sides[j, k] /= matrix[j, j]

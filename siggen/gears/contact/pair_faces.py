@@ -1,0 +1,122 @@
+"""FaceSlices of a tooth pair at its contact positions, from geometry, gaps, lead and compliance."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.face_slices import FaceSlices
+from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.geometry import GearPair
+from siggen.gears.hertz import centre_line_depth
+
+FloatArray = NDArray[np.float64]
+
+
+class FaceOptions(NamedTuple):
+    """How contacts across the face are reckoned.
+
+    `line_load_n_per_m`: a typical load, which sets from which depth slices count as not carrying; `edge_radius_m`: of
+    the edges of damage, 0 for sharp ones; `coupled`: whether slices act on each other.
+    """
+
+    line_load_n_per_m: float
+    edge_radius_m: float = 0.0
+    coupled: bool = True
+
+
+def contact_kappa(pair: GearPair) -> float:
+    """Return κ = 2/(π E*) = 4 (1 - ν²)/(π E) of two gears of one material [1/Pa]."""
+    return 4.0 * (1.0 - pair.poisson_ratio**2) / (pi * pair.youngs_modulus_pa)
+
+
+def pair_faces(
+    pair: GearPair,
+    gaps: FaceGaps,
+    position_m: FloatArray,
+    rest_m_per_n: FloatArray,
+    options: FaceOptions,
+    lead_m: FloatArray | None = None,
+) -> list[FaceSlices]:
+    """Return the slices at positions s (k,) [m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    gaps : FaceGaps
+        At these positions, (k, n).
+    position_m : (k,)
+    rest_m_per_n : (k,)
+        Compliance C of the pair without its contact.
+    options : FaceOptions
+    lead_m : (n,) or None
+        Missing material across the face, of any sign; None: none.
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not fit.
+    """
+    count = gaps.left_m.shape[1]
+    if gaps.left_m.shape[0] != position_m.size or rest_m_per_n.shape != position_m.shape:
+        raise ValueError(
+            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest_m_per_n.size} positions; "
+            f"allowed: as many as positions ({position_m.size})"
+        )
+    lead = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
+    if lead.shape != (count,):
+        raise ValueError(f"lead_m: received shape {lead.shape}; allowed: ({count},), one for each slice")
+    cell = pair.face_width_m / count
+    face = cell * (np.arange(count) + 0.5) - 0.5 * pair.face_width_m
+    rolls = {"pinion": position_m / pair.pinion.base_radius_m}
+    rolls["gear"] = (pair.line_of_action_m - position_m) / pair.gear.base_radius_m
+    first, second = (centre_line_depth(pair, which, roll) for which, roll in rolls.items())
+    depth = np.sqrt(first * second)
+    radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
+    kappa = contact_kappa(pair)
+    family = kernel_family(count, cell, float(np.median(depth)))
+    out = []
+    for i in range(position_m.size):
+        here = FaceGaps(*(np.ascontiguousarray(array[i]) for array in gaps))
+        load = kappa * options.line_load_n_per_m
+        slices = FaceSlices(
+            left_m=here.left_m,
+            right_m=here.right_m,
+            notch_m=here.notch_m,
+            floor_m=here.floor_m,
+            on_damage=here.on_damage,
+            lead_m=lead,
+            face_m=face,
+            kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
+            radius_m=float(radius[i]),
+            rounding_m=options.edge_radius_m,
+            kappa_per_pa=kappa,
+            compliance_m_per_n=float(rest_m_per_n[i]),
+            carrying_m=carrying_length(here.left_m, here.right_m, here.floor_m, lead, cell, float(radius[i]), load),
+        )
+        out.append(slices)
+    return out
+
+
+def carrying_length(
+    left_m: FloatArray,
+    right_m: FloatArray,
+    floor_m: FloatArray,
+    lead_m: FloatArray,
+    cell_m: float,
+    radius_m: float,
+    load_m: float,
+) -> float:
+    """Return L [m] of slices (n,): each weighted by how little it lies below the least sunk one.
+
+    Derived: a slice that lies lower by several κq [m] (`load_m`, of a typical load) does not carry; one that sinks with
+    all others does. The weight is smooth, so that L is continuous over the position.
+    """
+    near = np.maximum(np.minimum(left_m, right_m), 0.0)
+    sunk = np.minimum(near**2 / (2.0 * radius_m), np.where(floor_m > 0.0, floor_m, np.inf)) + lead_m
+    over = (sunk - sunk.min()) / (4.0 * load_m)
+    return float(cell_m * np.sum(1.0 / (1.0 + over**2)))

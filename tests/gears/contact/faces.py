@@ -1,0 +1,59 @@
+"""Faces with gaps that the tests of the solver share: teeth 18/47 of module 3 mm at the pitch point, 20 mm wide."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from siggen.gears.contact.edge_law import NO_EDGE
+from siggen.gears.contact.face_force import FaceForce, face_force
+from siggen.gears.contact.face_slices import FaceSlices
+from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.pair_faces import carrying_length
+
+KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
+RADIUS, DEPTH, WIDTH = 6.676e-3, 2.2e-3, 20e-3
+REST = 0.78 / 1.99e8
+
+
+def face(gap=None, left=None, right=None, depth=0.0, slices=200, coupled=True, lead=None, rounding=0.0, rest=REST):
+    """Slices of which those of the mask `gap` have edges at the distances `left` and `right` [m]."""
+    gap = np.zeros(slices, bool) if gap is None else gap
+    x1, x2 = (np.where(gap, np.inf if x is None else x, -NO_EDGE) for x in (left, right))
+    d = np.where(gap, depth, 0.0)
+    cell = WIDTH / slices
+    lead = np.zeros(slices) if lead is None else lead
+    return FaceSlices(
+        left_m=x1, right_m=x2, notch_m=d, floor_m=d, on_damage=((x1 > 0.0) & (x2 > 0.0)).astype(float),
+        lead_m=lead, face_m=cell * (np.arange(slices) + 0.5) - 0.5 * WIDTH,
+        kernel=line_kernel(kernel_family(slices, cell, DEPTH), DEPTH, 0.3, coupled=coupled),
+        radius_m=RADIUS, rounding_m=rounding, kappa_per_pa=KAPPA, compliance_m_per_n=rest,
+        carrying_m=carrying_length(x1, x2, d, lead, cell, RADIUS, KAPPA * 60e3),
+    )  # fmt: skip
+
+
+def spall(offset=0.0, length=1.2e-3, half=5.5e-3, slices=200, depth=0.2e-3, skew=0.0, **other):
+    """A gap about the middle of the face; its edges shift by `skew` along the profile per metre of face."""
+    y = WIDTH * ((np.arange(slices) + 0.5) / slices - 0.5)
+    s = offset + skew * y
+    return face(np.abs(y) < half, 0.5 * length + s, 0.5 * length - s, depth, slices, **other)
+
+
+def solve(slices, approach, tilt=0.0, guess=None) -> tuple[FaceForce, np.ndarray]:
+    loads = np.zeros(slices.face_m.size) if guess is None else guess.copy()
+    answer = face_force(slices, approach, tilt, loads, solver_room(loads.size, slices.kernel.decay.size))
+    assert answer.passes > 0
+    return answer, loads
+
+
+def approach_under(slices, force: float) -> float:
+    """Approach of the pair at a force, by Newton's method [m]."""
+    approach = force * (slices.compliance_m_per_n + 1.2e-9)
+    for _ in range(40):
+        answer, _ = solve(slices, approach)
+        if abs(answer.force_n / force - 1.0) < 1e-10:
+            break
+        approach += (force - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
+    return approach

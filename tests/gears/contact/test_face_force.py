@@ -1,0 +1,186 @@
+"""Force and moment across the face: limits, energy, continuity, and the contact in three dimensions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
+from siggen.gears.contact.edge_law import NO_EDGE
+from siggen.gears.contact.face_force import face_force
+from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.force_curve import force_curve
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
+from siggen.gears.contact.stored_energy import stored_energy
+from siggen.gears.hertz import weber_banaschek_compliance
+from tests.gears.builders import pair_18_47
+from tests.gears.contact.faces import REST, WIDTH, approach_under, face, solve, spall
+
+
+def land(pair, slices=50) -> FaceGaps:
+    """No gap anywhere, at five positions."""
+    edge, nothing = np.full((5, slices), -NO_EDGE), np.zeros((5, slices))
+    return FaceGaps(edge, edge, nothing, nothing, nothing)
+
+
+@pytest.mark.parametrize("force", [50.0, 1200.0, 4000.0])
+def test_full_land_without_coupling_is_weber_and_banaschek(force):
+    pair = pair_18_47(module_m=3e-3)
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, 5)
+    rest = np.full(5, REST)
+    faces = pair_faces(pair, land(pair), position, rest, FaceOptions(60e3, coupled=False))
+    rolls = position / pair.pinion.base_radius_m, (pair.line_of_action_m - position) / pair.gear.base_radius_m
+    expected = weber_banaschek_compliance(pair, *rolls, np.full(5, pair.face_width_m), force)
+    for slices, compliance in zip(faces, expected, strict=True):
+        answer, loads = solve(slices, force * (compliance + REST))
+        assert answer.force_n == pytest.approx(force, rel=1e-9)
+        assert answer.carrying_m == pytest.approx(pair.face_width_m, rel=1e-9)
+        assert np.ptp(loads) <= 1e-12 * loads.max()
+
+
+def test_coupling_of_a_long_face_only_softens_its_ends():
+    answer, loads = solve(face(), 6e-6)
+    plain, _ = solve(face(coupled=False), 6e-6)
+    # 1 % of the contact, which is 22 % of the pair
+    assert answer.force_n == pytest.approx(plain.force_n, rel=5e-3)
+    assert loads[0] > 1.3 * loads[100]
+    assert loads[:100] == pytest.approx(loads[:99:-1], rel=1e-9)
+
+
+def test_with_a_stiff_contact_slices_carry_by_the_present_sink_law():
+    # Without load the sinks are those of `slice_contact.sink_depths` (test_two_edges); the contact touches there.
+    for offset in (0.0, 0.2e-3, 0.45e-3):
+        whole = spall(offset, half=WIDTH)
+        sink = (0.6e-3 - abs(offset)) ** 2 / (2.0 * whole.radius_m)
+        assert solve(whole, sink - 1e-9)[0].force_n == 0.0
+        assert solve(whole, sink + 1e-9)[0].force_n > 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "land_of", "room"),
+    [
+        ("30 % in the middle", lambda case: land_of_gap(case, 0.3), 0.1),
+        ("50 % in the middle", lambda case: land_of_gap(case, 0.5), 0.1),
+        ("80 % in the middle", lambda case: land_of_gap(case, 0.8), 0.8),
+        ("50 % at one end", lambda case: land_of_gap(case, 0.5, 0.0), 0.1),
+        ("10 pits", lambda case: land_of_pits(case, 10), 0.2),
+        ("16 pits", lambda case: land_of_pits(case, 16), 0.6),
+    ],
+)
+def test_the_loss_of_pair_stiffness_against_three_dimensions(name, land_of, room):
+    # percentage points; the model's target is 2 for all of them
+    force, case = 1200.0, FaceCase(cell_m=0.1e-3)
+    fine = replace(case, cell_m=0.05e-3)
+    whole, _ = approach_at(fine, np.ones(400, bool), force)
+    damaged, _ = approach_at(fine, land_of(fine), force, reach=5.0)
+    expected = 100.0 * (1.0 - (REST + whole / force) / (REST + damaged / force))
+    never = face(~land_of(case), 1.0, 1.0)
+    found = 100.0 * (1.0 - approach_under(face(), force) / approach_under(never, force))
+    assert found == pytest.approx(expected, abs=room), name
+
+
+TILTS = [0.0, 0.1e-3, -0.25e-3]
+FACES = {
+    "healthy": face,
+    "spall in the middle of its arc": partial(spall, 0.0),
+    "spall near its edge": partial(spall, 0.59e-3),
+    "skewed spall through the face": partial(spall, 0.01e-3, half=WIDTH, skew=0.02),
+    "rounded edges and a lead": partial(spall, 0.4e-3, half=3e-3, rounding=0.1e-3, lead=np.linspace(0.0, 4e-6, 200)),
+    "floor that carries": partial(spall, 0.0, half=WIDTH, depth=8e-6),
+}
+
+
+@pytest.mark.parametrize("make", FACES.values(), ids=FACES)
+@pytest.mark.parametrize("tilt", TILTS)
+def test_force_and_moment_are_the_derivatives_of_the_stored_energy(make, tilt):
+    slices = make()
+    approach = 26e-6 if slices.left_m.min() > 0.0 and slices.floor_m.min() > 1e-4 else 14e-6
+    room = solver_room(200, slices.kernel.decay.size)
+
+    def energy(d: float, t: float) -> float:
+        loads = solve(slices, d, t)[1]
+        return stored_energy(slices, d, t, loads, room)
+
+    answer, _ = solve(slices, approach, tilt)
+    step = 2e-9
+    force = (energy(approach + step, tilt) - energy(approach - step, tilt)) / (2.0 * step)
+    turn = step / 10e-3
+    moment = (energy(approach, tilt + turn) - energy(approach, tilt - turn)) / (2.0 * turn)
+    assert answer.force_n > 100.0
+    # a slice that comes to touch within the step leaves 1e-6
+    assert answer.force_n == pytest.approx(force, rel=5e-6)
+    assert answer.moment_n_m == pytest.approx(moment, rel=5e-6, abs=5e-6 * answer.force_n * 10e-3)
+
+
+@pytest.mark.parametrize("make", FACES.values(), ids=FACES)
+def test_a_closed_loop_in_approach_and_tilt_does_no_work(make):
+    slices = make()
+    turn = np.linspace(0.0, 2.0 * np.pi, 241)[:-1]
+    centre = 24e-6 if slices.left_m.min() > 0.0 and slices.floor_m.min() > 1e-4 else 12e-6
+    approach, tilt = centre + 2e-6 * np.cos(turn), 0.1e-3 * np.sin(turn)
+    answers = [solve(slices, d, t)[0] for d, t in zip(approach, tilt, strict=True)]
+    force, moment = (np.array([a[k] for a in answers]) for k in (0, 1))
+    # trapezoids of a periodic curve converge faster than any power where it is smooth
+    work = float(np.mean(-force * 2e-6 * np.sin(turn) + moment * 0.1e-3 * np.cos(turn)) * 2.0 * np.pi)
+    exchanged = float(np.mean(np.abs(force * 2e-6 * np.sin(turn))) * 2.0 * np.pi)
+    assert abs(work) < 1e-6 * exchanged
+
+
+@pytest.mark.parametrize("make", FACES.values(), ids=FACES)
+@pytest.mark.parametrize("tilt", TILTS)
+def test_force_rises_with_the_approach_and_its_slope_has_no_jump(make, tilt):
+    slices = make()
+    approach = np.linspace(-6e-6, 30e-6, 1801)
+    curve = force_curve(slices, approach, tilt, np.zeros(200), solver_room(200, slices.kernel.decay.size))
+    assert curve.force_n[0] == 0.0
+    assert curve.force_n[-1] > 0.0
+    touching = curve.force_n > 0.0
+    assert (np.diff(curve.force_n)[touching[1:]] > 0.0).all()
+    assert (curve.stiffness_n_per_m[touching] > 0.0).all()
+    slope = np.gradient(curve.force_n, approach)
+    # under a tilt slices of land touch one by one, each with its 200th of the face; 20 nm may see two of them
+    away = np.abs(curve.stiffness_n_per_m - slope)[1:-1][touching[:-2]]
+    assert away.max() < 0.015 * curve.stiffness_n_per_m.max()
+
+
+def test_the_slope_starts_from_zero_at_first_touch():
+    slices = face()
+    stiffness = [solve(slices, d)[0].stiffness_n_per_m for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7)]
+    assert np.all(np.diff(stiffness) > 0.0)
+    contact = [1.0 / (1.0 / k - REST) for k in stiffness]
+    # Weber and Banaschek's tangent, L/(κ (ln(2 h/a) - ...)): every decade of load adds ln(10)/2 to the bracket
+    per_hundred = np.diff([WIDTH / (k * 5.6236e-12) for k in contact])
+    np.testing.assert_allclose(per_hundred[:2], -np.log(10.0), rtol=0.03)
+
+
+def test_the_moment_balances_the_loads_and_mirrors_with_them():
+    slices = spall(0.1e-3, skew=0.05)
+    answer, loads = solve(slices, 14e-6, 0.1e-3)
+    line = loads / slices.kappa_per_pa * slices.kernel.cell_m
+    assert answer.force_n == pytest.approx(line.sum(), rel=1e-10)
+    assert answer.moment_n_m == pytest.approx(line @ slices.face_m, rel=1e-10)
+    mirrored = slices._replace(left_m=slices.left_m[::-1].copy(), right_m=slices.right_m[::-1].copy())
+    other, _ = solve(mirrored, 14e-6, -0.1e-3)
+    assert other.force_n == pytest.approx(answer.force_n, rel=1e-9)
+    assert other.moment_n_m == pytest.approx(-answer.moment_n_m, rel=1e-9)
+    even, _ = solve(spall(0.0), 14e-6)
+    assert abs(even.moment_n_m) < 1e-10 * even.force_n * WIDTH
+
+
+def test_the_share_on_damage_runs_from_none_to_all():
+    # between touching lands and gaps that carry as well
+    assert solve(spall(0.0), 8e-6)[0].on_damage == 0.0
+    assert 0.0 < solve(spall(0.5e-3), 14e-6)[0].on_damage < 1.0
+    assert solve(spall(0.0, half=WIDTH), 32e-6)[0].on_damage == pytest.approx(1.0)
+
+
+def test_the_answer_does_not_depend_on_the_guess():
+    slices = spall(0.55e-3, skew=0.01)
+    cold, loads = solve(slices, 14e-6, 0.1e-3)
+    warm = face_force(slices, 14e-6, 0.1e-3, loads[::-1].copy(), solver_room(200, slices.kernel.decay.size))
+    assert warm.force_n == pytest.approx(cold.force_n, rel=1e-9)
+    assert warm.moment_n_m == pytest.approx(cold.moment_n_m, rel=1e-8)

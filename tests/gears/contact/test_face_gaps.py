@@ -1,0 +1,96 @@
+"""Gaps that slices meet: damage as the present sink law sees it, tips, and the refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.gears.contact.edge_law import NO_EDGE
+from siggen.gears.contact.face_gaps import face_gaps
+from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
+from siggen.gears.damage import Spall
+from siggen.gears.flank_chords import contact_chords, flank_chords
+from siggen.gears.outlines import rectangle
+from tests.gears.builders import pair_18_47, pit
+
+PAIR = pair_18_47(module_m=3e-3)
+SLICES = 60
+SPALL = Spall("pinion", 0, rectangle((1.6e-3, 2.4e-3), (4e-3, 12e-3)), 0.15e-3)
+
+
+def flanks(pinion=(), gear=()):
+    return tuple(
+        flank_chords(PAIR.member(which), damage, PAIR.face_width_m, SLICES)
+        for which, damage in (("pinion", pinion), ("gear", gear))
+    )
+
+
+@pytest.mark.parametrize("damage", [(SPALL,), (pit(a_mm=3.0, b_mm=0.5), pit(face_mm=14.0, floor="dish"))])
+def test_gaps_are_the_chords_of_the_present_sink_law(damage):
+    both = flanks(damage)
+    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 201)
+    gaps = face_gaps(PAIR, *both, position)
+    chords = contact_chords(PAIR, *both, position, np.full(201, 67e-6))
+    inside = chords.edge_m > 0.0
+    assert inside.sum() > 100
+    np.testing.assert_array_equal(gaps.on_damage > 0.0, inside)
+    np.testing.assert_allclose(np.minimum(gaps.left_m, gaps.right_m)[inside], chords.edge_m[inside], rtol=1e-12)
+    np.testing.assert_allclose(gaps.floor_m, chords.depth_m, rtol=1e-12)
+    assert (np.minimum(gaps.left_m, gaps.right_m)[~inside] <= 1e-12).all()
+
+
+def test_a_spall_seen_from_the_gear_is_its_mirror_image():
+    position = np.array([PAIR.pitch_point_m])
+    gaps = face_gaps(PAIR, *flanks((SPALL,)), position)
+    row = np.flatnonzero(gaps.notch_m[0] > 0.0)
+    np.testing.assert_allclose(gaps.notch_m[0, row], 0.15e-3)
+    moved = face_gaps(PAIR, *flanks((SPALL,)), position + 0.05e-3)
+    # the pinion's arc grows by R_b ψ dψ: the left edge moves away, the right one comes closer
+    assert (moved.left_m[0, row] > gaps.left_m[0, row]).all()
+    assert (moved.right_m[0, row] < gaps.right_m[0, row]).all()
+
+
+def test_teeth_end_at_their_tips():
+    start, end = PAIR.contact_start_m, PAIR.contact_end_m
+    position = np.array([start, 0.5 * (start + end), end])
+    gaps = face_gaps(PAIR, *flanks(), position)
+    # at s_A the tip of the gear touches: its edge is behind the normal, and nothing lies before it
+    np.testing.assert_allclose(gaps.right_m[0], 0.0, atol=1e-9)
+    np.testing.assert_allclose(gaps.left_m[2], 0.0, atol=1e-9)
+    assert (gaps.left_m[0] == NO_EDGE).all()
+    assert (gaps.right_m[2] == NO_EDGE).all()
+    assert (np.minimum(gaps.left_m, gaps.right_m)[1] < -1e-3).all()
+    assert not gaps.notch_m.any()
+    assert not gaps.on_damage.any()
+
+
+def test_a_gap_open_at_the_tip_has_no_edge_there():
+    tip = float(PAIR.pinion.height_m(PAIR.pinion.tip_roll_rad))
+    open_spall = Spall("pinion", 0, rectangle((tip - 1e-3, tip + 0.2e-3), (4e-3, 12e-3)), 0.15e-3)
+    gaps = face_gaps(PAIR, *flanks((open_spall,)), np.array([PAIR.contact_end_m - 0.5e-3]))
+    row = gaps.on_damage[0] > 0.0
+    assert row.any()
+    assert (gaps.right_m[0, row] == NO_EDGE).all()
+    assert (gaps.left_m[0, row] > 0.0).all()
+
+
+def test_the_carrying_length_is_the_land_or_the_whole_face():
+    land = np.full(100, -NO_EDGE)
+    gap = np.where(np.arange(100) < 40, 0.6e-3, -NO_EDGE)
+    none = np.zeros(100)
+    sizes = 0.2e-3, 6.7e-3, 0.34e-6
+    assert carrying_length(land, land, none, none, *sizes) == pytest.approx(20e-3)
+    assert carrying_length(gap, gap, none, none, *sizes) == pytest.approx(12e-3, rel=0.02)
+    sunk = np.full(100, 0.6e-3)
+    assert carrying_length(sunk, sunk, none, none, *sizes) == pytest.approx(20e-3)
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    other = flank_chords(PAIR.gear, (), PAIR.face_width_m, SLICES + 1)
+    with pytest.raises(ValueError, match="as many on both"):
+        face_gaps(PAIR, flanks()[0], other, np.array([PAIR.pitch_point_m]))
+    gaps = face_gaps(PAIR, *flanks(), np.array([PAIR.pitch_point_m]))
+    with pytest.raises(ValueError, match="as many as positions"):
+        pair_faces(PAIR, gaps, np.zeros(2), np.zeros(2), FaceOptions(60e3))
+    with pytest.raises(ValueError, match="one for each slice"):
+        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), np.zeros(1), FaceOptions(60e3), np.zeros(3))

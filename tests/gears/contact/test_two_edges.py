@@ -1,0 +1,92 @@
+"""Sink over a gap with two edges: pressure cells, limits, continuity."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from benchmarks.contact import plane_contact
+from siggen.gears.contact.edge_law import NO_EDGE, half_plane_factor
+from siggen.gears.contact.two_edges import gap_sink
+from siggen.gears.slice_contact import sink_depths
+
+KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
+RADIUS = 6.676e-3
+
+
+@pytest.mark.parametrize("length_mm", [0.3, 0.8, 1.5])
+@pytest.mark.parametrize("load_n_per_mm", [30.0, 100.0])
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.1, 0.5, 1.1])
+def test_the_coupled_law_is_that_of_pressure_cells(length_mm, load_n_per_mm, share):
+    length, load = length_mm * 1e-3, load_n_per_mm * 1e3 * KAPPA
+    offset = share * 0.5 * length
+    sink, left = plane_contact.gap_sink(offset, length, RADIUS, load)
+    law = gap_sink(0.5 * length + offset, 0.5 * length - offset, 0.0, 0.0, RADIUS, 0.0, load)
+    # measured 5 nm and 6e-3; the target of the model is 20 nm
+    assert law.sink_m == pytest.approx(sink, abs=6e-9)
+    assert law.left_share == pytest.approx(left, abs=8e-3)
+
+
+# sink [µm] and left share from `python -m benchmarks.contact two_edges`: (l [mm], D [mm], 2 s/l) at 60 N/mm
+FINITE_ELEMENTS = {
+    (0.3, 0.2, 0.0): (2.187, 0.5), (0.3, 0.2, 0.2): (2.139, 0.176), (0.3, 0.2, 1.0): (0.617, 0.0),
+    (0.5, 0.05, 0.05): (5.000, 0.282), (0.5, 0.2, 0.1): (5.206, 0.148), (0.8, 0.2, 0.05): (12.576, 0.125),
+    (0.8, 0.2, 0.6): (3.449, 0.0), (1.5, 0.2, 0.0): (42.942, 0.5), (1.5, 0.05, 0.8): (2.732, 0.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("case", "expected"), FINITE_ELEMENTS.items())
+def test_the_coupled_law_with_a_notch_against_finite_elements(case, expected):
+    length, depth, offset = case[0] * 1e-3, case[1] * 1e-3, 0.5 * case[2] * case[0] * 1e-3
+    law = gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS, 0.0, 60e3 * KAPPA)
+    assert 1e6 * law.sink_m == pytest.approx(expected[0], abs=0.04)
+    assert law.left_share == pytest.approx(expected[1], abs=0.01)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.1e-3])
+def test_without_load_the_sink_is_the_rigid_one(rounding):
+    edge = np.linspace(-0.1e-3, 0.6e-3, 29)
+    rigid = sink_depths(np.maximum(edge, 0.0), np.array(20e-6), np.array(RADIUS), rounding)
+    found = [gap_sink(x, 1.2e-3 - x, 20e-6, 20e-6, RADIUS, rounding, 0.0).sink_m for x in edge]
+    np.testing.assert_allclose(found, rigid, rtol=1e-12, atol=1e-18)
+    # a load of a hundred-thousandth comes close: the law itself tends to the rigid one
+    tiny = [gap_sink(x, 1.2e-3 - x, 20e-6, 20e-6, RADIUS, rounding, 1e-5 * 60e3 * KAPPA).sink_m for x in edge]
+    np.testing.assert_allclose(tiny, rigid, atol=1e-10)
+
+
+def test_one_edge_is_the_limit_of_a_far_second_one():
+    load = 60e3 * KAPPA
+    width = sqrt(2.0 * RADIUS * load)
+    one = gap_sink(0.3e-3, NO_EDGE, 0.0, 0.0, RADIUS, 0.0, load)
+    assert one.sink_m == pytest.approx(load * half_plane_factor(-0.3e-3 / width), rel=1e-12)
+    assert gap_sink(0.3e-3, 5e-3, 0.0, 0.0, RADIUS, 0.0, load) == one
+    assert gap_sink(-NO_EDGE, -NO_EDGE, 0.0, 0.0, RADIUS, 0.0, load).sink_m == 0.0
+
+
+def test_the_two_sides_are_mirror_images():
+    load = 60e3 * KAPPA
+    here = gap_sink(0.26e-3, 0.24e-3, 0.1e-3, 0.1e-3, RADIUS, 0.0, load)
+    there = gap_sink(0.24e-3, 0.26e-3, 0.1e-3, 0.1e-3, RADIUS, 0.0, load)
+    assert here.sink_m == pytest.approx(there.sink_m, rel=1e-12)
+    assert here.left_share == pytest.approx(1.0 - there.left_share, rel=1e-9)
+
+
+def test_the_slope_is_the_derivative_also_where_two_edges_or_the_floor_carry():
+    step = 1e-6
+    for left, right, floor in ((0.26e-3, 0.24e-3, 0.0), (0.3e-3, 0.7e-3, 0.0), (0.5e-3, 0.5e-3, 10e-6)):
+        load = 60e3 * KAPPA
+        here, low, high = (
+            gap_sink(left, right, 0.1e-3, floor, RADIUS, 0.0, load * scale) for scale in (1.0, 1.0 - step, 1.0 + step)
+        )
+        assert here.slope == pytest.approx((high.sink_m - low.sink_m) / (2.0 * step * load), rel=1e-5)
+        # where the floor takes over the rounded corner of the law gives back 0.005; the kernel holds 0.4 at least
+        assert here.slope > -0.01
+
+
+def test_the_sink_is_continuous_over_the_position():
+    offset = np.linspace(-0.6e-3, 0.6e-3, 24001)
+    sink = np.array([gap_sink(0.4e-3 + s, 0.4e-3 - s, 0.2e-3, 0.2e-3, RADIUS, 0.0, 60e3 * KAPPA)[0] for s in offset])
+    # the steepest slope is that of the rigid sink, l/2R; 50 nm a step
+    assert np.abs(np.diff(sink)).max() < 1.2 * 0.4e-3 / RADIUS * 50e-9
