@@ -60,11 +60,24 @@ class FaceForce(NamedTuple):
 
 @njit(cache=True)
 def face_force(
-    slices: FaceSlices, approach_m: float, tilt_rad: float, loads_m: FloatArray, room: SolverRoom
+    slices: FaceSlices,
+    approach_m: float,
+    tilt_rad: float,
+    loads_m: FloatArray,
+    room: SolverRoom,
+    tolerance: float = TOLERANCE,
 ) -> FaceForce:
-    """Return the answer to an approach d [m] and tilt θ [rad]; `loads_m` (n,) κq goes in as a guess, comes out solved.
+    """Return the answer to an approach and a tilt.
 
-    A guess of a neighbouring approach or position saves passes; zeros are allowed.
+    Parameters
+    ----------
+    slices : FaceSlices
+    approach_m, tilt_rad : d and θ
+    loads_m : (n,) κq [m]
+        A guess, which comes out solved; that of a neighbouring approach or position saves passes, zeros are allowed.
+    room : SolverRoom
+    tolerance : float
+        Of the last Newton step over the largest load.
     """
     room.losses[:] = 0
     _first_guess(slices, approach_m, tilt_rad, loads_m)
@@ -80,7 +93,7 @@ def face_force(
             break
         step, stiffness = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
         largest, kept = _move(loads_m, room, chosen)
-        if settled and kept and step <= TOLERANCE * largest:
+        if settled and kept and step <= tolerance * largest:
             return _answer(slices, loads_m, stiffness, passes)
     return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, -1)
 

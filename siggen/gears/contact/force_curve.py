@@ -14,6 +14,9 @@ from siggen.gears.contact.newton_matrix import SolverRoom
 
 FloatArray = NDArray[np.float64]
 
+TOLERANCE = 1e-3
+"""Of the last Newton step: steps are squared from pass to pass, so what is left is 1e-6 of the force (tested)."""
+
 
 class ForceCurve(NamedTuple):
     """Answers to ascending approaches, (k,) each, as in `FaceForce`."""
@@ -51,7 +54,7 @@ def force_curve(
                     loads_m[i] = max(loads_m[i] + ratio * (loads_m[i] - before[i]), 0.1 * loads_m[i])
         if j > 0:
             before[:] = last
-        answer = face_force(slices, approach_m[j], tilt_rad, loads_m, room)
+        answer = face_force(slices, approach_m[j], tilt_rad, loads_m, room, TOLERANCE)
         if answer.passes < 0:
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
         last[:] = loads_m

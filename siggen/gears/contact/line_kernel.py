@@ -28,9 +28,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from siggen.gears.contact.exponential_matrix import EXPONENTIALS
+
 FloatArray = NDArray[np.float64]
 
-EXPONENTIALS = 5
 SHORTEST_CELLS, LONGEST_DEPTHS = 0.5, 1.8
 """Decay lengths of the exponentials: geometric from half a cell to 1.8 h."""
 ENERGY_WIDTH = 0.5 * exp(-0.75)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.gears.contact.exponential_matrix import solve_rows
+from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, solve_rows
 from siggen.gears.contact.face_slices import FaceSlices
 
 FloatArray = NDArray[np.float64]
@@ -35,19 +35,19 @@ class SolverRoom(NamedTuple):
     strength_slope: FloatArray
 
 
-def solver_room(slices: int, exponentials: int) -> SolverRoom:
-    """Return room for faces of so many slices and exponentials of their kernel."""
+def solver_room(slices: int) -> SolverRoom:
+    """Return room for faces of so many slices."""
     return SolverRoom(
         rows=np.zeros(slices, np.int64),
         losses=np.zeros(slices, np.int64),
         product=np.zeros(slices),
         diagonal=np.zeros(slices),
-        right=np.zeros((slices, 4)),
+        right=np.zeros((slices, SIDES)),
         growth=np.zeros(slices),
-        steps=np.zeros((slices, exponentials)),
-        factors=np.zeros((slices, exponentials + 1)),
-        strength=np.zeros(exponentials),
-        strength_slope=np.zeros(exponentials),
+        steps=np.zeros((slices, EXPONENTIALS)),
+        factors=np.zeros((slices, EXPONENTIALS + 1)),
+        strength=np.zeros(EXPONENTIALS),
+        strength_slope=np.zeros(EXPONENTIALS),
     )
 
 
@@ -62,7 +62,7 @@ def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
         i = room.rows[n]
         if room.diagonal[i] <= 0.0:
             return False
-        for side in range(4):
+        for side in range(SIDES):
             room.right[i, side] /= room.diagonal[i]
     return True
 
@@ -79,10 +79,10 @@ def add_low_rank(
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     c = slices.compliance_m_per_n * per_load
     p = 0.5 / square
-    gram = np.zeros((3, 4))
+    gram = np.zeros((3, SIDES))
     for n in range(chosen):
         i = room.rows[n]
-        for side in range(4):
+        for side in range(SIDES):
             gram[0, side] += room.right[i, side]
             gram[1, side] += loads[i] * room.right[i, side]
             gram[2, side] += room.growth[i] * room.right[i, side]

@@ -43,7 +43,7 @@ def spall(offset=0.0, length=1.2e-3, half=5.5e-3, slices=200, depth=0.2e-3, skew
 
 def solve(slices, approach, tilt=0.0, guess=None) -> tuple[FaceForce, np.ndarray]:
     loads = np.zeros(slices.face_m.size) if guess is None else guess.copy()
-    answer = face_force(slices, approach, tilt, loads, solver_room(loads.size, slices.kernel.decay.size))
+    answer = face_force(slices, approach, tilt, loads, solver_room(loads.size))
     assert answer.passes > 0
     return answer, loads
 

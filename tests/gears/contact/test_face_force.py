@@ -99,7 +99,7 @@ FACES = {
 def test_force_and_moment_are_the_derivatives_of_the_stored_energy(make, tilt):
     slices = make()
     approach = 26e-6 if slices.left_m.min() > 0.0 and slices.floor_m.min() > 1e-4 else 14e-6
-    room = solver_room(200, slices.kernel.decay.size)
+    room = solver_room(200)
 
     def energy(d: float, t: float) -> float:
         loads = solve(slices, d, t)[1]
@@ -135,7 +135,7 @@ def test_a_closed_loop_in_approach_and_tilt_does_no_work(make):
 def test_force_rises_with_the_approach_and_its_slope_has_no_jump(make, tilt):
     slices = make()
     approach = np.linspace(-6e-6, 30e-6, 1801)
-    curve = force_curve(slices, approach, tilt, np.zeros(200), solver_room(200, slices.kernel.decay.size))
+    curve = force_curve(slices, approach, tilt, np.zeros(200), solver_room(200))
     assert curve.force_n[0] == 0.0
     assert curve.force_n[-1] > 0.0
     touching = curve.force_n > 0.0
@@ -181,6 +181,6 @@ def test_the_share_on_damage_runs_from_none_to_all():
 def test_the_answer_does_not_depend_on_the_guess():
     slices = spall(0.55e-3, skew=0.01)
     cold, loads = solve(slices, 14e-6, 0.1e-3)
-    warm = face_force(slices, 14e-6, 0.1e-3, loads[::-1].copy(), solver_room(200, slices.kernel.decay.size))
+    warm = face_force(slices, 14e-6, 0.1e-3, loads[::-1].copy(), solver_room(200))
     assert warm.force_n == pytest.approx(cold.force_n, rel=1e-9)
     assert warm.moment_n_m == pytest.approx(cold.moment_n_m, rel=1e-8)

@@ -1,0 +1,88 @@
+"""Prints the tables of the contact checks, or fits the notch again."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from benchmarks.contact import comparisons, cost
+
+
+def edge_table() -> Iterator[str]:
+    """Lines of the sink at one edge of a half plane over κF."""
+    yield "| d/a | pressure cells | G |"
+    yield "|---|---|---|"
+    for ahead, cells, law in comparisons.one_edge():
+        yield f"| {ahead:g} | {cells:.4f} | {law:.4f} |"
+
+
+def notch_table() -> Iterator[str]:
+    """Lines of what a notch adds at one edge over κF; about 15 s for each depth."""
+    yield "| D [mm] | F [N/mm] | d/a | finite elements | N | error |"
+    yield "|---|---|---|---|---|---|"
+    for depth, line, ahead, fem, law in comparisons.notches(comparisons.NOTCH_DEPTHS_M):
+        yield f"| {1e3 * depth:g} | {1e-3 * line:g} | {ahead:g} | {fem:.4f} | {law:.4f} | {law / fem - 1:+.1%} |"
+
+
+def two_edge_table() -> Iterator[str]:
+    """Lines of sinks over notched gaps at 60 N/mm; about 15 s for each length and depth."""
+    yield "| l [mm] | D [mm] | 2 s/l | finite elements [µm] | law [µm] | share | law | notch's error |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for p in comparisons.notched_gaps():
+        if p.line_load_n_per_m == 60e3:
+            yield (
+                f"| {1e3 * p.length_m:g} | {1e3 * p.depth_m:g} | {2 * p.offset_m / p.length_m:.2f} "
+                f"| {1e6 * p.solver_m:.3f} | {1e6 * p.sink_m:.3f} | {p.solver_share:.3f} | {p.share:.3f} "
+                f"| {p.notch_error:+.1%} |"
+            )
+
+
+def loss_table() -> Iterator[str]:
+    """Lines of losses of pair stiffness, in per cent."""
+    counts = (200, 100, 50)
+    yield "| land | F [N] | three dimensions | " + " | ".join(f"{n} slices" for n in counts) + " |"
+    yield "|---" * (3 + len(counts)) + "|"
+    for force in (300.0, 1200.0, 4000.0):
+        for loss in comparisons.losses(force, counts):
+            found = " | ".join(f"{loss.library[n]:.2f}" for n in counts)
+            yield f"| {loss.land} | {force:.0f} | {loss.solver:.2f} | {found} |"
+
+
+def cost_table() -> Iterator[str]:
+    """Lines of CPU time of a table, and of errors against 200 slices."""
+    yield "| spall | slices | CPU [ms] | largest error of F | rms | largest of M |"
+    yield "|---|---|---|---|---|---|"
+    for name, options in cost.SPALLS.items():
+        for slices in (20, 40, 80, 100, 200):
+            spent = min(cost.table(slices, options)[2] for _ in range(3))
+            errors = " | ".join(f"{e:.1e}" for e in cost.slice_errors(slices, options))
+            yield f"| {name} | {slices} | {1e3 * spent:.0f} | {errors} |"
+
+
+def fit_notch() -> Iterator[str]:
+    """Lines of the notch's coefficients, fitted again to finite elements; about two minutes."""
+    from benchmarks.contact.notch_fit import fitted
+
+    yield from (f"{name} = {value:.3f}" for name, value in fitted().items())
+
+
+TABLES = {
+    "edge": edge_table,
+    "losses": loss_table,
+    "cost": cost_table,
+    "notch": notch_table,
+    "two_edges": two_edge_table,
+    "notch_fit": fit_notch,
+}
+
+
+def main() -> None:
+    """Print what the command line asks for: `edge`, `losses` and `cost` without an argument."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.contact", description=__doc__)
+    parser.add_argument("what", nargs="*", default=["edge", "losses", "cost"], choices=list(TABLES))
+    for what in parser.parse_args().what:
+        print(f"\n{what}\n", *TABLES[what](), sep="\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""The case of all comparisons: teeth 18/47 of module 3 mm at the pitch point, 20 mm wide, and the library's faces."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+
+from siggen.gears.contact.edge_law import NO_EDGE
+from siggen.gears.contact.face_force import face_force
+from siggen.gears.contact.face_slices import FaceSlices
+from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.pair_faces import carrying_length
+
+RADIUS_M, DEPTH_M, FACE_M, POISSON = 6.676e-3, 2.2e-3, 20e-3, 0.3
+KAPPA = 4.0 * (1.0 - POISSON**2) / (pi * 206e9)
+REST_M_PER_N = 0.78 / 1.99e8
+"""The contact is 22 % of the healthy pair's compliance at 1,200 N."""
+LINE_LOADS = (30e3, 60e3, 100e3)
+
+
+def half_width(line_load_n_per_m: float) -> float:
+    """Return Hertz's half width [m]."""
+    return sqrt(2.0 * RADIUS_M * KAPPA * line_load_n_per_m)
+
+
+def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray) -> FaceSlices:
+    """Return the library's face of slices with edges at these distances (n,) and gaps of this depth (n,)."""
+    count = left_m.size
+    cell = FACE_M / count
+    none = np.zeros(count)
+    return FaceSlices(
+        left_m=left_m,
+        right_m=right_m,
+        notch_m=depth_m,
+        floor_m=depth_m,
+        on_damage=((left_m > 0.0) & (right_m > 0.0)).astype(np.float64),
+        lead_m=none,
+        face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
+        kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
+        radius_m=RADIUS_M,
+        rounding_m=0.0,
+        kappa_per_pa=KAPPA,
+        compliance_m_per_n=REST_M_PER_N,
+        carrying_m=carrying_length(left_m, right_m, depth_m, none, cell, RADIUS_M, KAPPA * 60e3),
+    )
+
+
+def face_of_land(land: np.ndarray) -> FaceSlices:
+    """Return the face that carries only where `land` (n,) says so: elsewhere the edges are 1 m away."""
+    away = np.where(land, -NO_EDGE, 1.0)
+    return face_of(away, away, np.zeros(land.size))
+
+
+def spalled_face(offset_m: float, slices: int, *, whole: bool = False, skew: float = 0.0, wave_m: float = 0.0):
+    """Return a face with a spall of 1.2 x 11 mm (or through the face), 0.2 mm deep; its edges may be skewed and wavy.
+
+    `offset_m` of the normal from the middle of the arc; `skew` along the profile per metre of face.
+    """
+    y = FACE_M * ((np.arange(slices) + 0.5) / slices - 0.5)
+    inside = np.abs(y) < (FACE_M if whole else 5.5e-3)
+    along = offset_m + skew * y
+    left = 0.6e-3 + along + wave_m * np.sin(2.0 * pi * y / 3e-3)
+    right = 0.6e-3 - along + wave_m * np.sin(2.0 * pi * y / 2.1e-3 + 1.0)
+    return face_of(np.where(inside, left, -NO_EDGE), np.where(inside, right, -NO_EDGE), np.where(inside, 0.2e-3, 0.0))
+
+
+def approach_under(slices: FaceSlices, force_n: float) -> float:
+    """Return the approach [m] of the pair at a force, by Newton's method.
+
+    Raises
+    ------
+    RuntimeError
+        If it does not converge.
+    """
+    room, loads = solver_room(slices.face_m.size), np.zeros(slices.face_m.size)
+    approach = force_n * (slices.compliance_m_per_n + 1.2e-9)
+    for _ in range(60):
+        answer = face_force(slices, approach, 0.0, loads, room)
+        if abs(answer.force_n / force_n - 1.0) < 1e-9:
+            return approach
+        approach += (force_n - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
+    raise RuntimeError(f"no approach found for {force_n} N")

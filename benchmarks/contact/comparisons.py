@@ -1,0 +1,151 @@
+"""Numbers of the library beside those of the independent solvers: edges, gaps, notches, losses across the face."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmarks.contact.case import (
+    KAPPA,
+    LINE_LOADS,
+    RADIUS_M,
+    REST_M_PER_N,
+    approach_under,
+    face_of_land,
+    half_width,
+)
+from benchmarks.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits
+from benchmarks.contact.plane_contact import edge_sink, gap_sink
+from siggen.gears.contact import two_edges
+from siggen.gears.contact.edge_law import half_plane_factor, notch_factor
+
+LENGTHS_M = (0.3e-3, 0.5e-3, 0.8e-3, 1.5e-3)
+AHEAD = (1.5, 1.0, 0.5, 0.0, -1.0, -3.7, -6.0, -11.0)
+NOTCH_DEPTHS_M = (0.05e-3, 0.2e-3)
+SHARES = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2)
+"""Offsets of the normal from mid-gap over half its length."""
+LANDS = {
+    "gap of 30 % in the middle": lambda case: land_of_gap(case, 0.3),
+    "gap of 50 % in the middle": lambda case: land_of_gap(case, 0.5),
+    "gap of 80 % in the middle": lambda case: land_of_gap(case, 0.8),
+    "gap of 30 % at one end": lambda case: land_of_gap(case, 0.3, 0.0),
+    "gap of 50 % at one end": lambda case: land_of_gap(case, 0.5, 0.0),
+    "gap of 80 % at one end": lambda case: land_of_gap(case, 0.8, 0.0),
+    "10 pits of 0.6 mm": lambda case: land_of_pits(case, 10),
+    "16 pits of 0.6 mm": lambda case: land_of_pits(case, 16),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SinkPair:
+    """A sink of the library beside that of a solver [m], for a gap and an offset s [m] under a line load [N/m].
+
+    `share`, `solver_share`: of the left edge; `plain_m`, `solver_plain_m`: the sinks without a notch.
+    """
+
+    length_m: float
+    depth_m: float
+    offset_m: float
+    line_load_n_per_m: float
+    sink_m: float
+    solver_m: float
+    share: float
+    solver_share: float
+    plain_m: float
+    solver_plain_m: float
+
+    @property
+    def error_m(self) -> float:
+        """Difference of the sinks."""
+        return self.sink_m - self.solver_m
+
+    @property
+    def notch_error(self) -> float:
+        """Relative error of what the notch adds."""
+        return (self.sink_m - self.plain_m) / (self.solver_m - self.solver_plain_m) - 1.0
+
+
+def half_plane_gaps(steps: int = 41) -> Iterator[SinkPair]:
+    """Yield gaps of 0.3 to 1.5 mm in a half plane, from the middle to 0.1 mm beyond an edge."""
+    for length in LENGTHS_M:
+        for line in LINE_LOADS:
+            for offset in np.linspace(0.0, 0.5 * length + 0.1e-3, steps):
+                sink, share = gap_sink(float(offset), length, RADIUS_M, KAPPA * line)
+                law = _law(length, 0.0, float(offset), line)
+                yield SinkPair(
+                    length, 0.0, float(offset), line, law.sink_m, sink, law.left_share, share, law.sink_m, sink
+                )
+
+
+def notched_gaps(
+    lengths: tuple[float, ...] = LENGTHS_M, depths: tuple[float, ...] = NOTCH_DEPTHS_M
+) -> Iterator[SinkPair]:
+    """Yield notched gaps with two edges beside finite elements (the extra 'fem')."""
+    from benchmarks.contact.notched_half_plane import LAND_M, notched_gap_sink
+
+    for length in lengths:
+        for depth in depths:
+            for line in LINE_LOADS:
+                for share in SHARES:
+                    offset = 0.5 * length * share
+                    if offset - 0.5 * length + half_width(line) > 0.96 * LAND_M:
+                        continue
+                    sink, left = notched_gap_sink(offset, length, depth, RADIUS_M, KAPPA * line)
+                    plain, _ = gap_sink(offset, length, RADIUS_M, KAPPA * line)
+                    law, bare = _law(length, depth, offset, line), _law(length, 0.0, offset, line)
+                    yield SinkPair(
+                        length, depth, offset, line, law.sink_m, sink, law.left_share, left, bare.sink_m, plain
+                    )
+
+
+def _law(length: float, depth: float, offset: float, line: float) -> two_edges.GapSink:
+    return two_edges.gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS_M, 0.0, KAPPA * line)
+
+
+def one_edge() -> Iterator[tuple[float, float, float]]:
+    """Yield d/a, the sink over κF of pressure cells, and G."""
+    for ahead in AHEAD:
+        load = 0.5
+        yield ahead, edge_sink(ahead, 1.0, load) / load, half_plane_factor(ahead)
+
+
+def notches(
+    depths: tuple[float, ...], loads: tuple[float, ...] = LINE_LOADS
+) -> Iterator[tuple[float, float, float, float, float]]:
+    """Yield depth [m], line load [N/m], d/a, N of finite elements and N of the library (the extra 'fem')."""
+    from benchmarks.contact.notched_half_plane import notched_edge_sink
+
+    for depth in depths:
+        for line in loads:
+            width = half_width(line)
+            for ahead in AHEAD:
+                cut = notched_edge_sink(ahead * width, depth, RADIUS_M, KAPPA * line)
+                plain = edge_sink(ahead * width, RADIUS_M, KAPPA * line)
+                yield depth, line, ahead, (cut - plain) / (KAPPA * line), notch_factor(ahead, depth / width)
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """Loss of pair stiffness at a force, in per cent: contact in three dimensions, and the library with n slices."""
+
+    land: str
+    force_n: float
+    solver: float
+    library: dict[int, float]
+
+
+def losses(force_n: float, slices: tuple[int, ...] = (200,), cell_m: float = 0.05e-3) -> Iterator[Loss]:
+    """Yield the losses of all `LANDS`."""
+    case = FaceCase(cell_m=cell_m)
+    whole = approach_at(case, np.ones(round(case.face_width_m / cell_m), bool), force_n)[0]
+    healthy = {n: approach_under(face_of_land(np.ones(n, bool)), force_n) for n in slices}
+    for name, land in LANDS.items():
+        damaged = approach_at(case, land(case), force_n, reach=6.0)[0]
+        solver = 1.0 - (REST_M_PER_N + whole / force_n) / (REST_M_PER_N + damaged / force_n)
+        library = {}
+        for n in slices:
+            face = face_of_land(land(replace(case, cell_m=case.face_width_m / n)))
+            library[n] = 100.0 * (1.0 - healthy[n] / approach_under(face, force_n))
+        yield Loss(name, force_n, 100.0 * solver, library)
