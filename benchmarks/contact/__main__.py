@@ -59,6 +59,32 @@ def cost_table() -> Iterator[str]:
             yield f"| {name} | {slices} | {1e3 * spent:.0f} | {errors} |"
 
 
+def loop_table() -> Iterator[str]:
+    """Lines of errors and costs of ways to get force and moment in the time loop."""
+    from benchmarks.contact import loop_options
+
+    yield "| way | F largest | F rms | M largest | M rms |"
+    yield "|---|---|---|---|---|"
+    for o in loop_options.options():
+        yield (
+            f"| {o.name} | {o.force_largest:.1e} | {o.force_rms:.1e} | {o.moment_largest:.1e} | {o.moment_rms:.1e} |"
+        )
+    yield ""
+    yield "| spall | positions every | F largest | F rms |"
+    yield "|---|---|---|---|"
+    for name, spacing, largest, rms in loop_options.position_errors():
+        yield f"| {name} | {1e6 * spacing:g} µm | {largest:.1e} | {rms:.1e} |"
+    yield ""
+    for count in (9, 17, 33):
+        spent = min(loop_options.approach_table_cost(count) for _ in range(3))
+        yield f"120 positions x {count} approaches, 80 slices: {1e3 * spent:.0f} ms of CPU"
+    spent = min(loop_options.tilt_table_cost() for _ in range(3))
+    yield f"120 positions x 17 approaches x 5 tilts with energies, 80 slices: {1e3 * spent:.0f} ms of CPU"
+    for slices in (40, 80):
+        spent = min(loop_options.direct_cost(slices) for _ in range(3))
+        yield f"one force from the solver itself in the loop, {slices} slices: {1e6 * spent:.1f} µs"
+
+
 def fit_notch() -> Iterator[str]:
     """Lines of the notch's coefficients, fitted again to finite elements; about two minutes."""
     from benchmarks.contact.notch_fit import fitted
@@ -70,6 +96,7 @@ TABLES = {
     "edge": edge_table,
     "losses": loss_table,
     "cost": cost_table,
+    "loop": loop_table,
     "notch": notch_table,
     "two_edges": two_edge_table,
     "notch_fit": fit_notch,

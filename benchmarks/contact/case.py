@@ -53,13 +53,22 @@ def face_of_land(land: np.ndarray) -> FaceSlices:
     return face_of(away, away, np.zeros(land.size))
 
 
-def spalled_face(offset_m: float, slices: int, *, whole: bool = False, skew: float = 0.0, wave_m: float = 0.0):
+def spalled_face(
+    offset_m: float,
+    slices: int,
+    *,
+    whole: bool = False,
+    skew: float = 0.0,
+    wave_m: float = 0.0,
+    place_m: float = 0.0,
+) -> FaceSlices:
     """Return a face with a spall of 1.2 x 11 mm (or through the face), 0.2 mm deep; its edges may be skewed and wavy.
 
-    `offset_m` of the normal from the middle of the arc; `skew` along the profile per metre of face.
+    `offset_m` of the normal from the middle of the arc; `skew` along the profile per metre of face; `place_m` of the
+    spall's middle across the face, from the face's.
     """
     y = FACE_M * ((np.arange(slices) + 0.5) / slices - 0.5)
-    inside = np.abs(y) < (FACE_M if whole else 5.5e-3)
+    inside = np.abs(y - place_m) < (FACE_M if whole else 5.5e-3)
     along = offset_m + skew * y
     left = 0.6e-3 + along + wave_m * np.sin(2.0 * pi * y / 3e-3)
     right = 0.6e-3 - along + wave_m * np.sin(2.0 * pi * y / 2.1e-3 + 1.0)

@@ -11,6 +11,7 @@ from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 
 APPROACHES_M = np.linspace(0.2e-6, 16e-6, 33)
+NO_ENERGY = np.zeros((2, 0))
 OFFSETS_M = np.linspace(-0.75e-3, 0.75e-3, 120)
 SPALLS = {
     "1.2 x 11 mm, edges parallel": {},
@@ -24,9 +25,9 @@ def table(slices: int, options: dict, tilt_rad: float = 0.0) -> tuple[np.ndarray
     """Return forces and moments (120, 33) and the CPU time [s] of the solutions, without the geometry."""
     faces = [spalled_face(float(s), slices, **options) for s in OFFSETS_M]
     room = solver_room(slices)
-    force_curve(faces[0], APPROACHES_M, tilt_rad, np.zeros(slices), room)
+    force_curve(faces[0], APPROACHES_M, tilt_rad, np.zeros(slices), room, NO_ENERGY)
     start = process_time()
-    curves = [force_curve(face, APPROACHES_M, tilt_rad, np.zeros(slices), room) for face in faces]
+    curves = [force_curve(face, APPROACHES_M, tilt_rad, np.zeros(slices), room, NO_ENERGY) for face in faces]
     cost = process_time() - start
     return np.array([c.force_n for c in curves]), np.array([c.moment_n_m for c in curves]), cost
 

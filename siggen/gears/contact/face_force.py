@@ -46,13 +46,14 @@ class FaceForce(NamedTuple):
     """What the pair answers to an approach and a tilt.
 
     `force_n`: F; `moment_n_m`: M, positive with the load at positive y; `stiffness_n_per_m`: dF/dd to 0.2 %;
-    `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on slices whose normal lies in
-    damage; `passes` of the solver, -1: not solved.
+    `turning_n`: dM/dd = dF/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on
+    slices whose normal lies in damage; `passes` of the solver, -1: not solved.
     """
 
     force_n: float
     moment_n_m: float
     stiffness_n_per_m: float
+    turning_n: float
     carrying_m: float
     on_damage: float
     passes: int
@@ -86,16 +87,16 @@ def face_force(
         for i in range(loads_m.size):
             square += loads_m[i] * loads_m[i]
         if square == 0.0:
-            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, passes)
+            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)
         chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, room)
         if not solve_local(slices, room, chosen):
             break
-        step, stiffness = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
+        step, stiffness, turning = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
         largest, kept = _move(loads_m, room, chosen)
         if settled and kept and step <= tolerance * largest:
-            return _answer(slices, loads_m, stiffness, passes)
-    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, -1)
+            return _answer(slices, loads_m, stiffness, turning, passes)
+    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
 
 
 @njit(cache=True)
@@ -181,7 +182,7 @@ def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool
 
 
 @njit(cache=True)
-def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, passes: int) -> FaceForce:
+def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, turning: float, passes: int) -> FaceForce:
     total = square = moment = damaged = 0.0
     for i in range(loads.size):
         total += loads[i]
@@ -190,4 +191,4 @@ def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, passes: int
         damaged += loads[i] * slices.on_damage[i]
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     length = slices.kernel.cell_m * total * total / square
-    return FaceForce(per_load * total, per_load * moment, stiffness, length, damaged / total, passes)
+    return FaceForce(per_load * total, per_load * moment, stiffness, turning, length, damaged / total, passes)
