@@ -38,6 +38,8 @@ TOLERANCE = 1e-5
 """Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
 are good to 1e-9."""
 LARGEST_PASSES = 80
+DAMPING = 0.3
+"""First addition to the diagonal, in κ, after a step from where the matrix is not positive definite (wild guesses)."""
 RETURNS = 4
 """How often a slice may lose touch before its load is cut down step by step instead."""
 
@@ -82,6 +84,7 @@ def face_force(
     """
     room.losses[:] = 0
     _first_guess(slices, approach_m, tilt_rad, loads_m)
+    damping = 0.0
     for passes in range(1, LARGEST_PASSES + 1):
         square = 0.0
         for i in range(loads_m.size):
@@ -89,13 +92,15 @@ def face_force(
         if square == 0.0:
             return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)
-        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, room)
+        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, damping, room)
         if not solve_local(slices, room, chosen):
-            break
+            damping = max(2.0 * damping, DAMPING)
+            continue
         step, stiffness, turning = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
         largest, kept = _move(loads_m, room, chosen)
         if settled and kept and step <= tolerance * largest:
             return _answer(slices, loads_m, stiffness, turning, passes)
+        damping = 0.5 * damping if damping > 0.1 * DAMPING else 0.0
     return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
 
 
@@ -132,7 +137,13 @@ def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverR
 
 @njit(cache=True)
 def _assemble(
-    slices: FaceSlices, approach: float, tilt: float, loads: FloatArray, beta: float, room: SolverRoom
+    slices: FaceSlices,
+    approach: float,
+    tilt: float,
+    loads: FloatArray,
+    beta: float,
+    damping: float,
+    room: SolverRoom,
 ) -> tuple[int, bool]:
     """Fill matrix and right sides; return how many slices carry, and whether none of them is new."""
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
@@ -156,7 +167,7 @@ def _assemble(
             residual = wanted - (own + beta) * loads[i] - gap.sink_m
         room.rows[chosen] = i
         chosen += 1
-        room.diagonal[i] = own + beta + gap.slope
+        room.diagonal[i] = own + beta + gap.slope + damping
         room.right[i, 0] = residual
         room.right[i, 1] = 1.0
         room.right[i, 2] = loads[i]

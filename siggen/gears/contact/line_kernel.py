@@ -38,7 +38,7 @@ ENERGY_WIDTH = 0.5 * exp(-0.75)
 """ε e^-¼ over a."""
 POWERS = 4
 """Coefficients are a polynomial in t = x²/(x² + 1/4), x = ε e^-¼/w: short-range softness of a wide contact."""
-WIDEST_EXACT, WIDEST = 1.6, 3.2
+WIDEST_EXACT, WIDEST = 1.5, 3.0
 """See `reckoned_width`, in cells."""
 LARGEST_WIDTH = 1.0
 """Largest x of the fit; a wider contact keeps it off the diagonal."""
