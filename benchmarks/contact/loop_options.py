@@ -187,11 +187,12 @@ def tilt_table_cost(approaches: int = 17, tilts: int = 5, positions: int = 120) 
     return process_time() - start
 
 
-def approach_table_cost(approaches: int, positions: int = 120) -> float:
+def approach_table_cost(approaches: int, slices: int = SLICES, positions: int = 120) -> float:
     """Return the CPU time [s] of a table at one tilt, without energies."""
-    faces = [spalled_face(float(s), SLICES, **_SHAPE) for s in np.linspace(-0.75e-3, 0.75e-3, positions)]
-    nodes, room = np.linspace(0.0, 16e-6, approaches), solver_room(SLICES)
+    faces = [spalled_face(float(s), slices, **_SHAPE) for s in np.linspace(-0.75e-3, 0.75e-3, positions)]
+    nodes, room = np.linspace(0.0, 16e-6, approaches), solver_room(slices)
+    force_curve(faces[0], nodes, TILT_RAD, np.zeros(slices), room, NO_ENERGY)
     start = process_time()
     for face in faces:
-        force_curve(face, nodes, TILT_RAD, np.zeros(SLICES), room, NO_ENERGY)
+        force_curve(face, nodes, TILT_RAD, np.zeros(slices), room, NO_ENERGY)
     return process_time() - start
