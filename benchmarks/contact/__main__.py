@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Iterator
 
 from benchmarks.contact import comparisons, cost
@@ -57,6 +58,58 @@ def cost_table() -> Iterator[str]:
             spent = min(cost.table(slices, options)[2] for _ in range(3))
             errors = " | ".join(f"{e:.1e}" for e in cost.slice_errors(slices, options))
             yield f"| {name} | {slices} | {1e3 * spent:.0f} | {errors} |"
+    geometry, solutions = cost.state_cost()
+    yield ""
+    yield (
+        "whole path of contact, skewed spall, 120 positions x 9 approaches, 100 slices: "
+        f"geometry {1e3 * geometry:.1f} ms, solutions {1e3 * solutions:.0f} ms of CPU"
+    )
+
+
+def loop_table() -> Iterator[str]:
+    """Lines of errors and costs of ways to get force and moment in the time loop."""
+    from benchmarks.contact import loop_options
+
+    yield "| way | F largest | F rms | M largest | M rms |"
+    yield "|---|---|---|---|---|"
+    for o in loop_options.options():
+        yield (
+            f"| {o.name} | {o.force_largest:.1e} | {o.force_rms:.1e} | {o.moment_largest:.1e} | {o.moment_rms:.1e} |"
+        )
+    yield ""
+    yield "| spall | positions every | F largest | F rms |"
+    yield "|---|---|---|---|"
+    for name, spacing, largest, rms in loop_options.position_errors():
+        yield f"| {name} | {1e6 * spacing:g} µm | {largest:.1e} | {rms:.1e} |"
+    yield ""
+    for count in (9, 17, 33):
+        spent = min(loop_options.approach_table_cost(count) for _ in range(3))
+        yield f"120 positions x {count} approaches, 80 slices: {1e3 * spent:.0f} ms of CPU"
+    spent = min(loop_options.tilt_table_cost() for _ in range(3))
+    yield f"120 positions x 17 approaches x 5 tilts with energies, 80 slices: {1e3 * spent:.0f} ms of CPU"
+    for slices in (40, 80):
+        spent = min(loop_options.direct_cost(slices) for _ in range(3))
+        yield f"one force from the solver itself in the loop, {slices} slices: {1e6 * spent:.1f} µs"
+
+
+def face_table() -> Iterator[str]:
+    """Lines of the table that the time loop reads, on the gearbox and damages of bench; the first state compiles."""
+    from benchmarks.contact.case import bench_damages
+    from siggen.gears.contact.contact_table import TableOptions, contact_table
+    from siggen.gears.contact.contact_table_error import contact_table_error
+
+    options = TableOptions(largest_force_n=4000.0)
+    pair, teeth, damages = bench_damages(("slight", "face_40", "face_80", "through_060", "through_100"))
+    contact_table(pair, damages["slight"], teeth, options)
+    yield "| damage of bench | columns | CPU a state | rms error of F over 1,200 N | 95 % | largest |"
+    yield "|---|---|---|---|---|---|"
+    for name, damage in damages.items():
+        start = time.process_time()
+        found = contact_table(pair, damage, teeth, options)
+        spent = time.process_time() - start
+        error = contact_table_error(pair, damage, teeth, options, found, 1200.0)
+        columns = len(found.curves) - options.healthy_columns
+        yield f"| {name} | {columns} | {spent:.2f} s | {error.rms:.0e} | {error.most:.0e} | {error.largest:.0e} |"
 
 
 def fit_notch() -> Iterator[str]:
@@ -70,6 +123,8 @@ TABLES = {
     "edge": edge_table,
     "losses": loss_table,
     "cost": cost_table,
+    "loop": loop_table,
+    "table": face_table,
     "notch": notch_table,
     "two_edges": two_edge_table,
     "notch_fit": fit_notch,

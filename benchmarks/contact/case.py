@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi, sqrt
 
 import numpy as np
 
+from benchmarks.shipped import ROOT
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_force import face_force
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 RADIUS_M, DEPTH_M, FACE_M, POISSON = 6.676e-3, 2.2e-3, 20e-3, 0.3
 KAPPA = 4.0 * (1.0 - POISSON**2) / (pi * 206e9)
@@ -53,13 +58,22 @@ def face_of_land(land: np.ndarray) -> FaceSlices:
     return face_of(away, away, np.zeros(land.size))
 
 
-def spalled_face(offset_m: float, slices: int, *, whole: bool = False, skew: float = 0.0, wave_m: float = 0.0):
+def spalled_face(
+    offset_m: float,
+    slices: int,
+    *,
+    whole: bool = False,
+    skew: float = 0.0,
+    wave_m: float = 0.0,
+    place_m: float = 0.0,
+) -> FaceSlices:
     """Return a face with a spall of 1.2 x 11 mm (or through the face), 0.2 mm deep; its edges may be skewed and wavy.
 
-    `offset_m` of the normal from the middle of the arc; `skew` along the profile per metre of face.
+    `offset_m` of the normal from the middle of the arc; `skew` along the profile per metre of face; `place_m` of the
+    spall's middle across the face, from the face's.
     """
     y = FACE_M * ((np.arange(slices) + 0.5) / slices - 0.5)
-    inside = np.abs(y) < (FACE_M if whole else 5.5e-3)
+    inside = np.abs(y - place_m) < (FACE_M if whole else 5.5e-3)
     along = offset_m + skew * y
     left = 0.6e-3 + along + wave_m * np.sin(2.0 * pi * y / 3e-3)
     right = 0.6e-3 - along + wave_m * np.sin(2.0 * pi * y / 2.1e-3 + 1.0)
@@ -82,3 +96,17 @@ def approach_under(slices: FaceSlices, force_n: float) -> float:
             return approach
         approach += (force_n - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
     raise RuntimeError(f"no approach found for {force_n} N")
+
+
+def bench_damages(names: Sequence[str]) -> tuple[GearPair, StiffnessOptions, dict[str, Damage]]:
+    """Return the first gearbox of bench, its stiffness, and its damage in the named states."""
+    from siggen.checks.loading import load_config
+    from siggen.planning.specimen import draw_specimen
+    from siggen.specimen.damage import state_damage
+    from siggen.specimen.gears import gear_pair, stiffness_options
+
+    config = load_config(ROOT / "configs" / "bench.yaml")
+    specimen = draw_specimen(config, 0)
+    pair, states = gear_pair(specimen.gears), [state.name for state in config.states]
+    damages = {name: state_damage(config, 0, pair, states.index(name)) for name in names}
+    return pair, stiffness_options(specimen.stiffness), damages

@@ -45,6 +45,7 @@ FORCE, SLOPE, CARRYING, ROUGH, MOMENT, MOMENT_SLOPE, TURNING, TURNING_SLOPE = ra
 tilt, also the moment at no tilt M [N m], dM/dd [N], dM/dθ = M_θ [N m], and dM_θ/dd [N]."""
 FELT_HALF_WIDTHS = 4.0
 """Gaps farther from the contact than this many Hertz half widths are not felt."""
+NO_ENERGY = np.zeros((2, 0))
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
 BEND = 2e-3
@@ -87,7 +88,7 @@ class ContactTable(NamedTuple):
     lead_m: float = 0.0
 
 
-class _Row(NamedTuple):
+class KindRow(NamedTuple):
     """One kind of pair on the fine grid (points,): positions, gaps and compliance of all but the contact."""
 
     position_m: FloatArray
@@ -95,7 +96,7 @@ class _Row(NamedTuple):
     rest_m_per_n: FloatArray
 
 
-class _Solver(NamedTuple):
+class TableSolver(NamedTuple):
     """What all columns of a pair share."""
 
     pair: GearPair
@@ -137,11 +138,11 @@ def contact_table(
     # The least missing material counts in the places of the teeth (`slice_law` does the same).
     even = lead - lead.min()
     healthy, row = _healthy(pair, stiffness, options, points, tuple(even.tolist()))
-    solver = _solver(pair, stiffness, options, even)
+    solver = table_solver(pair, stiffness, options, even)
     parts = [(healthy.touch_m[0], healthy.column[0], healthy.gain[0], healthy.curves)]
     for kind in pair_kinds(pair, damage)[1:]:
         first = sum(len(curves) for *_, curves in parts)
-        damaged = _row(pair, stiffness, options, points, _pits(damage, kind))
+        damaged = kind_row(pair, stiffness, options, points, pits_of_kind(damage, kind))
         parts.append(_damaged(solver, damaged, row.gaps, healthy, first))
     touch, column, gain, curves = (list(values) for values in zip(*parts, strict=True))
     joined = np.concatenate(curves)
@@ -159,23 +160,25 @@ def face_slices(pair: GearPair, options: TableOptions) -> int:
 @lru_cache(maxsize=2)  # states of a specimen share the healthy columns
 def _healthy(
     pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int, lead_m: tuple[float, ...]
-) -> tuple[ContactTable, _Row]:
-    solver = _solver(pair, stiffness, options, np.array(lead_m))
-    row = _row(pair, stiffness, options, points, ((), ()))
+) -> tuple[ContactTable, KindRow]:
+    solver = table_solver(pair, stiffness, options, np.array(lead_m))
+    row = kind_row(pair, stiffness, options, points, ((), ()))
     chosen = np.round(np.linspace(0, points - 1, min(options.healthy_columns, points))).astype(np.int64)
     curves = _curves(solver, row, chosen)
     at = np.interp(np.arange(points), chosen, np.arange(chosen.size))
-    touch = _touch(solver, row, np.arange(points))
+    touch = first_touch(solver, row, np.arange(points))
     return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[-1])), row
 
 
-def _pits(damage: Damage, kind: tuple[int, int]) -> tuple[Damage, Damage]:
+def pits_of_kind(damage: Damage, kind: tuple[int, int]) -> tuple[Damage, Damage]:
+    """Return the damage of pinion and gear tooth of a kind of pair."""
     return pits_of(damage, "pinion", kind[0]), pits_of(damage, "gear", kind[1])
 
 
-def _row(
+def kind_row(
     pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int, pits: tuple[Damage, Damage]
-) -> _Row:
+) -> KindRow:
+    """Return one kind of pair on a grid of points from s_A to s_E."""
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     members = tuple(zip(("pinion", "gear"), rolls_at(pair, position), pits, strict=True))
     chords = [
@@ -184,10 +187,10 @@ def _row(
     ]
     weak = options.section_loss
     rest = [tooth_compliance(pair, which, roll, stiffness, p if weak else ()).total for which, roll, p in members]
-    return _Row(position, face_gaps(pair, chords[0], chords[1], position), np.add(*rest))
+    return KindRow(position, face_gaps(pair, chords[0], chords[1], position), np.add(*rest))
 
 
-def _solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, lead_m: FloatArray) -> _Solver:
+def table_solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, lead_m: FloatArray) -> TableSolver:
     """Return the solver with nodes up to 1.25 times the approach of the largest force in the middle of the path."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
     rolls = rolls_at(pair, middle)
@@ -198,11 +201,11 @@ def _solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, 
     width = float(_half_width(pair, middle, force)[0])
     contact = contact_kappa(pair) * force / pair.face_width_m * (np.log(2.0 * depth / width) + 0.5)
     reach = 1.25 * (force * rest + contact)
-    return _Solver(pair, options, lead_m, reach * (np.arange(options.nodes) / (options.nodes - 1.0)) ** 2)
+    return TableSolver(pair, options, lead_m, reach * (np.arange(options.nodes) / (options.nodes - 1.0)) ** 2)
 
 
 def _damaged(
-    solver: _Solver, row: _Row, healthy_gaps: FaceGaps, healthy: ContactTable, first: int
+    solver: TableSolver, row: KindRow, healthy_gaps: FaceGaps, healthy: ContactTable, first: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return touch (points,), column and gain (points - 1,) and the curves of one kind, numbered from `first`."""
     other = (row.gaps.left_m != healthy_gaps.left_m) | (row.gaps.right_m != healthy_gaps.right_m)
@@ -219,7 +222,7 @@ def _damaged(
         gain[intervals] = np.interp(intervals + 1, ends, np.arange(ends.size)) - starts
         parts.append(curves)
         first += ends.size
-    return _touch(solver, row, np.arange(row.position_m.size)), column, gain, np.concatenate(parts)
+    return first_touch(solver, row, np.arange(row.position_m.size)), column, gain, np.concatenate(parts)
 
 
 def _runs(intervals: IntArray) -> list[IntArray]:
@@ -229,7 +232,7 @@ def _runs(intervals: IntArray) -> list[IntArray]:
     return list(np.split(intervals, np.flatnonzero(np.diff(intervals) > 1) + 1))
 
 
-def _refined(solver: _Solver, row: _Row, run: IntArray) -> tuple[IntArray, FloatArray]:
+def _refined(solver: TableSolver, row: KindRow, run: IntArray) -> tuple[IntArray, FloatArray]:
     """Return fine points and curves of the columns of a run: halved where the middle is not the mean of the ends."""
     first, last = int(run[0]), int(run[-1]) + 1
     wanted = np.unique(np.append(np.arange(first, last, COARSEST), last)).tolist()
@@ -260,7 +263,7 @@ def _half_width(pair: GearPair, position_m: FloatArray, force_n: float) -> Float
     return contact_half_width(pair, *rolls_at(pair, position_m), length, force_n)
 
 
-def _touch(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
+def first_touch(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
     """Return the least rigid sink of all slices, missing material across the face included (chosen,) [m]."""
     position, line = row.position_m[chosen], solver.pair.line_of_action_m
     radius = position * (line - position) / line + solver.options.edge_radius_m
@@ -271,26 +274,32 @@ def _touch(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
     return np.asarray((sunk + solver.lead_m).min(axis=1))
 
 
-def _curves(solver: _Solver, row: _Row, chosen: IntArray) -> FloatArray:
-    """Return the curves (chosen, nodes, 4 or 8) at fine points (chosen,)."""
-    from scipy.interpolate import pchip_interpolate
-
-    pair, options, node = solver.pair, solver.options, solver.node_m
-    typical = 0.25 * options.largest_force_n / pair.face_width_m
-    faces = pair_faces(
-        pair,
+def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceSlices]:
+    """Return the slices at fine points (chosen,)."""
+    options = solver.options
+    typical = 0.25 * options.largest_force_n / solver.pair.face_width_m
+    return pair_faces(
+        solver.pair,
         FaceGaps(*(array[chosen] for array in row.gaps)),
         row.position_m[chosen],
         row.rest_m_per_n[chosen],
         FaceOptions(typical, options.edge_radius_m, options.coupled),
         solver.lead_m,
     )
-    touch = _touch(solver, row, chosen)
+
+
+def _curves(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
+    """Return the curves (chosen, nodes, 4 or 8) at fine points (chosen,)."""
+    from scipy.interpolate import pchip_interpolate
+
+    pair, options, node = solver.pair, solver.options, solver.node_m
+    faces = row_faces(solver, row, chosen)
+    touch = first_touch(solver, row, chosen)
     tilts = options.tilt_rad > 0.0
     curves = np.zeros((chosen.size, options.nodes, 8 if tilts else 4))
     room = solver_room(solver.lead_m.size)
     for i, slices in enumerate(faces):
-        found = force_curve(slices, touch[i] + node[1:], 0.0, np.zeros(solver.lead_m.size), room)
+        found = force_curve(slices, touch[i] + node[1:], 0.0, np.zeros(solver.lead_m.size), room, NO_ENERGY)
         curves[i, 1:, FORCE] = found.force_n
         curves[i, 1:, CARRYING] = found.carrying_m / pair.face_width_m
         curves[i, 1:, ROUGH] = found.on_damage
@@ -312,7 +321,7 @@ def _turning(slices: FaceSlices, touch_m: float, node_m: FloatArray, tilt_rad: f
     chosen = np.unique(np.append(np.arange(1, node_m.size, 3), node_m.size - 1))
     zeros = np.zeros(slices.face_m.size)
     one, two = (
-        force_curve(slices, touch_m + node_m[chosen], tilt, zeros.copy(), room).moment_n_m
+        force_curve(slices, touch_m + node_m[chosen], tilt, zeros.copy(), room, NO_ENERGY).moment_n_m
         for tilt in (tilt_rad, -tilt_rad)
     )
     known = np.append(0.0, (one - two) / (2.0 * tilt_rad))

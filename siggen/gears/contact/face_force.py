@@ -35,6 +35,8 @@ TOLERANCE = 1e-5
 """Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
 are good to 1e-9."""
 LARGEST_PASSES = 80
+DAMPING = 0.3
+"""First addition to the diagonal, in κ, after a step from where the matrix is not positive definite (wild guesses)."""
 RETURNS = 4
 """How often a slice may lose touch before its load is cut down step by step instead."""
 
@@ -43,13 +45,14 @@ class FaceForce(NamedTuple):
     """What the pair answers to an approach and a tilt.
 
     `force_n`: F; `moment_n_m`: M, positive with the load at positive y; `stiffness_n_per_m`: dF/dd to 0.2 %;
-    `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on slices whose normal lies in
-    damage; `passes` of the solver, -1: not solved.
+    `turning_n`: dM/dd = dF/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on
+    slices whose normal lies in damage; `passes` of the solver, -1: not solved.
     """
 
     force_n: float
     moment_n_m: float
     stiffness_n_per_m: float
+    turning_n: float
     carrying_m: float
     on_damage: float
     passes: int
@@ -78,21 +81,24 @@ def face_force(
     """
     room.losses[:] = 0
     _first_guess(slices, approach_m, tilt_rad, loads_m)
+    damping = 0.0
     for passes in range(1, LARGEST_PASSES + 1):
         square = 0.0
         for i in range(loads_m.size):
             square += loads_m[i] * loads_m[i]
         if square == 0.0:
-            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, passes)
+            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)
-        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, room)
+        chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, damping, room)
         if not solve_local(slices, room, chosen):
-            break
-        step, stiffness = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
+            damping = max(2.0 * damping, DAMPING)
+            continue
+        step, stiffness, turning = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
         largest, kept = _move(loads_m, room, chosen)
         if settled and kept and step <= tolerance * largest:
-            return _answer(slices, loads_m, stiffness, passes)
-    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, -1)
+            return _answer(slices, loads_m, stiffness, turning, passes)
+        damping = 0.5 * damping if damping > 0.1 * DAMPING else 0.0
+    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
 
 
 @njit(cache=True)
@@ -128,7 +134,13 @@ def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverR
 
 @njit(cache=True)
 def _assemble(
-    slices: FaceSlices, approach: float, tilt: float, loads: FloatArray, beta: float, room: SolverRoom
+    slices: FaceSlices,
+    approach: float,
+    tilt: float,
+    loads: FloatArray,
+    beta: float,
+    damping: float,
+    room: SolverRoom,
 ) -> tuple[int, bool]:
     """Fill matrix and right sides; return how many slices carry, and whether none of them is new."""
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
@@ -152,7 +164,7 @@ def _assemble(
             residual = wanted - (own + beta) * loads[i] - gap.sink_m
         room.rows[chosen] = i
         chosen += 1
-        room.diagonal[i] = own + beta + gap.slope
+        room.diagonal[i] = own + beta + gap.slope + damping
         room.right[i, 0] = residual
         room.right[i, 1] = 1.0
         room.right[i, 2] = loads[i]
@@ -178,7 +190,7 @@ def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool
 
 
 @njit(cache=True)
-def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, passes: int) -> FaceForce:
+def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, turning: float, passes: int) -> FaceForce:
     total = square = moment = damaged = 0.0
     for i in range(loads.size):
         total += loads[i]
@@ -187,4 +199,4 @@ def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, passes: int
         damaged += loads[i] * slices.on_damage[i]
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     length = slices.kernel.cell_m * total * total / square
-    return FaceForce(per_load * total, per_load * moment, stiffness, length, damaged / total, passes)
+    return FaceForce(per_load * total, per_load * moment, stiffness, turning, length, damaged / total, passes)

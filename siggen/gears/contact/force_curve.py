@@ -11,29 +11,38 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.face_force import face_force
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.newton_matrix import SolverRoom
+from siggen.gears.contact.stored_energy import stored_energy
 
 TOLERANCE = 1e-3
 """Of the last Newton step: steps are squared from pass to pass, so what is left is 1e-6 of the force (tested)."""
 
 
 class ForceCurve(NamedTuple):
-    """Answers to ascending approaches, (k,) each, as in `FaceForce`."""
+    """Answers to ascending approaches, (k,) each, as in `FaceForce`, and the stored energy W [J]."""
 
+    energy_j: FloatArray
     force_n: FloatArray
     moment_n_m: FloatArray
     stiffness_n_per_m: FloatArray
+    turning_n: FloatArray
     carrying_m: FloatArray
     on_damage: FloatArray
 
 
 @njit(cache=True)
 def force_curve(
-    slices: FaceSlices, approach_m: FloatArray, tilt_rad: float, loads_m: FloatArray, room: SolverRoom
+    slices: FaceSlices,
+    approach_m: FloatArray,
+    tilt_rad: float,
+    loads_m: FloatArray,
+    room: SolverRoom,
+    nodes: FloatArray,
 ) -> ForceCurve:
     """Return the answers to ascending approaches (k,) [m] at one tilt.
 
     `loads_m` (n,): guess at the first approach (zeros are allowed), the loads at the last one afterwards. Every
-    solution starts from the line through the two before it.
+    solution starts from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy
+    is computed (it costs up to as much as the rest where gaps carry) and `energy_j` is 0.
 
     Raises
     ------
@@ -41,7 +50,7 @@ def force_curve(
         If an approach cannot be solved.
     """
     count = approach_m.size
-    out = np.zeros((5, count))
+    out = np.zeros((7, count))
     before = np.zeros(loads_m.size)
     last = np.zeros(loads_m.size)
     for j in range(count):
@@ -56,9 +65,12 @@ def force_curve(
         if answer.passes < 0:
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
         last[:] = loads_m
-        out[0, j] = answer.force_n
-        out[1, j] = answer.moment_n_m
-        out[2, j] = answer.stiffness_n_per_m
-        out[3, j] = answer.carrying_m
-        out[4, j] = answer.on_damage
-    return ForceCurve(out[0], out[1], out[2], out[3], out[4])
+        if nodes.shape[1]:
+            out[0, j] = stored_energy(slices, approach_m[j], tilt_rad, loads_m, room, nodes)
+        out[1, j] = answer.force_n
+        out[2, j] = answer.moment_n_m
+        out[3, j] = answer.stiffness_n_per_m
+        out[4, j] = answer.turning_n
+        out[5, j] = answer.carrying_m
+        out[6, j] = answer.on_damage
+    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6])

@@ -67,8 +67,8 @@ def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
 @njit(cache=True)
 def add_low_rank(
     slices: FaceSlices, room: SolverRoom, chosen: int, loads: FloatArray, square: float, slope: float, bend: float
-) -> tuple[float, float]:
-    """Add what C and the growth of a with the load do to the solution; return the largest step and dF/dd [N/m].
+) -> tuple[float, float, float]:
+    """Add what C and the growth of a with the load do to the solution; return the largest step, dF/dd and dM/dd.
 
     With v = (dK/d ln a) u the matrix gains c 1 1ᵀ + p (v uᵀ + u vᵀ) - p (s - ¼ s') u uᵀ, p = 1/(2 u·u), s = u·v/u·u
     (`slope`), s' = u·(d²K/d(ln a)²)u/u·u, of which `bend` is all but a part that an even load does not have.
@@ -94,13 +94,20 @@ def add_low_rank(
         sides[j, 0] = gram[j, 0]
         sides[j, 1] = gram[j, 1]
     _solve_three(matrix, sides)
-    largest = 0.0
-    ones, by_load, by_growth = c * sides[0, 0], p * (sides[2, 0] - (slope - 0.25 * bend) * sides[1, 0]), p * sides[1, 0]
+    # first the step, then the answer to a unit approach
+    weights = np.zeros((3, 2))
+    for k in range(2):
+        weights[0, k] = c * sides[0, k]
+        weights[1, k] = p * (sides[2, k] - (slope - 0.25 * bend) * sides[1, k])
+        weights[2, k] = p * sides[1, k]
+    largest, turning = 0.0, 0.0
     for n in range(chosen):
         i = room.rows[n]
-        room.right[i, 0] -= ones * room.right[i, 1] + by_load * room.right[i, 2] + by_growth * room.right[i, 3]
+        one, load, growth = room.right[i, 1], room.right[i, 2], room.right[i, 3]
+        room.right[i, 0] -= weights[0, 0] * one + weights[1, 0] * load + weights[2, 0] * growth
         largest = max(largest, abs(room.right[i, 0]))
-    return largest, per_load * sides[0, 1]
+        turning += slices.face_m[i] * ((1.0 - weights[0, 1]) * one - weights[1, 1] * load - weights[2, 1] * growth)
+    return largest, per_load * sides[0, 1], per_load * turning
 
 
 @njit(cache=True)

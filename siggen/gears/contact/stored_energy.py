@@ -3,39 +3,61 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.exponential_matrix import products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import SolverRoom
 
-ENERGY_NODES = 24
+ENERGY_NODES = 6
+"""Of the Gauss sums over the loads: 3e-9 J of 5e-3 J (tested against 32)."""
 
 
+def energy_nodes(count: int = ENERGY_NODES) -> FloatArray:
+    """Return nodes and weights (2, count) of Gauss from 0 to 1, for `stored_energy`."""
+    node, weight = np.polynomial.legendre.leggauss(count)
+    return np.array([0.5 * (node + 1.0), 0.5 * weight])
+
+
+@njit(cache=True)
 def stored_energy(
-    slices: FaceSlices, approach_m: float, tilt_rad: float, loads_m: FloatArray, room: SolverRoom
+    slices: FaceSlices,
+    approach_m: float,
+    tilt_rad: float,
+    loads_m: FloatArray,
+    room: SolverRoom,
+    nodes: FloatArray,
 ) -> float:
     """Return W [J] of a solution `loads_m` (n,) of `face_force` at the same approach and tilt.
 
-    The sinks' energies are Gauss sums over the square root of the load, in which they are smooth.
+    The sinks' energies are Gauss sums (`nodes`, see `energy_nodes`) over the square root of the load, in which they are
+    smooth.
     """
     kernel = slices.kernel
-    total, square = float(loads_m.sum()), float(loads_m @ loads_m)
+    total = square = 0.0
+    for i in range(loads_m.size):
+        total += loads_m[i]
+        square += loads_m[i] * loads_m[i]
     if total == 0.0:
         return 0.0
     width = contact_half_width(slices, square)[0]
     own = diagonal(kernel, width)[0]
     strengths(kernel, width, room.strength, room.strength_slope)
     products(kernel.decay, room.strength, room.strength_slope, loads_m, room.product, room.growth)
-    elastic = 0.5 * (own * square + float(loads_m @ room.product))
-    node, weight = np.polynomial.legendre.leggauss(ENERGY_NODES)
-    node, weight = 0.5 * (node + 1.0), 0.5 * weight
-    sinks = 0.0
-    for i in np.flatnonzero(loads_m > 0.0).tolist():
-        values = [slice_sink(slices, i, loads_m[i] * x * x).sink_m * 2.0 * x for x in node]
-        sinks += loads_m[i] * float(weight @ np.array(values))
+    work = 0.0
+    for i in range(loads_m.size):
+        if loads_m[i] == 0.0:
+            continue
+        sunk = 0.0
+        if slices.left_m[i] > -0.5 * NO_EDGE or slices.right_m[i] > -0.5 * NO_EDGE:
+            for k in range(nodes.shape[1]):
+                x = nodes[0, k]
+                sunk += 2.0 * x * nodes[1, k] * slice_sink(slices, i, loads_m[i] * x * x).sink_m
+        reached = approach_m + tilt_rad * slices.face_m[i] - slices.lead_m[i]
+        work += loads_m[i] * (reached - 0.5 * (own * loads_m[i] + room.product[i]) - sunk)
     per_load = kernel.cell_m / slices.kappa_per_pa
     force = per_load * total
-    reached = approach_m + tilt_rad * slices.face_m - slices.lead_m
-    return per_load * (float(loads_m @ reached) - elastic - sinks) - 0.5 * slices.compliance_m_per_n * force**2
+    return per_load * work - 0.5 * slices.compliance_m_per_n * force * force

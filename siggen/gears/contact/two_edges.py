@@ -11,7 +11,9 @@ since either land sinks in the far field of the other's load, λ = l plus the di
 edges. An edge that would have to pull carries nothing. Against pressure cells on a half plane (`benchmarks.contact`):
 0.005 µm; with the notch against plane finite elements: 0.05 µm, 4 % of what the notch adds for D = 0.2 mm.
 
-The floor of the gap carries from the sink D on; the two limits are joined over `FLOOR_ROUNDING` κF.
+The floor of the gap carries from the sink D on; the two limits are joined over `FLOOR_ROUNDING` κF, with `FLOOR_LIFT`
+of that on top of D, so that joining them never makes the sink fall with the load (derived: lift x least slope of the
+edges' sink inside a gap, 0.42, must be 1/8).
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from numba import njit
 
 from siggen.gears.contact.edge_law import NO_EDGE, edge_terms
 
-FLOOR_ROUNDING = 0.5
+FLOOR_ROUNDING, FLOOR_LIFT = 0.5, 0.3
 LARGEST_PASSES = 60
 SHARE_TOLERANCE = 1e-12
 
@@ -56,11 +58,12 @@ def gap_sink(
     if floor_m <= 0.0 or edges.sink_m <= 0.0:
         return edges
     # smooth lesser of the edges' sink and the floor's, of degree 1 in (sink, load)
-    above = edges.sink_m - floor_m
     span = FLOOR_ROUNDING * load_m
+    floor, rise = floor_m + FLOOR_LIFT * span, FLOOR_LIFT * FLOOR_ROUNDING
+    above = edges.sink_m - floor
     root = sqrt(above * above + span * span)
-    sink = 0.5 * (edges.sink_m + floor_m - root)
-    slope = 0.5 * (edges.slope - (above * edges.slope + FLOOR_ROUNDING * span) / root)
+    sink = 0.5 * (edges.sink_m + floor - root)
+    slope = 0.5 * (edges.slope + rise - (above * (edges.slope - rise) + FLOOR_ROUNDING * span) / root)
     return GapSink(sink, slope, edges.left_share)
 
 

@@ -13,6 +13,7 @@ from siggen.gears.contact.contact_table import (
     FORCE,
     MOMENT,
     MOMENT_SLOPE,
+    NO_ENERGY,
     SLOPE,
     TURNING,
     TURNING_SLOPE,
@@ -20,6 +21,7 @@ from siggen.gears.contact.contact_table import (
     TableOptions,
     contact_table,
 )
+from siggen.gears.contact.contact_table_error import contact_table_error
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
@@ -79,7 +81,7 @@ def from_table(found: ContactTable, row: int, place: float, approach_m: np.ndarr
 
 def solved(damage: Damage, place: float, approach_m: np.ndarray) -> np.ndarray:
     """Force of the solver itself at the same place, with edges of its own."""
-    return force_curve(slices_at(damage, place), approach_m, 0.0, np.zeros(200), solver_room(200)).force_n
+    return force_curve(slices_at(damage, place), approach_m, 0.0, np.zeros(200), solver_room(200), NO_ENERGY).force_n
 
 
 def slices_at(damage: Damage, place: float) -> FaceSlices:
@@ -198,7 +200,9 @@ def test_the_expansion_in_the_tilt_gives_force_and_moment_of_the_solver(damage: 
 
 
 def solved_with_tilt(damage: Damage, place: float, approach_m: float, tilt_rad: float) -> tuple[float, float]:
-    found = force_curve(slices_at(damage, place), np.array([approach_m]), tilt_rad, np.zeros(200), solver_room(200))
+    found = force_curve(
+        slices_at(damage, place), np.array([approach_m]), tilt_rad, np.zeros(200), solver_room(200), NO_ENERGY
+    )
     return float(found.force_n[0]), float(found.moment_n_m[0])
 
 
@@ -206,3 +210,14 @@ def test_a_face_without_damage_and_lead_has_no_moment() -> None:
     tilting = contact_table(gear_pair(), (), STIFFNESS, OPTIONS._replace(tilt_rad=2e-5), POINTS)
     assert np.abs(tilting.curves[:, :, MOMENT]).max() < 1e-9 * FORCE_N
     assert (tilting.curves[:, 1:, TURNING] > 0.0).all()  # the contact resists tilting
+
+
+def test_the_stated_error_is_that_of_direct_solutions() -> None:
+    pair = gear_pair()
+    fine = contact_table_error(pair, skewed(), STIFFNESS, OPTIONS, table(skewed()), FORCE_N, places=15)
+    coarse_options = OPTIONS._replace(nodes=8, finest=128)
+    coarse = contact_table(pair, skewed(), STIFFNESS, coarse_options, POINTS)
+    rough = contact_table_error(pair, skewed(), STIFFNESS, coarse_options, coarse, FORCE_N, places=15)
+    assert fine.rms < 1.5e-3
+    assert rough.rms > 3.0 * fine.rms
+    assert fine.rms <= fine.largest

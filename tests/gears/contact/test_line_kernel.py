@@ -32,9 +32,9 @@ def fitted(half_width: float) -> np.ndarray:
 
 
 def test_an_endless_line_has_the_secant_of_weber_and_banaschek():
-    # middle of a face of 400 h; the ends' share falls as (h/L)²
-    matrix = kernel_matrix(8001, CELL, 67e-6, DEPTH, 0.3)
-    assert matrix[4000].sum() == pytest.approx(log(2.0 * DEPTH / 67e-6) - 0.3 / 1.4, abs=1e-5)
+    # middle of a face of 364 h in wide cells; the ends' share falls as (h/L)²
+    matrix = kernel_matrix(1601, 5.0 * CELL, 67e-6, DEPTH, 0.3)
+    assert matrix[800].sum() == pytest.approx(log(2.0 * DEPTH / 67e-6) - 0.3 / 1.4, abs=1e-5)
 
 
 @pytest.mark.parametrize("half_width_um", [20.0, 67.0, 150.0, 250.0])
@@ -49,7 +49,7 @@ def test_the_exponentials_are_the_kernel(half_width_um):
 @pytest.mark.parametrize("half_width_um", [20.0, 67.0, 150.0, 250.0])
 def test_the_kernel_of_the_energy_is_positive_definite_with_its_softening(half_width_um):
     width, slope, _ = reckoned_width(half_width_um * 1e-6, CELL)
-    assert np.linalg.eigvalsh(fitted(width)).min() > 0.25 * slope + 0.03
+    assert np.linalg.eigvalsh(fitted(width)).min() > 0.25 * slope + 0.06
 
 
 @pytest.mark.parametrize("coupled", [True, False])
@@ -67,7 +67,7 @@ def test_slopes_are_derivatives(coupled):
 def test_the_width_of_a_wide_contact_is_reckoned_with_smoothly():
     widths = np.geomspace(0.05e-3, 0.6e-3, 2001)
     answers = np.array([reckoned_width(a, CELL) for a in widths])
-    np.testing.assert_array_equal(answers[widths <= 0.16e-3, 0], widths[widths <= 0.16e-3])
+    np.testing.assert_array_equal(answers[widths <= 0.15e-3, 0], widths[widths <= 0.15e-3])
     found = np.gradient(np.log(answers[:, 0]), np.log(widths))
     np.testing.assert_allclose(answers[1:-1, 1], found[1:-1], atol=2e-3)
 

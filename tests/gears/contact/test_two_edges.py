@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.contact import plane_contact
+from siggen.gears.contact.closed_form import closed_gap_sink, transfer_distance
 from siggen.gears.contact.edge_law import NO_EDGE, half_plane_factor
 from siggen.gears.contact.slice_contact import sink_depths
 from siggen.gears.contact.two_edges import gap_sink
@@ -27,6 +28,44 @@ def test_the_coupled_law_is_that_of_pressure_cells(length_mm, load_n_per_mm, sha
     # measured 5 nm and 6e-3; the target of the model is 20 nm
     assert law.sink_m == pytest.approx(sink, abs=6e-9)
     assert law.left_share == pytest.approx(left, abs=8e-3)
+
+
+@pytest.mark.parametrize(("depth_mm", "room_um", "share"), [(0.0, 0.09, 0.016), (0.2, 0.14, 0.035)])
+def test_the_closed_form_is_near_the_coupled_law(depth_mm, room_um, share):
+    depth, load = depth_mm * 1e-3, 60e3 * KAPPA
+    for length in (0.3e-3, 0.8e-3, 1.5e-3):
+        for offset in np.linspace(-0.6 * length, 0.6 * length, 121):
+            law = gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS, 0.0, load)
+            sink, left = closed_gap_sink(offset, length, depth, RADIUS, load)
+            assert sink == pytest.approx(law.sink_m, abs=room_um * 1e-6)
+            assert left == pytest.approx(law.left_share, abs=share)
+        reach = transfer_distance(length, depth, RADIUS, load)
+        beyond = 1.1 * reach
+        assert gap_sink(0.5 * length - beyond, 0.5 * length + beyond, depth, 0.0, RADIUS, 0.0, load).left_share == 1.0
+
+
+@pytest.mark.parametrize("offset_um", [0.0, 30.0])
+@pytest.mark.parametrize("length_mm", [0.02, 0.05, 0.1])
+def test_gaps_narrower_than_the_contact_err_by_a_tenth_of_its_approach(length_mm, offset_um):
+    length, offset, load = length_mm * 1e-3, offset_um * 1e-6, 60e3 * KAPPA
+    sink, _ = plane_contact.gap_sink(offset, length, RADIUS, load)
+    law = gap_sink(0.5 * length + offset, 0.5 * length - offset, 0.0, 0.0, RADIUS, 0.0, load)
+    assert law.sink_m == pytest.approx(sink, abs=0.11 * load)
+
+
+@pytest.mark.slow
+def test_a_notched_gap_against_fresh_finite_elements():
+    pytest.importorskip("skfem", reason="the notch's check needs the extra 'fem': pip install -e '.[fem]'")
+    from benchmarks.contact.notched_half_plane import notched_gap_sink
+
+    length, depth, load = 0.5e-3, 0.2e-3, 60e3 * KAPPA
+    for offset in (0.0, 25e-6, 0.15e-3, 0.25e-3):
+        sink, left = notched_gap_sink(offset, length, depth, RADIUS, load)
+        plain = gap_sink(0.5 * length + offset, 0.5 * length - offset, 0.0, 0.0, RADIUS, 0.0, load)
+        law = gap_sink(0.5 * length + offset, 0.5 * length - offset, depth, 0.0, RADIUS, 0.0, load)
+        # measured 4 % of what the notch adds
+        assert law.sink_m - plain.sink_m == pytest.approx(sink - plain.sink_m, rel=0.05)
+        assert law.left_share == pytest.approx(left, abs=0.01)
 
 
 # sink [µm] and left share from `python -m benchmarks.contact two_edges`: (l [mm], D [mm], 2 s/l) at 60 N/mm
@@ -81,8 +120,21 @@ def test_the_slope_is_the_derivative_also_where_two_edges_or_the_floor_carry():
             gap_sink(left, right, 0.1e-3, floor, RADIUS, 0.0, load * scale) for scale in (1.0, 1.0 - step, 1.0 + step)
         )
         assert here.slope == pytest.approx((high.sink_m - low.sink_m) / (2.0 * step * load), rel=1e-5)
-        # where the floor takes over the rounded corner of the law gives back 0.005; the kernel holds 0.4 at least
-        assert here.slope > -0.01
+        assert here.slope > 0.0
+
+
+@pytest.mark.parametrize("floor", [0.0, 0.5e-6, 3e-6, 20e-6])
+@pytest.mark.parametrize("left", [1e-6, 30e-6, 0.2e-3, 0.5e-3])
+def test_the_sink_rises_with_the_load_on_edges_and_floors(left, floor):
+    # up to 110 N/mm
+    sharp = [gap_sink(left, 1e-3 - left, 0.1e-3, floor, RADIUS, 0.0, u) for u in np.geomspace(1e-9, 0.6e-6, 200)]
+    assert (np.diff([s.sink_m for s in sharp]) > 0.0).all()
+    assert min(s.slope for s in sharp) >= 0.0
+    # Two edges far apart, rounded or under 530 N/mm, are stiffer than one contact of the same load, from which the sink
+    # is counted. The kernel's own stiffness is 4 for a whole face and 0.4 for its shortest wave (a = w).
+    for rounding in (0.0, 0.2e-3):
+        wide = [gap_sink(left, 1e-3 - left, 0.1e-3, floor, RADIUS, rounding, u) for u in np.geomspace(1e-9, 3e-6, 200)]
+        assert min(s.slope for s in wide) > -0.25
 
 
 def test_the_sink_is_continuous_over_the_position():

@@ -1,0 +1,97 @@
+"""How far the force of a contact table is from that of the solver, between its columns and approaches."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.gears.contact.contact_table import (
+    FORCE,
+    NO_ENERGY,
+    SLOPE,
+    ContactTable,
+    KindRow,
+    TableOptions,
+    TableSolver,
+    face_slices,
+    first_touch,
+    kind_row,
+    pits_of_kind,
+    row_faces,
+    table_solver,
+)
+from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.force_curve import force_curve
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.mesh_tables import pair_kinds
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+APPROACHES = (0.12, 0.25, 0.4, 0.6)
+"""Of the largest approach, at which forces are compared."""
+
+
+class ContactTableError(NamedTuple):
+    """Errors of the force over a reference force: root mean square, 95 % and largest."""
+
+    rms: float
+    most: float
+    largest: float
+
+
+def contact_table_error(
+    pair: GearPair,
+    damage: Damage,
+    stiffness: StiffnessOptions,
+    options: TableOptions,
+    table: ContactTable,
+    reference_n: float,
+    places: int = 40,
+) -> ContactTableError:
+    """Return the errors at places in the middle of fine intervals near damage, evenly spread (without lead).
+
+    Parameters
+    ----------
+    pair, damage, stiffness, options
+        What the table was made of.
+    table : ContactTable
+    reference_n : float
+        Force that errors are shares of [N].
+    places : int
+        Per kind of damaged pair.
+    """
+    solver = table_solver(pair, stiffness, options, np.zeros(face_slices(pair, options)))
+    fine = 2 * table.touch_m.shape[1] - 1  # every second point is the middle of an interval
+    errors = [np.zeros(1)]
+    for row, kind in enumerate(pair_kinds(pair, damage)[1:], start=1):
+        middles = kind_row(pair, stiffness, options, fine, pits_of_kind(damage, kind))
+        near = np.flatnonzero(table.column[row] >= options.healthy_columns)
+        for cell in near[:: max(1, near.size // places)].tolist():
+            errors.append(_errors_at(solver, middles, table, row, cell))
+    found = np.abs(np.concatenate(errors)) / reference_n
+    return ContactTableError(float(np.sqrt(np.mean(found**2))), float(np.quantile(found, 0.95)), float(found.max()))
+
+
+def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: int, cell: int) -> FloatArray:
+    """Return the errors [N] in the middle of a fine interval."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    place = np.array([2 * cell + 1])
+    here = KindRow(row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place])
+    only = np.zeros(1, dtype=np.int64)
+    approach = float(first_touch(solver, here, only)[0]) + np.array(APPROACHES) * table.reach_m
+    slices = row_faces(solver, here, only)[0]
+    direct = force_curve(
+        slices, approach, 0.0, np.zeros(solver.lead_m.size), solver_room(solver.lead_m.size), NO_ENERGY
+    )
+    column = float(table.column[number, cell] + 0.5 * table.gain[number, cell])
+    first = min(int(column), len(table.curves) - 2)
+    beyond = approach - float(table.touch_m[number, cell : cell + 2].mean())
+    low, high = (
+        CubicHermiteSpline(solver.node_m, curve[:, FORCE], curve[:, SLOPE])(np.clip(beyond, 0.0, table.reach_m))
+        for curve in table.curves[first : first + 2]
+    )
+    return np.asarray(low + (column - first) * (high - low) - direct.force_n)
