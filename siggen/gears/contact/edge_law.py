@@ -38,7 +38,7 @@ from numba import njit
 QUARTER_PLANE = 1.1815
 """Derived: see the module's docstring."""
 NOTCH_POWER = 1.25
-NOTCH_SCALE, NOTCH_ON_LAND, NOTCH_SHALLOW, NOTCH_SHALLOW_LINEAR = 0.311, 0.275, 0.263, 0.36
+NOTCH_SCALE, NOTCH_ON_LAND, NOTCH_SHALLOW, NOTCH_SHALLOW_LINEAR = 0.311, 0.278, 0.262, 0.363
 """Fitted by `python -m benchmarks.contact notch_fit`."""
 NO_EDGE = 1e30
 """Distance of an edge that does not exist [m]."""
