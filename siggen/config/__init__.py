@@ -1,7 +1,7 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
 from siggen.config.casing import Bolts, Caps, Casing
-from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
+from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
@@ -27,7 +27,6 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
-    "SCHEMA_VERSION",
     "BearingTones",
     "Bolts",
     "Caps",
