@@ -16,7 +16,9 @@ LISTED_FAILURES = 10
 
 
 def generate(
-    config: Annotated[Path, typer.Argument(help="YAML file of the set.", metavar="CONFIG")],
+    config: Annotated[
+        Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
+    ],
     out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
     workers: Annotated[
         int | None,

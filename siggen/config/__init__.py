@@ -18,6 +18,7 @@ from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath
+from siggen.config.presets import config_file
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
@@ -79,6 +80,7 @@ __all__ = [
     "apply_overrides",
     "at",
     "bounds",
+    "config_file",
     "constant",
     "corners",
     "draw",
