@@ -37,9 +37,12 @@ def generate(
     """
     from siggen.checks.loading import load_config
     from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
 
     loaded = load_config(config, overrides or ())
+    if told := compilation_text():
+        typer.echo(told, err=True)
     with _progress() as show:
         generation = generate_set(loaded, out, workers, show)
     _report(generation)
