@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 .PHONY: demo test test-slow lint bench reports clean
 
 $(STAMP): pyproject.toml constraints.txt
-	@echo "installing into $(VENV), once: 2 GB with the CPU build of PyTorch, more with the CUDA build; minutes, most of them download"
+	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -c constraints.txt -e '.[$(EXTRAS)]'
 	touch $(STAMP)
