@@ -110,7 +110,8 @@ LABEL_COLUMNS = (
         "mesh_stiffness_loss_as_simulated",
         pa.float64(),
         "",
-        "largest relative loss of force over approach at rest and at the record's torque, by the law that is simulated",
+        "largest relative loss of force over approach at rest and at the record's torque, by the simulated law; "
+        "errors of single teeth are left out",
     ),
 )
 OPERATING_COLUMNS = (

@@ -133,6 +133,12 @@ def read_manifest(storage: Storage) -> dict[str, Any]:
         manifest = unsealed(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
         raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
+    check_schema(storage, manifest)
+    return manifest
+
+
+def check_schema(storage: Storage, manifest: Mapping[str, Any]) -> None:
+    """Raise DatasetError if the files of a set are of a version that is not read here."""
     found = manifest.get("schema_version")
     if found not in READ_VERSIONS:
         raise DatasetError(
@@ -140,7 +146,6 @@ def read_manifest(storage: Storage) -> dict[str, Any]:
             "was written by another version of siggen: read it with a newer one (pip install --upgrade siggen); "
             "`siggen verify` checks its files all the same"
         )
-    return manifest
 
 
 def simulation_version(manifest: Mapping[str, Any]) -> int:

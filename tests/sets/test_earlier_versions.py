@@ -89,6 +89,15 @@ def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(t
     assert found.comparison.startswith("hashes checked; 3 records not simulated again")
 
 
+def test_a_finished_set_of_a_newer_version_is_not_made_again(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    say(tmp_path, schema_version="99")
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*")}
+    with pytest.raises(DatasetError, match="received schema version 99"):
+        write_fake_set(tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path in before} == before
+
+
 def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     other = SIMULATION_VERSION + 1
