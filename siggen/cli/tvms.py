@@ -39,7 +39,7 @@ def tvms(
         bool,
         typer.Option(
             "--potential-energy",
-            help="Where damage acts as geometry: add the curve by potential energy, a bound that is not used.",
+            help="Where damage acts as geometry: add the curve by potential energy, which is not used.",
         ),
     ] = False,
     overrides: Annotated[

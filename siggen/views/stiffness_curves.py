@@ -176,7 +176,7 @@ def curve_table(curves: list[StiffnessCurve], *, parts: bool = False, potential_
     """Return the curves as a table: the angle in degrees, and one column `<state>_n_per_m` for every state.
 
     Where damage acts as geometry also `<state>_sink_um` and `<state>_land_share` of the first damaged tooth's pair,
-    null where that pair is not in contact, and with `potential_energy` the bound `<state>_potential_energy_n_per_m`.
+    null where that pair is not in contact, and with `potential_energy` also `<state>_potential_energy_n_per_m`.
     With `parts` also `<state>_<part>_m_per_n` for every part of the compliance of the first damaged tooth's pair,
     null where that pair is not in contact.
     """

@@ -19,7 +19,7 @@ __all__ = ["check_picture_file", "save_stiffness_figure", "stiffness_figure"]
 
 COLOURS, DASHES = 10, ("-", "--", ":")
 """Each ten states have a dash of their own, so that no two of thirty look alike."""
-NOT_USED = "by potential energy:\nan upper bound of the loss,\nnot used by this set"
+NOT_USED = "by potential energy,\nnot used by this set"
 SHADES = {"pinion": "Blues", "gear": "Greens"}
 
 
@@ -29,15 +29,15 @@ def stiffness_figure(
     """Return the figure; the loss is drawn against the first curve, which is the healthy one where there is one.
 
     Where damage acts as geometry, panels show sink and land of the first damaged tooth's pair, and `potential_energy`
-    adds the dotted bound that the simulation does not use. With `parts` the last panel stacks the compliances of the
+    adds the dotted curves that the simulation does not use. With `parts` the last panel stacks the compliances of the
     pair that carries the first damaged tooth, in the last state.
     """
     from matplotlib.figure import Figure
 
     simulated = any(curve.simulated is not None for curve in curves)
-    panels = (
-        {"stiffness": 3, "loss": 2} | ({"sink": 2, "land": 2} if simulated else {}) | ({"parts": 3} if parts else {})
-    )
+    has_land = any(c.simulated is not None and np.isfinite(c.simulated.land_share).any() for c in curves)
+    panels = {"stiffness": 3, "loss": 2} | ({"sink": 2} if simulated else {})
+    panels |= ({"land": 2} if has_land else {}) | ({"parts": 3} if parts else {})
     figure = Figure(figsize=(8.0, 1.0 + sum(panels.values())), layout="constrained")
     axes = dict(
         zip(panels, figure.subplots(len(panels), 1, sharex=True, height_ratios=list(panels.values())), strict=True)
@@ -53,11 +53,12 @@ def stiffness_figure(
         loc="outside upper center", frameon=False, ncols=min(len(curves), 5),
     )  # fmt: skip
     if potential_energy and simulated:
-        _draw_bound(axes["stiffness"], curves)
+        _draw_potential_energy(axes["stiffness"], curves)
     axes["loss"].set_ylabel(f"loss against {curves[0].state} [%]")
     axes["loss"].margins(x=0)
     if simulated:
         axes["sink"].set_ylabel("sink of the\ndamaged pair [µm]")
+    if has_land:
         axes["land"].set_ylabel("land of the\ndamaged pair [% of face]")
     if parts:
         _stack(axes["parts"], curves[-1])
@@ -65,7 +66,7 @@ def stiffness_figure(
     return figure
 
 
-def _draw_bound(axis: Axes, curves: Sequence[StiffnessCurve]) -> None:
+def _draw_potential_energy(axis: Axes, curves: Sequence[StiffnessCurve]) -> None:
     for depth, curve in enumerate(curves):
         if curve.simulated is not None:
             energy = curve.simulated.potential_energy_n_per_m / 1e8
@@ -85,7 +86,8 @@ def _draw_curve(
         axes["loss"].plot(degrees, 100.0 * loss, **style)
     if curve.simulated is not None:
         axes["sink"].plot(degrees, curve.simulated.sink_um, **style)
-        axes["land"].plot(degrees, 100.0 * curve.simulated.land_share, **style)
+        if "land" in axes:
+            axes["land"].plot(degrees, 100.0 * curve.simulated.land_share, **style)
 
 
 def _stack(axis: Axes, curve: StiffnessCurve) -> None:
