@@ -10,8 +10,9 @@ STAMP := $(VENV)/.installed
 .PHONY: demo test test-slow lint bench reports reference docs clean
 
 $(STAMP): pyproject.toml constraints.txt
+	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -q -c constraints.txt -e '.[$(EXTRAS)]'
+	$(BIN)/python -m pip install -c constraints.txt -e '.[$(EXTRAS)]'
 	touch $(STAMP)
 
 # What builds the site is not needed for anything else.

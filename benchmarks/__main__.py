@@ -17,8 +17,7 @@ from siggen.engines.worker import ONE_THREAD
 
 TOPICS = (
     *("startup", "stiffness", "integration", "record", "sensing", "storage", "loader", "indicators", "workers"),
-    "quickstart",
-    "contact",
+    *("quickstart", "contact", "house"),
 )
 
 

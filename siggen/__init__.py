@@ -16,14 +16,24 @@ if TYPE_CHECKING:
     from siggen.planning.plan import plan
     from siggen.record.simulation import simulate
     from siggen.sets.generation import generate
-    from siggen.views.stiffness_curves import mesh_stiffness_curves
+    from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
-__all__ = ["generate", "load_config", "mesh_stiffness_curves", "open", "plan", "simulate", "write_card_section"]
+__all__ = [
+    "generate",
+    "load_config",
+    "mesh_stiffness_curves",
+    "mesh_stiffness_meaning",
+    "open",
+    "plan",
+    "simulate",
+    "write_card_section",
+]
 
 _HOMES = {
     "generate": ("siggen.sets.generation", "generate"),
     "load_config": ("siggen.checks.loading", "load_config"),
     "mesh_stiffness_curves": ("siggen.views.stiffness_curves", "mesh_stiffness_curves"),
+    "mesh_stiffness_meaning": ("siggen.views.stiffness_curves", "mesh_stiffness_meaning"),
     "open": ("siggen.dataset.reading", "open"),
     "plan": ("siggen.planning.plan", "plan"),
     "simulate": ("siggen.record.simulation", "simulate"),

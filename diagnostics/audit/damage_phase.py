@@ -25,9 +25,9 @@ def damage_phase(measured: MeasuredSet) -> list[Finding]:
     """Return findings for a constant angle of the damaged tooth after the pulse and at the first sample."""
     if "faulty_teeth_pinion" not in measured.labels:
         return []
-    teeth = int(measured.labels["teeth_pinion"][0])
-    damaged = np.array([len(found) > 0 for found in measured.labels["faulty_teeth_pinion"]])
-    tooth = np.array([found[0] / teeth if len(found) else 0.0 for found in measured.labels["faulty_teeth_pinion"]])
+    faulty, teeth = measured.labels["faulty_teeth_pinion"], measured.labels["teeth_pinion"]
+    damaged = np.array([len(found) > 0 for found in faulty])
+    tooth = np.array([found[0] / z if len(found) else 0.0 for found, z in zip(faulty, teeth, strict=True)])
     _, first = np.unique(measured.labels["specimen_id"][damaged], return_index=True)
     start = measured.values["start_turn"][:, 0][damaged]
     angles = {"tacho": tooth[damaged][first], "start": (start - tooth[damaged])[np.isfinite(start)]}

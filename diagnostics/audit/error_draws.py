@@ -55,7 +55,6 @@ def equal_error_labels(measured: MeasuredSet) -> list[Finding]:
 
 def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
     """Return a finding if averaged waveforms of healthy specimens agree after a rotation more often than allowed."""
-    teeth = int(measured.labels["teeth_pinion"][0])
     healthy = np.flatnonzero(measured.healthy)
     _, first = np.unique(measured.labels["specimen_id"][healthy], return_index=True)
     chosen = healthy[first][:MOST_SPECIMENS]
@@ -63,7 +62,7 @@ def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
     judged = [
         (found, lines)
         for a, b in pairs
-        for found, lines in [likeness(_sidebands(measured, a, teeth), _sidebands(measured, b, teeth))]
+        for found, lines in [likeness(_sidebands(measured, a), _sidebands(measured, b))]
         if lines >= FEWEST_LINES
     ]
     alike = sum(found > max(LEAST_LIKENESS, chance_bound(lines, len(pairs))) for found, lines in judged)
@@ -80,9 +79,9 @@ def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
     ]
 
 
-def _sidebands(measured: MeasuredSet, record: int, teeth: int) -> dict[int, complex]:
+def _sidebands(measured: MeasuredSet, record: int) -> dict[int, complex]:
     """Return the sidebands of the first channel that stand above its weaker lines, by order."""
-    waveform = measured.waveforms[record][0]
+    waveform, teeth = measured.waveforms[record][0], int(measured.labels["teeth_pinion"][record])
     offsets = [k * sign for k in range(1, SIDEBANDS + 1) for sign in (-1, 1)]
     orders = [h * teeth + k for h in range(1, HARMONICS + 1) for k in offsets if h * teeth + k < waveform.size]
     # the median over all orders is the noise left in the average: most orders carry no strong line

@@ -54,7 +54,7 @@ def draw(
     colours = state_colours(classes, healthy)
     drawing = Drawing()
     _draw_vibration(drawing, dataset, colours)
-    _draw_damage(drawing, dataset, matrix, classes, colours)
+    _draw_damage(drawing, dataset, classes, colours)
     if training:
         _draw_scores(drawing, training)
     if studies:
@@ -98,24 +98,23 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str])
         drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
 
 
-def _draw_damage(
-    drawing: Drawing, dataset: Dataset, matrix: FeatureMatrix, classes: tuple[str, ...], colours: dict[str, str]
-) -> None:
-    figure = stiffness_figures.stiffness_loss_figure(matrix.labels, classes, colours)
-    drawing.damage["stiffness_loss"] = (
-        figure,
-        "Largest relative loss of mesh stiffness against healthy, from the labels.",
-    )
+def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], colours: dict[str, str]) -> None:
+    losses, meaning = stiffness_figures.loss_of_specimens(dataset)
+    figure = stiffness_figures.stiffness_loss_figure(losses, classes, colours)
+    caption = f"Largest relative loss of mesh stiffness against healthy, from the labels: {meaning}."
+    drawing.damage["stiffness_loss"] = (figure, caption)
     try:
         import siggen
 
         # provided lazily by the package, computed from the configuration; a set can be read without its physics
         curves = siggen.mesh_stiffness_curves(dataset.path / "config.yaml")
+        meaning = siggen.mesh_stiffness_meaning(dataset.path / "config.yaml")
         figure = stiffness_figures.stiffness_figure(curves, colours)
     except Exception as error:
         drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")
         return
-    drawing.damage["stiffness"] = (figure, "Mesh stiffness of specimen 0 in every state while the damaged teeth mesh.")
+    caption = f"Specimen 0 in every state while the damaged teeth mesh: {meaning}."
+    drawing.damage["stiffness"] = (figure, caption)
 
 
 def _draw_scores(drawing: Drawing, training: Training) -> None:

@@ -6,17 +6,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from siggen.config import Config, apply_overrides, parse, read_yaml
+from siggen.config import Config, apply_overrides, config_file, parse, read_yaml
 from siggen.errors import ConfigError
 
 
 def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
     """Return the configuration in a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
 
+    Where there is no file of this path, the name of a preset such as `quickstart` stands for the one that siggen ships.
+
     Raises
     ------
     UsageError
-        If the file cannot be read.
+        If there is no such file or preset, or it cannot be read.
     ConfigError
         If anything is wrong with the configuration; names every problem of form and physics at once.
     """
@@ -25,15 +27,16 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.checks.quantity_names import quantity_problems
     from siggen.specimen.measured_path import response_problems, with_measured_responses
 
-    is_file = isinstance(source, (str, Path))
-    read_from = (str(source) if is_file else "configuration") + (" with overrides" if overrides else "")
-    raw = read_yaml(source) if isinstance(source, (str, Path)) else source
-    folder = Path(source).parent if isinstance(source, (str, Path)) else Path()
+    if isinstance(source, Mapping):
+        raw, folder, read_from = source, Path(), "configuration"
+    else:
+        file = config_file(source)
+        raw, folder, read_from = read_yaml(file), file.parent, str(source)
     filled, unread = with_measured_responses(apply_overrides(raw, overrides), folder)
     parsed = parse(filled)
     problems = [*parsed.problems, *physical_problems(parsed), *unread, *response_problems(parsed.sections)]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
-        raise ConfigError(problems, read_from)
+        raise ConfigError(problems, read_from + (" with overrides" if overrides else ""))
     return parsed.config

@@ -33,7 +33,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Begin with: siggen plan configs/quickstart.yaml",
+    epilog="Begin with: siggen plan quickstart",
 )
 for command in COMMANDS:
     app.command()(command)

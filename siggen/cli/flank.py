@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 
 
 def flank(
-    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    config: Annotated[
+        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
+    ],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,

@@ -16,7 +16,9 @@ LISTED_FAILURES = 10
 
 
 def generate(
-    config: Annotated[Path, typer.Argument(help="YAML file of the set.", metavar="CONFIG")],
+    config: Annotated[
+        Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
+    ],
     out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
     workers: Annotated[
         int | None,
@@ -35,9 +37,12 @@ def generate(
     """
     from siggen.checks.loading import load_config
     from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
 
     loaded = load_config(config, overrides or ())
+    if told := compilation_text():
+        typer.echo(told, err=True)
     with _progress() as show:
         generation = generate_set(loaded, out, workers, show)
     _report(generation)

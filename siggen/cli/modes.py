@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 def modes(
-    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    config: Annotated[
+        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
+    ],
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 def plan(
-    config: Annotated[Path, typer.Argument(help="YAML file of the set.", metavar="CONFIG")],
+    config: Annotated[
+        Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
+    ],
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),

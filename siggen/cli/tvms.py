@@ -9,7 +9,9 @@ import typer
 
 
 def tvms(
-    config: Annotated[Path, typer.Argument(metavar="CONFIG", help="YAML file of a set.")],
+    config: Annotated[
+        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
+    ],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
@@ -25,30 +27,57 @@ def tvms(
             "--parts", help="Add the compliances that the damaged tooth's pair is made of: contact and tooth."
         ),
     ] = False,
+    torque_nm: Annotated[
+        float | None,
+        typer.Option(
+            "--torque",
+            min=1e-6,
+            help="Torque on the pinion [N m] where damage acts as geometry; by default of the first operating point.",
+        ),
+    ] = None,
+    potential_energy: Annotated[
+        bool,
+        typer.Option(
+            "--potential-energy",
+            help="Where damage acts as geometry: add the curve by potential energy, which is not used.",
+        ),
+    ] = False,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override a key, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
     """Write the mesh stiffness of every state against the pinion angle (0: the first damaged tooth enters contact).
 
-    The curves begin one pitch before that angle.
+    The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.damage: geometry or all)
+    the stiffness is force over approach at rest, at a torque; then with sink and land of the damaged pair.
 
     Example: siggen tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
     from siggen.specimen.gears import model_notes
-    from siggen.views.stiffness_curves import curve_table, stiffness_curves, table_error_text
+    from siggen.views.stiffness_curves import (
+        curve_table,
+        static_torque_nm,
+        stiffness_curves,
+        stiffness_meaning,
+        table_error_text,
+    )
     from siggen.views.stiffness_figure import check_picture_file, save_stiffness_figure
 
     check_table_file(out)
     if png is not None:
         check_picture_file(png)
     usable = load_config(config, overrides or ())
-    curves = stiffness_curves(usable, specimen, pitches=pitches)
-    write_table_file(curve_table(curves, parts=parts), out)
+    torque = static_torque_nm(usable, specimen) if torque_nm is None else torque_nm
+    curves, meaning = (
+        stiffness_curves(usable, specimen, pitches=pitches, torque_nm=torque),
+        stiffness_meaning(usable, torque),
+    )
+    write_table_file(curve_table(curves, parts=parts, potential_energy=potential_energy), out)
     if png is not None:
-        save_stiffness_figure(curves, png, parts=parts)
+        save_stiffness_figure(curves, png, parts=parts, potential_energy=potential_energy, title=meaning)
+    typer.echo(meaning, err=True)
     typer.echo(table_error_text(usable, specimen), err=True)
     for note in model_notes(usable):
         typer.echo(f"note: {note}", err=True)

@@ -23,7 +23,7 @@ def verify(
     from dataclasses import asdict
 
     from siggen.errors import EXIT_MISMATCH, counted
-    from siggen.sets.verification import problem_lines
+    from siggen.sets.verification import HASHES_ALONE, problem_lines
     from siggen.sets.verification import verify as verify_set
 
     found = verify_set(folder, sample)
@@ -31,8 +31,9 @@ def verify(
         typer.echo(json.dumps({**asdict(found), "ok": not found.mismatches}, indent=2))
     else:
         typer.echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
-        records = f"{counted(len(found.records), 'record')} simulated again, compared {found.comparison}"
-        typer.echo(records if found.records else f"records simulated again: {found.comparison}")
+        again = f"{counted(len(found.records), 'record')} simulated again, compared "
+        again = again if found.records else "records simulated again: "
+        typer.echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
         for line in problem_lines(found.mismatches):
             typer.echo(line, err=True)
         typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")

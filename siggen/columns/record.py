@@ -12,15 +12,13 @@ import pyarrow as pa
 from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
 
 if TYPE_CHECKING:
     from siggen.config import Config
     from siggen.planning.plan import PlannedRecord
-
-SCHEMA_VERSION = "1"
-"""Version of the columns and of the files around them; readers refuse versions they do not know."""
 
 ACCELERATION_UNIT = "m/s^2"
 
@@ -97,11 +95,24 @@ LABEL_COLUMNS = (
     Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),
     Column("damage_profile_length_mm", pa.float64(), MILLIMETRE, "longest single damage along the profile (arc)"),
     Column("contact_length_loss_mm", pa.float64(), MILLIMETRE, "largest length that a contact line loses"),
-    Column("mesh_stiffness_loss", pa.float64(), "", "largest relative loss of mesh stiffness against healthy"),
+    Column(
+        "mesh_stiffness_loss",
+        pa.float64(),
+        "",
+        "largest relative loss of mesh stiffness against healthy by potential energy: a pair without contact length "
+        "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead",
+    ),
     Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact"),
     Column("status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows"),
     Column("through_face", pa.bool_(), "", "whether damage takes the whole contact length somewhere"),
     Column("sink_depth_um", pa.float64(), "um", "how far the mating flank sinks at most; 0 where lands carry"),
+    Column(
+        "mesh_stiffness_loss_as_simulated",
+        pa.float64(),
+        "",
+        "largest relative loss of force over approach at rest and at the record's torque, by the simulated law; "
+        "errors of single teeth are left out",
+    ),
 )
 OPERATING_COLUMNS = (
     Column("teeth_pinion", pa.int32(), "", "number of teeth of the pinion"),

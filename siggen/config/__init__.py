@@ -1,7 +1,7 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
 from siggen.config.casing import Bolts, Caps, Casing
-from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
+from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
@@ -18,6 +18,7 @@ from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath
+from siggen.config.presets import config_file
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.shafts import Shaft, Shafts
 from siggen.config.spall import ListedSpall, Spalls, SpallSize
@@ -28,7 +29,6 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
-    "SCHEMA_VERSION",
     "BearingTones",
     "Bolts",
     "Caps",
@@ -83,6 +83,7 @@ __all__ = [
     "apply_overrides",
     "at",
     "bounds",
+    "config_file",
     "constant",
     "corners",
     "draw",

@@ -25,8 +25,8 @@ from siggen.config.variation import Variation
 from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
-SCHEMA_VERSION = 1
-"""Version of the configuration's meaning, part of every identity; raised when a file comes to give other records."""
+IDENTITY_VERSION = 1
+"""Part of every identity and never raised, or all identities would change; see docs/develop/versions.md."""
 
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
@@ -107,7 +107,7 @@ class Config(Section):
         Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist;
         where a default has changed, its first value is what does not count (`first_default`).
         """
-        content = {**_identity_content(self), "schema_version": SCHEMA_VERSION}
+        content = {**_identity_content(self), "schema_version": IDENTITY_VERSION}
         del content["specimens"]
         text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()

@@ -10,7 +10,9 @@ import yaml
 
 from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import SCHEMA_VERSION, channels, damage_schema, record_schema
+from siggen.columns.record import channels, damage_schema, record_schema
+from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.dataset.card_making import making
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
@@ -58,7 +60,7 @@ def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Colum
         _front_matter(config, splits, rows, with_internals=bool(quantities)),
         _summary(config, rows),
         _contents(config, sidecars, splits),
-        _making(config),
+        making(config),
         _limits(config),
         _failures(sidecars),
         _columns("Columns of `data/`", record_schema(config)),
@@ -123,41 +125,6 @@ def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]
             "",
         ]
     )
-
-
-def _making(config: Config) -> str:
-    states = "\n".join(f"* `{state.name}`: fault {state.fault}, severity {state.severity}" for state in config.states)
-    pinion, gear = config.gears.pinion.teeth, config.gears.gear.teeth
-    return f"""## How it was made
-
-1. **Gears.** A spur pair with {pinion} and {gear} teeth. Mesh stiffness by the potential energy method (bending, shear,
-   axial compression, Hertz contact, tooth foundation: `{config.stiffness.beam}`, `{config.stiffness.foundation}`),
-   along the true involute and double-tooth contact.
-2. **Damage.** Pits with outline, depth and place on the flank remove material from the tooth's sections and shorten
-   the contact line; the union of overlapping pits counts once. States of a specimen may grow from each other: a later
-   state then keeps the pits of the earlier one (`grows_from` in `config.yaml`). Outlines are in `damage/`.
-3. **Dynamics.** A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and a mesh with backlash,
-   time-varying stiffness and damping. Bearing accelerations are low-pass filtered before they are sampled.
-4. **Sensing.** {_path_text(config)}Gain, noise,
-   clipping at the sensor's range, and rounding to the converter's step, which is a power of two and therefore exact in
-   float32 (each sensor's noise and bits are in `config.yaml`).
-
-States:
-
-{states}
-"""
-
-
-def _path_text(config: Config) -> str:
-    """Say how vibrations come to the sensors, if any of them stands behind a transfer path."""
-    kinds = sorted({sensor.path.kind for sensor in config.sensors if sensor.path is not None})
-    if not kinds:
-        return ""
-    behind = {
-        "modal": "random flexible modes of a housing, new for every specimen",
-        "measured": "a measured accelerance",
-    }
-    return f"Bearing forces reach sensors through {' or '.join(behind[kind] for kind in kinds)} (`housing`, `path`). "
 
 
 def _limits(config: Config) -> str:
@@ -258,7 +225,8 @@ def _identity(config: Config, sidecars: Sequence[Sidecar]) -> str:
 
 * Configuration: `config.yaml`; identity (SHA-256 of the configuration without the number of specimens):
   `{config.identity}`
-* Seed {config.seed}, {specimens}, schema version {SCHEMA_VERSION}; made with {"; ".join(made_with)}.
+* Seed {config.seed}, {specimens}; made with {"; ".join(made_with)}.
+* Schema version {SCHEMA_VERSION}, simulation version {SIMULATION_VERSION}.
 * Every random number follows from seed, stage and owner, so `siggen generate config.yaml --out NEW` makes the same set
   again: bit for bit on the same CPU family and versions (`manifest.json`), elsewhere within a step of the converter.
 * `siggen verify .` checks every file against `manifest.json` and simulates a sample of records again.

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from siggen.config import parse, yaml_text
-from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
+from siggen.dataset.manifest import CONFIG, MANIFEST, check_schema, unsealed
 from siggen.dataset.storage import Storage
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, VerificationError
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -31,7 +31,8 @@ def is_finished(storage: Storage, config: Config) -> bool:
     Raises
     ------
     DatasetError
-        If the folder holds another set, or files that are not a set. Nothing is ever deleted to make room.
+        If the folder holds another set, a finished one of an unknown schema version, or files that are not a set.
+        Nothing is ever deleted to make room.
     """
     if not storage.exists(CONFIG):
         _refuse_strangers(storage)
@@ -42,9 +43,11 @@ def is_finished(storage: Storage, config: Config) -> bool:
 
 def _has_every_file(storage: Storage) -> bool:
     try:
-        files = read_manifest(storage)["files"]
-    except DatasetError:
+        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+    except VerificationError:
         return False
+    check_schema(storage, manifest)
+    files = manifest["files"]
     return all(storage.exists(name) and storage.size(name) == facts["bytes"] for name, facts in files.items())
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from siggen.columns.record import SCHEMA_VERSION
+from siggen.columns.versions import FIRST_SIMULATION_VERSION, READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.sidecar import Sidecar, json_bytes
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError
@@ -72,6 +72,7 @@ def build_manifest(
     return {
         "format": "siggen data set",
         "schema_version": SCHEMA_VERSION,
+        "simulation_version": SIMULATION_VERSION,
         **facts,
         "splits": _splits(sidecars),
         "rows": sum(sidecar.data.rows for sidecar in sidecars),
@@ -132,10 +133,24 @@ def read_manifest(storage: Storage) -> dict[str, Any]:
         manifest = unsealed(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
         raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
-    if manifest.get("schema_version") != SCHEMA_VERSION:
-        found = manifest.get("schema_version")
-        raise DatasetError(f"{storage.location}: schema version {found}; this siggen reads version {SCHEMA_VERSION}")
+    check_schema(storage, manifest)
     return manifest
+
+
+def check_schema(storage: Storage, manifest: Mapping[str, Any]) -> None:
+    """Raise DatasetError if the files of a set are of a version that is not read here."""
+    found = manifest.get("schema_version")
+    if found not in READ_VERSIONS:
+        raise DatasetError(
+            f"{storage.location}: received schema version {found}; allowed are {' and '.join(READ_VERSIONS)}. The set "
+            "was written by another version of siggen: read it with a newer one (pip install --upgrade siggen); "
+            "`siggen verify` checks its files all the same"
+        )
+
+
+def simulation_version(manifest: Mapping[str, Any]) -> int:
+    """Return which version of the simulation made a set; sets that do not say so were made by the first one."""
+    return int(manifest.get("simulation_version", FIRST_SIMULATION_VERSION))
 
 
 def _why_no_manifest(storage: Storage) -> str:

@@ -6,7 +6,8 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
-from siggen.columns.record import SCHEMA_VERSION, RecordFailure
+from siggen.columns.record import RecordFailure
+from siggen.columns.versions import FIRST_SIMULATION_VERSION, SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError
@@ -90,7 +91,7 @@ def json_bytes(content: Mapping[str, object]) -> bytes:
 
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
     """Commit a shard whose rows are already stored."""
-    content = {"schema_version": SCHEMA_VERSION, **asdict(sidecar)}
+    content = {"schema_version": SCHEMA_VERSION, "simulation_version": SIMULATION_VERSION, **asdict(sidecar)}
     if sidecar.internals is None:
         del content["internals"]  # as in sets that were made before internals could be stored
     storage.put(sidecar.name, json_bytes(content))
@@ -107,9 +108,11 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
     name = sidecar_name(shard)
     try:
         content = json.loads(storage.get(name))
-        if content["schema_version"] != SCHEMA_VERSION:
+        versions = (content["schema_version"], content.get("simulation_version", FIRST_SIMULATION_VERSION))
+        if versions != (SCHEMA_VERSION, SIMULATION_VERSION):
             raise DatasetError(
-                f"{name}: schema version {content['schema_version']}; this siggen writes {SCHEMA_VERSION}"
+                f"{name}: received schema version {versions[0]} and simulation version {versions[1]}; "
+                f"allowed are {SCHEMA_VERSION} and {SIMULATION_VERSION}, which this siggen writes"
             )
         return Sidecar(
             shard=content["shard"],

@@ -10,6 +10,7 @@ from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
 from siggen.planning.specimen import OperatingPoint
+from siggen.specimen.static_mesh import StaticMesh
 
 
 def _faulty_gear(pinion_teeth: list[int], gear_teeth: list[int]) -> str:
@@ -27,7 +28,8 @@ def damage_labels(
 
     mesh_stiffness_loss is by the stiffness model (shorter contact, weaker sections) however the damage acts on the
     motion, so sets compare. For damage through the face it counts a pair without contact length as one that carries
-    nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage.
+    nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage: that is
+    what mesh_stiffness_loss_as_simulated tells, which depends on the torque (`operating_labels`).
     """
     teeth = {gear: sorted({p.tooth for p in damage if p.gear == gear}) for gear in ("pinion", "gear")}
     summary = damage_summary(pair, damage)
@@ -50,8 +52,13 @@ def damage_labels(
     }
 
 
-def operating_labels(pair: GearPair, point: OperatingPoint, response: Response) -> dict[str, object]:
-    """Return teeth, commanded speed and torque, and the frequencies that the record really has."""
+def operating_labels(
+    pair: GearPair, point: OperatingPoint, response: Response, static: StaticMesh
+) -> dict[str, object]:
+    """Return teeth, commanded speed and torque, the frequencies that the record really has, and the loss at its torque.
+
+    `static` is the mesh of the state at rest.
+    """
     turned = response.angle_rad[-1] - response.angle_rad[0]
     shaft_hz = float(turned / (6.283185307179586 * (len(response.angle_rad) - 1) / response.fs_hz))
     return {
@@ -62,4 +69,5 @@ def operating_labels(pair: GearPair, point: OperatingPoint, response: Response) 
         "pinion_shaft_hz": shaft_hz,
         "gear_shaft_hz": shaft_hz * pair.pinion.teeth / pair.gear.teeth,
         "mesh_hz": shaft_hz * pair.pinion.teeth,
+        "mesh_stiffness_loss_as_simulated": static.largest_loss(point.torque_nm),
     }

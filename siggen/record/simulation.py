@@ -31,6 +31,7 @@ from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_error
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
+from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
 
 __all__ = [
@@ -53,6 +54,7 @@ class SpecimenState:
     damage: Damage
     mesh: SpecimenMesh
     labels: dict[str, object]
+    static: StaticMesh
 
 
 def specimen_state(config: Config, specimen: Specimen, state_id: int) -> SpecimenState:
@@ -79,12 +81,14 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         missing = erroneous_teeth(missing, pair, errors)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
         labels |= error_labels(config, errors)
+        static = static_mesh(specimen.dynamics, pair, teeth, specimen.stiffness.table_points)
     return SpecimenState(
         pair,
         options,
         damage,
         SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n, teeth.contact),
         labels,
+        static,
     )
 
 
@@ -155,9 +159,11 @@ def _simulated(
         driven = _driven(config, specimen, state, planned)
     response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
     channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
+    with refused_as("outside_model"):
+        operating = operating_labels(state.pair, point, response, state.static)
     labels = {
         **state.labels,
-        **operating_labels(state.pair, point, response),
+        **operating,
         **variation_labels(config, driven),
         "start_angle_rad": float(response.angle_rad[0]),
         "contact_loss_share": response.contact_loss_share,

@@ -13,9 +13,19 @@ import numpy as np
 
 from siggen.columns.internals import FOLDER as INTERNALS_FOLDER
 from siggen.columns.record import signal_column
+from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate
 from siggen.dataset.environment import environment
-from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, MANIFEST, METADATA_FOLDER, RUN, read_manifest, unsealed
+from siggen.dataset.manifest import (
+    CONFIG,
+    DAMAGE_FOLDER,
+    MANIFEST,
+    METADATA_FOLDER,
+    RUN,
+    read_manifest,
+    simulation_version,
+    unsealed,
+)
 from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
@@ -32,6 +42,8 @@ OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, SI
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
+HASHES_ALONE = "hashes checked"
+"""How the comparison begins of a set whose records another version of the simulation made."""
 
 LABEL_TOLERANCE = 1e-6
 """Relative difference that other instructions and versions may make in a label: well above rounding, below meaning."""
@@ -75,7 +87,8 @@ def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = Non
     """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
 
     Records are compared bit for bit if versions and CPU family are those that made them; elsewhere signals may
-    differ by one step of the converter.
+    differ by one step of the converter. A set that another version of the simulation made, or whose files are of a
+    version that this siggen does not read, is compared with its hashes alone, and `comparison` says so.
 
     Parameters
     ----------
@@ -108,11 +121,24 @@ def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = Non
     comparison = "none asked for"
     if sample and mismatches:
         comparison = "none, since files differ"
+    elif sample and (reason := _why_not_again(manifest, sample)):
+        comparison = reason
     elif sample:
         records, comparison, different = _simulate_again(storage, sample, simulate, workers)
         mismatches += different
     total = sum(facts["bytes"] for facts in manifest["files"].values())
     return Verification(storage.location, len(manifest["files"]) + 2, total, records, comparison, tuple(mismatches))
+
+
+def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
+    """Return why no record of a set can be compared with a new simulation, or an empty string."""
+    made_by, schema = simulation_version(manifest), manifest.get("schema_version")
+    head = f"{HASHES_ALONE}; {counted(min(sample, manifest.get('rows', sample)), 'record')} not simulated again: "
+    if schema not in READ_VERSIONS:
+        return f"{head}its files have schema version {schema}, this siggen reads {' and '.join(READ_VERSIONS)}"
+    if made_by != SIMULATION_VERSION:
+        return f"{head}made by simulation version {made_by}, this is {SIMULATION_VERSION}"
+    return ""
 
 
 def _file_mismatches(storage: Storage, files: Mapping[str, Mapping[str, Any]]) -> Iterator[Mismatch]:

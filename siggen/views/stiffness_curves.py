@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
 
@@ -19,10 +19,12 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.planning.specimen import Specimen, draw_specimen
+from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
+from siggen.record.simulation import specimen_state
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
 TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
 
@@ -35,15 +37,17 @@ class StiffnessCurve:
     ----------
     state : name of the state
     angle_rad : (k,)
-    mesh_stiffness_n_per_m : (k,)
+    mesh_stiffness_n_per_m : (k,) as simulated, see `stiffness_meaning`
     parts_m_per_n : name of a part -> (k,) compliance of the pair of the first damaged tooth, NaN where it is not in
         contact; the parts of both teeth from the root to the contact, in the order in which they are drawn
+    simulated : what the simulation makes of the damage, where it acts as geometry; else None
     """
 
     state: str
     angle_rad: FloatArray
     mesh_stiffness_n_per_m: FloatArray
     parts_m_per_n: Mapping[str, FloatArray]
+    simulated: SimulatedContact | None = None
 
 
 def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
@@ -64,7 +68,11 @@ def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
 
 
 def stiffness_curves(
-    config: Config, specimen_id: int = 0, points_per_pitch: int = 400, pitches: int | None = None
+    config: Config,
+    specimen_id: int = 0,
+    points_per_pitch: int = 400,
+    pitches: int | None = None,
+    torque_nm: float | None = None,
 ) -> list[StiffnessCurve]:
     """Return the curve of every state of one specimen, from one pitch before the damage to two pitches behind it.
 
@@ -74,14 +82,18 @@ def stiffness_curves(
     specimen_id : int
     points_per_pitch : int, samples over one angular pitch of the pinion
     pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
+    torque_nm : float, on the pinion, for damage that acts as geometry; None: that of the first operating point
 
     Raises
     ------
     ValueError
         If there are no points or pitches, or the drawn damage cannot be computed by the stiffness model (the message
         names it).
+    SolverFailure
+        If what was drawn cannot be built.
 
-    Source: paper A, section 2.2, by `siggen.gears.stiffness.mesh_stiffness`.
+    Source: paper A, section 2.2, by `siggen.gears.stiffness.mesh_stiffness`; where damage acts as geometry, force over
+    approach at rest by `siggen.dynamics.mesh.static_stiffness`.
     """
     if points_per_pitch < 1 or (pitches is not None and pitches < 1):
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
@@ -92,10 +104,40 @@ def stiffness_curves(
     count = last - first + 3 if pitches is None else pitches
     steps = np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
     angle = steps * 2 * pi / pair.pinion.teeth
-    return [
+    curves = [
         _curve(specimen, pair, state.name, damage, angle, first)
         for state, damage in zip(config.states, damages, strict=True)
     ]
+    if not damage_is_geometry(specimen.dynamics):
+        return curves
+    torque = static_torque_nm(config, specimen_id) if torque_nm is None else torque_nm
+    return [_as_simulated(config, specimen, i, curve, first, torque) for i, curve in enumerate(curves)]
+
+
+def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
+    """Return the torque of a specimen's first operating point [N m], at which its static curves are taken."""
+    return draw_operating_point(config, specimen_id, 0).torque_nm
+
+
+def stiffness_meaning(config: Config, torque_nm: float) -> str:
+    """Return in words what a curve of mesh stiffness of this configuration is."""
+    if damage_is_geometry(config.dynamics):
+        return f"quasi-static mesh stiffness at {torque_nm:.3g}\u00a0N\u00a0m: force over approach, as simulated"
+    return "mesh stiffness by potential energy"
+
+
+def _as_simulated(
+    config: Config, specimen: Specimen, state_id: int, curve: StiffnessCurve, engagement: int, torque_nm: float
+) -> StiffnessCurve:
+    state = specimen_state(config, specimen, state_id)
+    pair, angle = state.pair, curve.angle_rad
+    stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
+    position = pair.contact_start_m + pair.pinion.base_radius_m * angle
+    energy = curve.mesh_stiffness_n_per_m
+    found = simulated_contact(
+        pair, state.damage, state.static.slices, state.static.contact, engagement, position, energy
+    )
+    return replace(curve, mesh_stiffness_n_per_m=stiffness, simulated=found)
 
 
 def _curve(
@@ -132,16 +174,23 @@ def _spread(inside: NDArray[np.bool_], values: FloatArray) -> FloatArray:
     return out
 
 
-def curve_table(curves: list[StiffnessCurve], *, parts: bool = False) -> pa.Table:
+def curve_table(curves: list[StiffnessCurve], *, parts: bool = False, potential_energy: bool = False) -> pa.Table:
     """Return the curves as a table: the angle in degrees, and one column `<state>_n_per_m` for every state.
 
+    Where damage acts as geometry also `<state>_sink_um` and `<state>_land_share` of the first damaged tooth's pair,
+    null where that pair is not in contact, and with `potential_energy` also `<state>_potential_energy_n_per_m`.
     With `parts` also `<state>_<part>_m_per_n` for every part of the compliance of the first damaged tooth's pair,
     null where that pair is not in contact.
     """
     columns = {"angle_deg": pa.array(np.degrees(curves[0].angle_rad))}
     columns |= {f"{curve.state}_n_per_m": pa.array(curve.mesh_stiffness_n_per_m) for curve in curves}
-    if parts:
-        for curve in curves:
+    for curve in curves:
+        if curve.simulated is not None:
+            found = {"sink_um": curve.simulated.sink_um, "land_share": curve.simulated.land_share}
+            if potential_energy:
+                found["potential_energy_n_per_m"] = curve.simulated.potential_energy_n_per_m
+            columns |= {f"{curve.state}_{name}": pa.array(v, mask=np.isnan(v)) for name, v in found.items()}
+        if parts:
             for name, values in curve.parts_m_per_n.items():
                 columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
@@ -180,7 +229,9 @@ def table_error_text(config: Config, specimen_id: int = 0) -> str:
 def mesh_stiffness_curves(
     config: Config | Path | str, specimen_id: int = 0
 ) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Return state -> (angle in degrees (k,), mesh stiffness in N/m (k,)) of one specimen.
+    """Return state -> (angle in degrees (k,), mesh stiffness in N/m (k,)) of one specimen, as simulated.
+
+    What the stiffness is, says `mesh_stiffness_meaning`.
 
     Parameters
     ----------
@@ -196,3 +247,15 @@ def mesh_stiffness_curves(
     """
     usable = config if isinstance(config, Config) else load_config(config)
     return {c.state: (np.degrees(c.angle_rad), c.mesh_stiffness_n_per_m) for c in stiffness_curves(usable, specimen_id)}
+
+
+def mesh_stiffness_meaning(config: Config | Path | str, specimen_id: int = 0) -> str:
+    """Return in words what `mesh_stiffness_curves` returns for this configuration.
+
+    Raises
+    ------
+    ConfigError
+        If the file holds no usable configuration.
+    """
+    usable = config if isinstance(config, Config) else load_config(config)
+    return stiffness_meaning(usable, static_torque_nm(usable, specimen_id))

@@ -170,7 +170,7 @@ def test_the_file_is_named_in_the_message(tmp_path):
 
 
 def test_a_missing_file_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="cannot be read"):
+    with pytest.raises(UsageError, match="there is no such file; allowed are the path of a YAML file, or a preset"):
         load_config(tmp_path / "missing.yaml")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -75,3 +76,35 @@ def test_an_editor_with_the_schema_marks_a_misspelt_key(schema):
     wrong = {**read_yaml("configs/linear_pits.yaml"), "specimen": 3}
     with pytest.raises(jsonschema.ValidationError, match="specimen"):
         jsonschema.validate(wrong, schema)
+
+
+def written(value, keys):
+    """Every key that a file sets anywhere."""
+    for key, item in value.items() if isinstance(value, dict) else ():
+        keys.add(key)
+        written(item, keys)
+    for item in value if isinstance(value, list) else ():
+        written(item, keys)
+    return keys
+
+
+def test_expert_keys_are_those_that_no_shipped_file_sets(schema):
+    used = set()
+    for path in Path("configs").glob("*.yaml"):
+        written(read_yaml(path), used)
+    marked = {
+        (name, key): field.get("x-expert", False)
+        for name, section in {"Config": schema, **schema["$defs"]}.items()
+        for key, field in section["properties"].items()
+    }
+    experts = {key for (_, key), expert in marked.items() if expert}
+    # A name may occur in several sections, so a key that is written nowhere is one for experts, but not the reverse.
+    needed = {key for section in (schema, *schema["$defs"].values()) for key in section.get("required", ())} | {"kind"}
+    assert {key for _, key in marked} - used - needed <= experts
+    assert marked["Mesh", "squeeze_film"]
+    assert not marked["Mesh", "damage"]
+    assert not marked["Config", "seed"]
+    assert not marked["Stiffness", "beam"]
+    assert {
+        name for name, section in schema["$defs"].items() for key in section.get("required", ()) if marked[name, key]
+    } == set()

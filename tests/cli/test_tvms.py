@@ -115,17 +115,40 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
     assert not (tmp_path / "tvms.csv").exists()
 
 
-def test_damage_through_the_face_leaves_the_pair_no_stiffness_where_it_acts_as_geometry(tmp_path: Path) -> None:
-    run("configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", "--parts")
+def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
+    arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png")
+    said = run("configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", *arguments)
+    assert "quasi-static mesh stiffness at 45\u00a0N\u00a0m: force over approach, as simulated" in said
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
-    healthy, severe = (np.array(table[f"{state}_n_per_m"]) for state in ("healthy", "severe"))
-    # In single contact nothing is left; in double contact the other pair alone, which is softer than both.
-    assert severe.min() == 0.0
-    assert healthy[severe == 0.0].max() < 0.85 * healthy.max()
-    assert ((severe > 0.0) & (severe < 0.9 * healthy)).any()
-    assert np.isfinite(severe).all()
-    contact = table["severe_contact_m_per_n"].to_numpy(zero_copy_only=False)
-    assert np.isinf(contact[severe == 0.0]).all()
+    columns = {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+    healthy, severe = columns["healthy_n_per_m"], columns["severe_n_per_m"]
+    energy, sink_um = columns["severe_potential_energy_n_per_m"], columns["severe_sink_um"]
+    # Potential energy leaves nothing in single contact; the flank in fact comes to rest on the edges of the spall.
+    assert energy.min() == 0.0
+    assert np.isinf(columns["severe_contact_m_per_n"][energy == 0.0]).all()
+    assert severe.min() > 0.0
+    deepest = int(np.nanargmax(sink_um))
+    force = 45.0 / (0.5 * 18 * 3e-3 * np.cos(np.radians(20.0)))
+    deeper_um = 1e6 * (force / severe[deepest] - force / healthy[deepest])
+    # Alone in contact the approach grows by the sink; the edges carry the force that the land carried.
+    assert deeper_um == pytest.approx(sink_um[deepest], rel=0.02)
+    assert columns["severe_land_share"][deepest] == 0.0
+    assert np.nanmax(columns["healthy_sink_um"]) == 0.0
+    assert np.nanmin(columns["healthy_land_share"]) == 1.0
+    # Alone in contact and without damage force over approach is the stiffness of the tables: relief is at the tips.
+    single = (np.abs(columns["angle_deg"] + 2.5) < 1.0) & (
+        columns["healthy_potential_energy_n_per_m"] < 0.85 * energy.max()
+    )
+    assert single.any()
+    np.testing.assert_allclose(healthy[single], columns["healthy_potential_energy_n_per_m"][single], rtol=1e-4)
+    assert (tmp_path / "tvms.png").stat().st_size > 10_000
+
+
+def test_where_damage_takes_stiffness_the_curve_is_the_potential_energy_and_has_no_sink(tmp_path: Path) -> None:
+    said = run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--potential-energy")
+    assert "mesh stiffness by potential energy" in said
+    names = pyarrow.parquet.read_table(tmp_path / "tvms.parquet").column_names
+    assert not [name for name in names if "sink" in name or "potential" in name]
 
 
 def test_no_two_of_sixteen_states_look_alike() -> None:

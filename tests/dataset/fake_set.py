@@ -85,6 +85,7 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
         "pinion_shaft_hz": 30.0,
         "gear_shaft_hz": 30.0 * 18 / 47,
         "mesh_hz": 540.0,
+        "mesh_stiffness_loss_as_simulated": 0.008 * pits,
         "start_angle_rad": float(rng.random()),
     }
     signals = {}

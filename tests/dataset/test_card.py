@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from siggen.config import Choice, Manufacture
+from siggen.checks.loading import load_config
+from siggen.config import Choice, Config, Manufacture
 from siggen.dataset.card import _limits
+from siggen.dataset.card_making import damage_text, drive_text, making
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
 
@@ -81,3 +83,32 @@ def test_the_loading_example_of_the_card_runs(folder: Path, monkeypatch: pytest.
     exec("import numpy as np\n" + text[text.index("import pyarrow") :], scope)
     assert scope["signals"].shape[1] == 512
     assert scope["record"]["record_id"] == 0
+
+
+def shipped(name: str, *overrides: str) -> Config:
+    return load_config(f"configs/{name}.yaml", overrides)
+
+
+def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
+    stiffness, geometry, both = (damage_text(shipped(name)) for name in ("linear_pits", "quickstart", "paper_b"))
+    assert "remove material from the tooth's sections" in stiffness
+    assert "sinks" not in stiffness
+    assert "the mating flank sinks" in geometry
+    assert "sections keep their strength" in geometry
+    assert "remove material" not in geometry
+    assert "the mating flank sinks" in both
+    assert "weakens them" in both
+    assert "every state is healthy" in damage_text(shipped("quickstart", "states=[{name: healthy}]"))
+
+
+def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
+    plain, rich = making(shipped("linear_pits")), making(shipped("quickstart"))
+    assert "no friction between the flanks" in plain
+    assert "Speed and torque are constant" in plain
+    assert "noise is added" not in plain
+    assert "film of ISO VG 220" in rich
+    assert "Within a record speed and torque vary" in rich
+    assert "noise is added to the bearing forces" in " ".join(rich.split())
+    torque = shipped("linear_pits", "variation.torque.random_rms=0.01")
+    assert drive_text(torque) == "Within a record torque varies (`variation`); the speed is constant."
+    assert max(map(len, [*plain.splitlines(), *rich.splitlines()])) <= 118

@@ -65,6 +65,13 @@ def test_labels_grow_with_severity(specimen: list[Record]) -> None:
         assert values[-1] > values[0]
 
 
+def test_force_over_approach_of_the_linear_law_loses_what_the_tables_lose(specimen: list[Record]) -> None:
+    """Two computations: the pairs of the tables at rest, and the stiffness model searched for its largest loss."""
+    for labels in (r.labels for r in specimen):
+        # Interpolation between 2049 points, and a scan of 257 angles that is refined around its highest one.
+        assert labels["mesh_stiffness_loss_as_simulated"] == pytest.approx(labels["mesh_stiffness_loss"], abs=1e-5)
+
+
 def test_frequencies_are_those_of_the_teeth(specimen: list[Record]) -> None:
     for labels in (r.labels for r in specimen):
         # The mean speed is that of the angle's ends; rounding of an angle of up to 300 rad over 0.1 s leaves 1e-13.

@@ -1,7 +1,7 @@
 """Share of the normal load that asperities carry in mixed lubrication, by one of three models.
 
 Each model gives a ratio of loads from 0 that may exceed 1 where its assumptions end; the share is the ratio cut off at
-1 (`mixed_share`). The ratios themselves are smooth, which is what tables need.
+1. The ratios themselves are smooth, which is what tables need.
 
 * `masjedi_khonsari` (default): regression of Masjedi and Khonsari 2012 for rough line contacts. Verified:
   0.3/8.9/21/31/38/52/62/75/93 % at σ = 0.2/0.4/0.6/0.8/1/1.5/2/3/5 µm, pitch point of 18/47 teeth, module 3 mm, 30 N
@@ -81,34 +81,12 @@ def gaussian_integral(order: float, separation: Values) -> Values:
     return np.where(np.asarray(separation) > 30.0, 0.0, value)[()]
 
 
-def fitted_gaussian_integral(separation: Values) -> Values:
-    """Return the usual fit of F_5/2, 4.4086e-5 (4 - H)^6.804 below H = 4 (reference: standard literature).
-
-    Against `gaussian_integral` it is 11 % low at H = 0, 4 % at 1, 10 % at 2 and a factor of 4 at 3: for comparison with
-    codes that use it.
-    """
-    return 4.4086e-5 * np.maximum(4.0 - separation, 0.0) ** 6.804
-
-
 RATIO_MODELS: dict[str, Callable[[FilmGroups], Values]] = {
     "masjedi_khonsari": masjedi_khonsari_ratio,
     "greenwood_tripp": greenwood_tripp_ratio,
     "simple": simple_ratio,
 }
 """Models by name; the first is the default."""
-
-
-def mixed_share(groups: FilmGroups, model: str = "masjedi_khonsari") -> Values:
-    """Return the asperity share La between 0 and 1.
-
-    Raises
-    ------
-    ValueError
-        If the model is unknown.
-    """
-    if model not in RATIO_MODELS:
-        raise ValueError(f"model: received {model!r}; allowed are {', '.join(RATIO_MODELS)}")
-    return np.minimum(RATIO_MODELS[model](groups), 1.0)
 
 
 def _smooth_film_ratio(groups: FilmGroups) -> Values:

@@ -3,9 +3,10 @@
 Derived: bilinear interpolation over the position s (uniform) and the logarithm of the load group Ŵ (uniform from
 `LOAD_FLOOR`, below which the models hold their values), one layer per roughness. The film formulas are power laws,
 hence nearly linear in that logarithm, and the ratio is cut off at 1 after the interpolation, so the table has no kinks.
-The error is measured at the middle of every cell, where that of a smooth function is largest (`asperity_table_error`):
-below 1.2e-3 in the share (1e-4 in the friction coefficient) for the default grid, 18/47 teeth of module 3 mm at 30 Hz
-in ISO VG 220, the path of contact with 0.5 mm on either side and roughness from 0.1 to 5 µm.
+The error is measured at the middle of every cell, where that of a smooth function is largest
+(`tests/dynamics/friction/test_asperity_table.py`): below 1.2e-3 in the share (1e-4 in the friction coefficient) for the
+default grid, 18/47 teeth of module 3 mm at 30 Hz in ISO VG 220, the path of contact with 0.5 mm on either side and
+roughness from 0.1 to 5 µm.
 """
 
 from __future__ import annotations
@@ -102,20 +103,6 @@ def asperity_table(
 def ratios_at(mesh: LubricatedMesh, roughness_m: float, position_m: Values, force_n: Values, model: str) -> FloatArray:
     """Return the load ratio directly by the model at positions [m] and forces [N] that broadcast."""
     return np.asarray(RATIO_MODELS[model](mesh.groups(position_m, force_n, roughness_m)), dtype=np.float64)
-
-
-def asperity_table_error(table: AsperityTable, mesh: LubricatedMesh, roughness_m: Sequence[float], model: str) -> float:
-    """Return the largest absolute error of the interpolated share at the middle of all cells."""
-    positions, loads = table.fluid.shape
-    position = (table.start_m + (np.arange(positions - 1) + 0.5) / table.per_m)[:, None]
-    floor = table.floor_n_per_m * relative_radius(position, table.line_m)
-    force = floor * np.exp((np.arange(loads - 1) + 0.5) / table.per_log)
-    worst = 0.0
-    for layer, sigma in zip(table.ratio, roughness_m, strict=True):
-        mean = 0.25 * (layer[1:, 1:] + layer[1:, :-1] + layer[:-1, 1:] + layer[:-1, :-1])
-        direct = ratios_at(mesh, sigma, position, force, model)
-        worst = max(worst, float(np.abs(np.minimum(mean, 1.0) - np.minimum(direct, 1.0)).max()))
-    return worst
 
 
 @njit(cache=True)

@@ -55,17 +55,6 @@ def fluid_friction(name: str, mesh: LubricatedMesh, healthy_roughness_m: float) 
     return lambda position_m, force_n: model(mesh, healthy_roughness_m, position_m, force_n)
 
 
-def friction_note(mean: float, target: float) -> str:
-    """Return a sentence if a mean coefficient over the mesh is unusual, else nothing; `target` is Schlenk's mean."""
-    low, high = FRICTION_TARGET
-    if low <= mean <= high and abs(mean - target) <= 0.5 * target:
-        return ""
-    return (
-        f"mean friction coefficient of healthy flanks {mean:.3f}: usual are {low:g} to {high:g}, Schlenk's formula "
-        f"gives {target:.3f}; check the oil, the roughness and the model of fluid friction"
-    )
-
-
 def _constant(mesh: LubricatedMesh, roughness_m: float, position_m: Values, force_n: Values) -> Values:  # noqa: ARG001
     return np.full(np.broadcast(position_m, force_n).shape, FLUID_FRICTION)
 

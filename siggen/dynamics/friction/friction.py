@@ -77,13 +77,3 @@ def friction_coefficient(law: FrictionLaw, layer: int, position_m: float, force_
     """Return the friction coefficient of a contact on the flank roughness `layer` of the table."""
     share, fluid = mixed_contact(law.table, layer, position_m, force_n)
     return friction_mixed(share, law.boundary, fluid)
-
-
-@njit(cache=True)
-def friction_force(law: FrictionLaw, layer: int, position_m: float, force_n: float, sliding_m_s: float) -> float:
-    """Return the friction force F [N] of one pair of flanks, of the sign of the sliding speed; 0 without contact."""
-    if force_n <= 0.0:
-        return 0.0
-    coefficient = friction_coefficient(law, layer, position_m, force_n)
-    force: float = coefficient * force_n * np.tanh(sliding_m_s / law.slip_speed_m_s)
-    return force

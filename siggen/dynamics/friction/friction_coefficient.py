@@ -8,7 +8,6 @@
   texts.
 * `benedict_kelley_friction`: Benedict and Kelley 1961 in metric units, capped at the boundary value since it is
   singular at v_s -> 0. Verified: 0.056/0.071/0.098 at Ra 0.2/0.4/0.6 µm and the metric constant from the imperial one.
-* `schlenk_mean_friction`: mean over the mesh by Schlenk, ISO/TR 14179-2: what the mean of another law is compared with.
 """
 
 from __future__ import annotations
@@ -104,36 +103,3 @@ def benedict_kelley_friction(
     group = 29660.0 * (line_load_n_per_m * 1e-3) / (viscosity_pa_s * 1e3 * slide * np.square(speed_sum_m_s))
     value = 0.0127 * 1.13 / (1.13 - roughness_m * 1e6) * np.log10(np.maximum(group, 1.0))
     return np.clip(value, 0.0, largest)
-
-
-def schlenk_mean_friction(
-    line_load_n_per_m: float,
-    pitch_line_speed_m_s: float,
-    pressure_angle_rad: float,
-    pitch_radius_m: float,
-    viscosity_pa_s: float,
-    roughness_m: float,
-    oil_factor: float = 0.846,
-) -> float:
-    """Return Schlenk's mean friction coefficient of a mesh (ISO/TR 14179-2).
-
-    Parameters
-    ----------
-    line_load_n_per_m : float
-        Transverse tangential force on the base circle over the face width [N/m].
-    pitch_line_speed_m_s : float
-    pressure_angle_rad : float
-        Working pressure angle; the sum speed at the pitch point is 2 v_t sin α_w.
-    pitch_radius_m : float
-        Relative radius of curvature at the pitch point [m].
-    viscosity_pa_s : float
-        At the oil's temperature.
-    roughness_m : float
-        Arithmetic mean roughness of pinion and gear [m].
-    oil_factor : float
-        0.846 mineral, 0.65 polyalphaolefin.
-    """
-    speed = 2.0 * pitch_line_speed_m_s * np.sin(pressure_angle_rad)
-    group = (line_load_n_per_m * 1e-3) / (speed * pitch_radius_m * 1e3)
-    rough = roughness_m * 1e6
-    return float(0.048 * group**0.2 * (viscosity_pa_s * 1e3) ** -0.05 * rough**0.25 * oil_factor)

@@ -11,7 +11,7 @@ Dowson-Toyoda, Pan-Hamrock and Masjedi-Khonsari (J. Tribol. 134:011503; only the
 Ĝ, σ̂, V), was read).
 
 All are for steady, fully flooded contacts. At a load that goes to 0 they diverge, so the load group is held at
-`LOAD_FLOOR` (derived: ours), and `film_within_gap` caps the film of separated flanks.
+`LOAD_FLOOR` (derived: ours).
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.dynamics.friction.contact_kinematics import Values, entrainment_speed, relative_radius
 
@@ -143,32 +142,9 @@ FILM_FORMULAS: dict[str, Callable[[FilmGroups], Values]] = {
 """Film formulas by name; the first is the default."""
 
 
-def composite_roughness(first_rq_m: float, second_rq_m: float) -> float:
-    """Return σ = √(Rq_1² + Rq_2²) [m]."""
-    return float(np.hypot(first_rq_m, second_rq_m))
-
-
 def film_ratio(film_m: Values, roughness_m: Values) -> Values:
     """Return Λ = h/σ: below 1 boundary, 1 to 3 mixed, above 3 full film lubrication."""
     return film_m / roughness_m
-
-
-@njit(cache=True)
-def film_within_gap(film_m: float, unloaded_film_m: float, separation_m: float) -> float:
-    """Return the film thickness [m] of flanks that may be apart.
-
-    Parameters
-    ----------
-    film_m : float
-        Film by a formula at the actual load.
-    unloaded_film_m : float
-        Film at the least load in contact (`LOAD_FLOOR`): what the flanks leave between them when they just touch.
-    separation_m : float
-        Distance between the flanks along the line of action; negative in contact.
-
-    No film is thicker than the gap, which is the unloaded film plus the separation (derived).
-    """
-    return min(film_m, unloaded_film_m + max(separation_m, 0.0))
 
 
 def _bounded(groups: FilmGroups) -> tuple[Values, Values]:

@@ -56,11 +56,6 @@ def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
     return np.linalg.solve(root.T, np.linalg.qr(root.T @ vectors)[0])
 
 
-def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> FloatArray:
-    """Return the undamped natural frequencies (n,) [Hz], ascending, at a constant mesh stiffness; rigid ones are 0."""
-    return natural_modes(structure, mesh_stiffness_n_per_m).frequency_hz
-
-
 def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
     """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
 

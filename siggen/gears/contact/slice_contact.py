@@ -101,10 +101,3 @@ def slice_force(springs: SliceSprings, penetration_m: float) -> float:
         preload += springs.stiffness_n_per_m[j] * springs.gap_m[j]
         force = (stiffness * penetration_m - preload) / (1.0 + springs.compliance_m_per_n * stiffness)
     return max(force, 0.0)
-
-
-@njit(cache=True)
-def slice_forces(springs: SliceSprings, penetration_m: float) -> FloatArray:
-    """Return the force of every spring (n,) [N]; their sum is `slice_force`."""
-    approach = penetration_m - springs.compliance_m_per_n * slice_force(springs, penetration_m)
-    return springs.stiffness_n_per_m * np.maximum(approach - springs.gap_m, 0.0)

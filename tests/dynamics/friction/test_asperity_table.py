@@ -5,18 +5,36 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.asperity_share import RATIO_MODELS, mixed_share
+from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.asperity_table import (
+    AsperityTable,
     asperity_share,
     asperity_table,
-    asperity_table_error,
     mixed_contact,
     ratios_at,
 )
-from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
+from siggen.dynamics.friction.contact_kinematics import relative_radius
+from siggen.dynamics.friction.lubrication import LubricatedMesh
+from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh, mixed_share
 
 ROUGHNESS = (0.1e-6, 0.57e-6, 2.04e-6, 5e-6)
 TABLE = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4)
+
+
+def asperity_table_error(
+    table: AsperityTable, mesh: LubricatedMesh, roughness_m: tuple[float, ...], model: str
+) -> float:
+    """Return the largest absolute error of the interpolated share at the middle of all cells."""
+    positions, loads = table.fluid.shape
+    position = (table.start_m + (np.arange(positions - 1) + 0.5) / table.per_m)[:, None]
+    floor = table.floor_n_per_m * relative_radius(position, table.line_m)
+    force = floor * np.exp((np.arange(loads - 1) + 0.5) / table.per_log)
+    worst = 0.0
+    for layer, sigma in zip(table.ratio, roughness_m, strict=True):
+        mean = 0.25 * (layer[1:, 1:] + layer[1:, :-1] + layer[:-1, 1:] + layer[:-1, :-1])
+        direct = ratios_at(mesh, sigma, position, force, model)
+        worst = max(worst, float(np.abs(np.minimum(mean, 1.0) - np.minimum(direct, 1.0)).max()))
+    return worst
 
 
 @pytest.mark.parametrize("model", RATIO_MODELS)

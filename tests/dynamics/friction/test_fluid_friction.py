@@ -6,10 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.dynamics.friction.asperity_table import asperity_table, mixed_contact
-from siggen.dynamics.friction.fluid_friction import FLUID_FRICTION_MODELS, fluid_friction, friction_note
+from siggen.dynamics.friction.fluid_friction import FLUID_FRICTION_MODELS, fluid_friction
 from siggen.dynamics.friction.friction import composite_friction, constant_friction, friction_coefficient
-from siggen.dynamics.friction.friction_coefficient import schlenk_mean_friction
-from siggen.dynamics.friction.mesh_loss import mesh_mean_friction
+from tests.dynamics.friction.mesh_loss import mesh_mean_friction, schlenk_mean_friction
 from tests.dynamics.lubricated import FORCE, PAIR, PITCH_POINT, RANGE, SPEED_1, mesh
 
 ROUGHNESS = (0.57e-6, 5e-6)
@@ -44,12 +43,10 @@ def test_the_default_mean_over_the_mesh_lies_near_the_formula_for_it() -> None:
     mean = mesh_mean_friction(PAIR, LAWS["constant"], 30.0)
     # Schlenk's 0.034 against a prototype's 0.043; here 0.041.
     assert mean == pytest.approx(0.041, abs=0.002)
-    assert friction_note(mean, SCHLENK) == ""
+    assert pytest.approx(0.034, abs=0.001) == SCHLENK
 
 
-def test_a_mean_far_from_the_formula_is_said() -> None:
-    assert "0.110" in friction_note(mesh_mean_friction(PAIR, constant_friction(0.11), 30.0), SCHLENK)
-    assert friction_note(0.005, 0.006) != ""
+def test_the_mean_of_one_coefficient_is_that_coefficient() -> None:
     assert mesh_mean_friction(PAIR, constant_friction(0.05), 30.0) == pytest.approx(0.05, rel=1e-12)
 
 

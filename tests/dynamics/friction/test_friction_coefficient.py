@@ -9,9 +9,9 @@ from siggen.dynamics.friction.contact_kinematics import relative_radius
 from siggen.dynamics.friction.friction_coefficient import (
     benedict_kelley_friction,
     eyring_friction,
-    schlenk_mean_friction,
     xu_kahraman_friction,
 )
+from tests.dynamics.friction.mesh_loss import schlenk_mean_friction
 from tests.dynamics.lubricated import FORCE, LINE, PAIR, PITCH_POINT, SPEED_1
 
 RADIUS = relative_radius(PITCH_POINT, LINE)

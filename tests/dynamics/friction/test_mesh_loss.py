@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from siggen.dynamics.friction.mesh_loss import loss_factor, mesh_power_loss
+from tests.dynamics.friction.mesh_loss import loss_factor, mesh_power_loss
 from tests.dynamics.lubricated import PAIR, SPEED_1
 from tests.gears.builders import pair_18_47
 

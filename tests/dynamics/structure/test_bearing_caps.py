@@ -7,9 +7,10 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.structure.bearing_caps import Caps
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import vector
-from siggen.dynamics.time.modes import natural_frequencies_hz, natural_modes
+from siggen.dynamics.time.modes import natural_modes
 from siggen.record.simulation import simulate
 from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, make_structure
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 CAPS = Caps(mass_kg=0.3, horizontal_stiffness_n_per_m=1e9, vertical_stiffness_n_per_m=1.2e9, damping_ratio=0.03)
 # Lighter or stiffer ones would leave nothing of the soft shafts but rounding, 1e-16 of k/m.

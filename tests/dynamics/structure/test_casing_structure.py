@@ -8,7 +8,7 @@ import pytest
 from siggen.dynamics.structure.casing_structure import Bolts, bolt_elements, casing_structure, torsional
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import eight_dof, vector
-from siggen.dynamics.time.modes import natural_frequencies_hz, natural_modes
+from siggen.dynamics.time.modes import natural_modes
 from tests.dynamics.casing_stage import (
     BASE_RADIUS_1,
     BASE_RADIUS_2,
@@ -19,6 +19,7 @@ from tests.dynamics.casing_stage import (
     make_stage,
     make_structure,
 )
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 
 def static(torque_nm: float = 30.0) -> np.ndarray:

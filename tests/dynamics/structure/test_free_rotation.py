@@ -8,8 +8,9 @@ from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotation
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
 from siggen.dynamics.time.equations import equations_about
-from siggen.dynamics.time.modes import natural_frequencies_hz, slowest_decay_per_s
+from siggen.dynamics.time.modes import slowest_decay_per_s
 from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, make_casing, make_stage, make_structure
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 STRUCTURES = {
     "6dof": six_dof(make_stage()),

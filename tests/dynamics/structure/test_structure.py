@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dynamics.structure.structure import Element, SpurStage, Structure, assemble, eight_dof, six_dof, vector
-from siggen.dynamics.time.modes import natural_frequencies_hz
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 POSITIVE = st.floats(min_value=1e-3, max_value=1e3)
 

@@ -11,11 +11,11 @@ from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.gears.errors.gear_errors import GearErrors
 from siggen.gears.errors.tooth_errors import with_errors
-from siggen.gears.errors.transmission_error import unloaded_transmission_error_m
 from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 from tests.gears.erroneous_gears import drawn, only_eccentric
+from tests.gears.errors.unloaded_transmission_error import unloaded_transmission_error_m
 
 HUNTING = 18 * 47
 STEPS = 160

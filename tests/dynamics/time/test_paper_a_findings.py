@@ -7,13 +7,13 @@ import pytest
 
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.modes import natural_frequencies_hz
 from siggen.dynamics.time.response import simulate_response
 from siggen.gears.damage.flank_damage import Damage, Pit
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.compliance import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 SPEEDS = (30.0, 15.0, 37.3)
 

@@ -8,10 +8,10 @@ import pytest
 from siggen.gears.errors.error_shapes import FLANK_POINTS
 from siggen.gears.errors.gear_errors import GearErrors, deviations
 from siggen.gears.errors.tooth_errors import with_errors
-from siggen.gears.errors.transmission_error import unloaded_transmission_error_m
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
 from tests.gears.builders import pair_18_47
 from tests.gears.erroneous_gears import drawn, only_eccentric
+from tests.gears.errors.unloaded_transmission_error import unloaded_transmission_error_m
 
 PAIR = pair_18_47(module_m=3e-3, bores_m=(10e-3, 15e-3))
 RELIEF = TipRelief(8e-6, 0.25 * PAIR.base_pitch_m)

@@ -61,7 +61,7 @@ def mesh_power_loss(
 def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, layer: int = 0, points: int = 200) -> float:
     """Return the mean friction coefficient over one base pitch, weighted by the load, with equal sharing.
 
-    To be compared with `friction_coefficient.schlenk_mean_friction`.
+    To be compared with `schlenk_mean_friction`.
     """
     force = torque_nm / pair.pinion.base_radius_m
     total = 0.0
@@ -70,3 +70,36 @@ def mesh_mean_friction(pair: GearPair, law: FrictionLaw, torque_nm: float, layer
         places = places[places <= pair.contact_end_m]
         total += float(np.mean([friction_coefficient(law, layer, place, force / places.size) for place in places]))
     return float(total / points)
+
+
+def schlenk_mean_friction(
+    line_load_n_per_m: float,
+    pitch_line_speed_m_s: float,
+    pressure_angle_rad: float,
+    pitch_radius_m: float,
+    viscosity_pa_s: float,
+    roughness_m: float,
+    oil_factor: float = 0.846,
+) -> float:
+    """Return Schlenk's mean friction coefficient of a mesh (ISO/TR 14179-2).
+
+    Parameters
+    ----------
+    line_load_n_per_m : float
+        Transverse tangential force on the base circle over the face width [N/m].
+    pitch_line_speed_m_s : float
+    pressure_angle_rad : float
+        Working pressure angle; the sum speed at the pitch point is 2 v_t sin α_w.
+    pitch_radius_m : float
+        Relative radius of curvature at the pitch point [m].
+    viscosity_pa_s : float
+        At the oil's temperature.
+    roughness_m : float
+        Arithmetic mean roughness of pinion and gear [m].
+    oil_factor : float
+        0.846 mineral, 0.65 polyalphaolefin.
+    """
+    speed = 2.0 * pitch_line_speed_m_s * np.sin(pressure_angle_rad)
+    group = (line_load_n_per_m * 1e-3) / (speed * pitch_radius_m * 1e3)
+    rough = roughness_m * 1e6
+    return float(0.048 * group**0.2 * (viscosity_pa_s * 1e3) ** -0.05 * rough**0.25 * oil_factor)

@@ -1,0 +1,18 @@
+"""Versions of a set's files and of the simulation that filled them; docs/develop/versions.md says when each one rises.
+
+A configuration's identity has a version of its own (`siggen.config.config`), which never rises.
+"""
+
+from __future__ import annotations
+
+SCHEMA_VERSION = "2"
+"""Version of the columns and of the files around them that is written."""
+
+READ_VERSIONS = ("1", SCHEMA_VERSION)
+"""Versions that are read. Sets of version 1 have no label `mesh_stiffness_loss_as_simulated`."""
+
+SIMULATION_VERSION = 1
+"""Raised when the same configuration comes to give a record other numbers."""
+
+FIRST_SIMULATION_VERSION = 1
+"""Of sets whose manifest names none."""

@@ -1,0 +1,51 @@
+"""Keys for experts: those that no shipped configuration sets, since its defaults serve every one of them (derived)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from siggen.config.config import Config
+from siggen.config.parsing import parse
+from siggen.config.presets import presets
+from siggen.config.section import Section
+from siggen.config.yaml_source import read_yaml
+
+EXPERT = "x-expert"
+"""What the JSON Schema says of such a key, beside its type and description."""
+
+
+def schema_with_experts() -> dict[str, Any]:
+    """Return the JSON Schema of a configuration; a property that is for experts has `x-expert: true`.
+
+    What a section cannot do without is never for experts, though the section may be.
+    """
+    schema = Config.model_json_schema(mode="validation")
+    used = keys_of_presets()
+    for name, found in ((Config.__name__, schema), *schema.get("$defs", {}).items()):
+        known = used.get(name, set()) | set(found.get("required", ())) | {"kind"}
+        for key, described in found.get("properties", {}).items():
+            if key not in known:
+                described[EXPERT] = True
+    return schema
+
+
+def keys_of_presets() -> dict[str, set[str]]:
+    """Return section -> keys that any shipped configuration sets in it."""
+    used: dict[str, set[str]] = {}
+    for path in presets().values():
+        raw = read_yaml(path)
+        for section, keys in _written(parse(raw).config, raw):
+            used.setdefault(section, set()).update(keys)
+    return used
+
+
+def _written(value: object, raw: object) -> Iterator[tuple[str, Iterable[str]]]:
+    """Yield name and written keys of a section and of those in it."""
+    if isinstance(value, tuple) and isinstance(raw, list):
+        for item, of_item in zip(value, raw, strict=True):
+            yield from _written(item, of_item)
+    if isinstance(value, Section) and isinstance(raw, Mapping):
+        yield type(value).__name__, raw
+        for key in raw:
+            yield from _written(getattr(value, key), raw[key])

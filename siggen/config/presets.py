@@ -1,0 +1,36 @@
+"""The configurations that come with siggen, found by name: in a wheel inside the package, in a checkout beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from siggen.errors import UsageError
+
+SUFFIX = ".yaml"
+PACKAGE = Path(__file__).resolve().parents[1]
+FOLDERS = (PACKAGE / "presets", PACKAGE.parent / "configs")
+"""Where a wheel has them (see `force-include` in pyproject.toml), and where they are written."""
+
+
+def presets() -> dict[str, Path]:
+    """Return name -> file of every preset, by name; empty in an installation that was cut down."""
+    folder = next((folder for folder in FOLDERS if folder.is_dir()), FOLDERS[0])
+    return {path.stem: path for path in sorted(folder.glob(f"*{SUFFIX}"))}
+
+
+def config_file(source: str | Path) -> Path:
+    """Return the file that a user means: the one of this path, or else the preset of this name, such as `quickstart`.
+
+    Raises
+    ------
+    UsageError
+        If there is neither; names the presets.
+    """
+    path = Path(source)
+    if path.is_file():
+        return path
+    shipped = presets()
+    if path.parent == Path() and path.name.removesuffix(SUFFIX) in shipped:
+        return shipped[path.name.removesuffix(SUFFIX)]
+    what = "is a folder" if path.is_dir() else "there is no such file"
+    raise UsageError(f"{source}: {what}; allowed are the path of a YAML file, or a preset: {', '.join(shipped)}")

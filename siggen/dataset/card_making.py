@@ -1,0 +1,129 @@
+"""How a set was made, in words that follow from its configuration: nothing that it does not use, all that it does."""
+
+from __future__ import annotations
+
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+from siggen.errors import counted
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+WIDTH = 118
+STIFFNESS_DAMAGE = "remove material from the tooth's sections and shorten the contact line: the mesh loses stiffness."
+GEOMETRY_DAMAGE = (
+    "act as geometry: the lands beside them go on carrying, and where no land is left the mating flank sinks until it "
+    "rests on the edges (`sink_depth_um`). {sections} `mesh_stiffness_loss` is a measure of the damage by potential "
+    "energy, which this simulation does not use; `mesh_stiffness_loss_as_simulated` says what it does use."
+)
+SECTIONS = {
+    "geometry": "The tooth's sections keep their strength.",
+    "all": "They also take material from the tooth's sections, which weakens them.",
+}
+FRICTION = {
+    "off": "There is no friction between the flanks.",
+    "constant": "The flanks rub with a constant coefficient.",
+    "mixed_ehl": "The flanks rub: asperities and the film of {oil} share the load by speed, load and roughness.",
+}
+BEHIND = {
+    "modal": "random flexible modes of a housing, new for every specimen",
+    "measured": "a measured accelerance",
+}
+
+
+def making(config: Config) -> str:
+    """Return the section `How it was made` of a set's card."""
+    steps = (
+        f"1. **Gears.** {_gears_text(config)}",
+        f"2. **Damage.** {damage_text(config)}",
+        f"3. **Dynamics.** {_dynamics_text(config)}",
+        f"4. **Sensing.** {_sensing_text(config)}",
+    )
+    listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
+    states = "\n".join(f"* `{state.name}`: fault {state.fault}, severity {state.severity}" for state in config.states)
+    return f"## How it was made\n\n{listed}\n\nStates:\n\n{states}\n"
+
+
+def _gears_text(config: Config) -> str:
+    models = f"`{config.stiffness.beam}`, `{config.stiffness.foundation}`"
+    return (
+        f"A spur pair with {config.gears.pinion.teeth} and {config.gears.gear.teeth} teeth. Mesh stiffness by the "
+        f"potential energy method (bending, shear, axial compression, Hertz contact, tooth foundation: {models}), "
+        "along the true involute and double-tooth contact."
+    )
+
+
+def damage_text(config: Config) -> str:
+    """Say how pits and spalls act on the teeth."""
+    if all(state.damage is None for state in config.states):
+        return "None: every state is healthy."
+    mesh = config.dynamics.mesh
+    if mesh.law == "linear" or mesh.damage == "stiffness":
+        acts = STIFFNESS_DAMAGE
+    else:
+        acts = GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
+    return (
+        f"Pits and spalls with outline, depth and place on the flank {acts} The union of overlapping outlines counts "
+        "once. States of a specimen may grow from each other: a later state then keeps the damage of the earlier one "
+        "(`grows_from` in `config.yaml`). Outlines are in `damage/`."
+    )
+
+
+def _dynamics_text(config: Config) -> str:
+    mesh = "a mesh with backlash, time-varying stiffness and damping"
+    if config.dynamics.mesh.law == "pairs":
+        mesh = "a mesh of single tooth pairs with backlash, stiffness, tip relief and damping"
+    return (
+        f"A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and {mesh}. "
+        f"{friction_text(config)} {drive_text(config)} Bearing accelerations are low-pass filtered before they are "
+        "sampled."
+    )
+
+
+def _sensing_text(config: Config) -> str:
+    return (
+        f"{_path_text(config)}{force_noise_text(config)}Gain, noise, clipping at the sensor's range, and rounding to "
+        "the converter's step, which is a power of two and therefore exact in float32 (each sensor's noise and bits "
+        "are in `config.yaml`)."
+    )
+
+
+def friction_text(config: Config) -> str:
+    """Say whether and how the flanks rub."""
+    return FRICTION[config.dynamics.rubbing].format(oil=config.dynamics.friction.oil)
+
+
+def drive_text(config: Config) -> str:
+    """Say what of speed and torque varies within a record."""
+    varied = config.variation
+    moving = [name for name in ("speed", "torque") if getattr(varied, name) != type(getattr(varied, name))()]
+    if not moving:
+        return "Speed and torque are constant within a record."
+    still = {"speed": "the torque is constant", "torque": "the speed is constant"}
+    rest = f"; {still[moving[0]]}" if len(moving) == 1 else ""
+    return f"Within a record {' and '.join(moving)} {'vary' if len(moving) > 1 else 'varies'} (`variation`){rest}."
+
+
+def _path_text(config: Config) -> str:
+    """Say how vibrations come to the sensors, if any of them stands behind a transfer path."""
+    kinds = sorted({sensor.path.kind for sensor in config.sensors if sensor.path is not None})
+    if not kinds:
+        return ""
+    behind = " or ".join(BEHIND[kind] for kind in kinds)
+    return f"Bearing forces reach {_sensors(config)} through {behind} (`housing`, `path`). "
+
+
+def _sensors(config: Config) -> str:
+    through = [sensor.name for sensor in config.sensors if sensor.path is not None]
+    if len(through) == len(config.sensors):
+        return "the sensors"
+    return f"{counted(len(through), 'sensor')} of {len(config.sensors)}"
+
+
+def force_noise_text(config: Config) -> str:
+    """Say whether the bearing forces carry noise on their way to the sensors."""
+    has_path = any(sensor.path is not None for sensor in config.sensors)
+    if config.housing is None or config.housing.force_noise is None or not has_path:
+        return ""
+    return "Broad-band noise is added to the bearing forces (`housing.force_noise`). "

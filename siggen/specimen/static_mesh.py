@@ -1,0 +1,118 @@
+"""The quasi-static mesh of a drawn specimen: what its pairs carry at rest, with and without its damage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Dynamics
+from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.slice_law import SliceLaw
+from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
+from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
+from siggen.specimen.contact import ToothTables
+from siggen.specimen.motion import teeth_missing
+
+
+@dataclass(frozen=True, slots=True)
+class StaticMesh:
+    """The pairs of a specimen and state, as they are simulated, at rest and without friction.
+
+    Errors of single teeth are left out: they move the flanks apart by their own amount, so a force over an approach
+    would no longer say how stiff the mesh is. Tip relief, corner contact and misalignment are in, and are the same in
+    `healthy`.
+
+    Attributes
+    ----------
+    pair : GearPair
+    law, healthy : PairLaw
+        With the state's damage, and the same without.
+    slices : SliceLaw or None
+        Of the damage, where it acts as geometry.
+    contact : ContactTable or None
+        In place of slices, where the contact is solved across the face.
+    """
+
+    pair: GearPair
+    law: PairLaw
+    healthy: PairLaw
+    slices: SliceLaw | None
+    contact: ContactTable | None = None
+
+    def force_n(self, torque_nm: float) -> float:
+        """Return the normal force of a torque on the pinion [N]."""
+        return torque_nm / self.pair.pinion.base_radius_m
+
+    def stiffness_n_per_m(self, torque_nm: float, pitches: FloatArray) -> FloatArray:
+        """Return force over approach (k,) [N/m] at pinion angles (k,) in base pitches since pair 0 entered contact."""
+        return secant_stiffness_n_per_m(self.law, self.force_n(torque_nm), pitches)
+
+    def largest_loss(self, torque_nm: float) -> float:
+        """Return the largest relative loss of the stiffness at a torque on the pinion, against healthy."""
+        return largest_secant_loss(self.law, self.healthy, self.force_n(torque_nm))
+
+
+def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int) -> StaticMesh:
+    """Return the static mesh of a drawn `dynamics` section; `points` as for the tables of missing material.
+
+    The law linear knows neither relief nor corner contact: its pairs are springs along the path of contact, and their
+    stiffness is the mesh stiffness.
+    """
+    if dynamics.mesh.law == "linear":
+        missing = missing_material(pair, None, corner_contact=False, points=2)
+    else:
+        missing = teeth_missing(dynamics, pair, points)
+    alike = replace(teeth.tables, table_of_pair=np.zeros_like(teeth.tables.table_of_pair), coupled=None)
+    # Sinks count from where the flanks of a misaligned pair touch first, or its offset would count as approach.
+    slices = None if teeth.slices is None else teeth.slices._replace(lead_m=0.0)
+    contact = None if teeth.contact is None else teeth.contact._replace(lead_m=0.0)
+    whole = None if slices is None else _first_row(slices)
+    flush = (
+        None
+        if contact is None
+        else contact._replace(touch_m=contact.touch_m[:1], column=contact.column[:1], gain=contact.gain[:1])
+    )
+    return StaticMesh(
+        pair,
+        _law(pair, teeth, missing, slices, contact),
+        _law(
+            pair,
+            replace(teeth, tables=replace(alike, pair_stiffness_n_per_m=alike.pair_stiffness_n_per_m[:1])),
+            missing,
+            whole,
+            flush,
+        ),
+        slices,
+        contact,
+    )
+
+
+def _first_row(slices: SliceLaw) -> SliceLaw:
+    return slices._replace(
+        sink_m=slices.sink_m[:1],
+        stiffness_n_per_m=slices.stiffness_n_per_m[:1],
+        flush=slices.flush[:1],
+        land=slices.land[:1],
+        on_damage=slices.on_damage[:1],
+    )
+
+
+def _law(
+    pair: GearPair, teeth: ToothTables, missing: MissingMaterial, slices: SliceLaw | None, contact: ContactTable | None
+) -> PairLaw:
+    """Return a law for rest: no damping, no friction, and a backlash that only the back flank would meet."""
+    return pair_law(
+        teeth.tables,
+        missing,
+        line_of_action_m=pair.line_of_action_m,
+        damping_ratio=0.0,
+        equivalent_mesh_mass_kg=1.0,
+        backlash_m=pair.base_pitch_m,
+        slices=slices,
+        contact=contact,
+        coupling_m_per_n=teeth.coupling_m_per_n,
+    )

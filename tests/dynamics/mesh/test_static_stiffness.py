@@ -1,0 +1,149 @@
+"""Force over approach at rest: its limits, and the time loop that comes to rest at a held angle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.dynamics.friction.contact_kinematics import relative_radius
+from siggen.dynamics.mesh.pair_forces import static_approach_m
+from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, slice_law, slice_tables
+from siggen.dynamics.mesh.static_stiffness import (
+    largest_secant_loss,
+    pairs_before_damage,
+    secant_stiffness_n_per_m,
+    static_approaches_m,
+)
+from siggen.dynamics.time.equations import no_inputs
+from siggen.gears.damage.flank_damage import Damage, Pit
+from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from tests.dynamics.casing_stage import make_structure
+from tests.dynamics.pair_runs import RELIEF, columns, exact_involutes, gear_pair, law, motion, tables
+from tests.gears.pit_shapes import chord_pit
+
+PAIR = gear_pair()
+STIFFNESS = StiffnessOptions("base_circle", "sainsot", "profile")
+SHARP = SliceOptions(59e3, edge_radius_m=0.0)
+PITCH_POINT = PAIR.pitch_point_m
+ALONE = (PITCH_POINT - PAIR.contact_start_m) / PAIR.base_pitch_m
+"""Angle at which the damaged tooth is alone in contact, at the pitch point."""
+TORQUE = 30.0
+FORCE = TORQUE / PAIR.pinion.base_radius_m
+SPALL_M = 0.8e-3
+
+
+def damaged(damage: Damage, slices: SliceLaw | None = None, damping_ratio: float = 0.07) -> PairLaw:
+    found = slice_law(PAIR, damage, STIFFNESS, SHARP) if slices is None else slices
+    return pair_law(
+        slice_tables(PAIR, damage, found),
+        missing_material(PAIR, RELIEF),
+        line_of_action_m=PAIR.line_of_action_m,
+        damping_ratio=damping_ratio,
+        equivalent_mesh_mass_kg=0.2124,
+        backlash_m=80e-6,
+        slices=found,
+    )
+
+
+SPALL = (chord_pit(PAIR, SPALL_M, PITCH_POINT),)
+THROUGH, HEALTHY = damaged(SPALL), law()
+
+
+def test_healthy_teeth_without_relief_have_the_mesh_stiffness_of_the_tables() -> None:
+    chosen = law(exact_involutes(tables()))
+    pitches = np.linspace(3.01, 4.99, 199)
+    found = secant_stiffness_n_per_m(chosen, FORCE, pitches)
+    direct = mesh_stiffness(PAIR, 2.0 * np.pi * pitches / PAIR.pinion.teeth, STIFFNESS)
+    # Linear interpolation between 2049 points.
+    np.testing.assert_allclose(found, direct, rtol=1e-5)
+
+
+@settings(deadline=None)
+@given(st.floats(0.0, 1.8), st.floats(10.0, 5000.0))
+def test_false_position_ends_where_halving_ends(pitches: float, force: float) -> None:
+    found = static_approaches_m(THROUGH, force, np.array([pitches]))[0]
+    # 80 halvings of a bracket of 2 mm against 1e-12 of the force.
+    assert found == pytest.approx(static_approach_m(THROUGH, force, pitches), rel=1e-9)
+
+
+def test_a_whole_land_loses_nothing() -> None:
+    # Damage between base circle and path of contact, which begins 0.04 mm of arc above: no contact line lies there.
+    below = Pit("pinion", 0, 0.02e-3, 0.5 * PAIR.face_width_m, 1.0, 0.01e-3, 1e-3, "flat")
+    assert largest_secant_loss(damaged((below,)), HEALTHY, FORCE) == 0.0
+    assert largest_secant_loss(HEALTHY, HEALTHY, FORCE) == 0.0
+
+
+def test_lands_beside_a_spall_lose_what_the_contact_softens() -> None:
+    half = damaged((chord_pit(PAIR, SPALL_M, PITCH_POINT, semi_face_m=5e-3),))
+    # The contact is about a ninth of the compliance; half its length doubles that: far from the 1 of a lost contact.
+    assert 0.02 < largest_secant_loss(half, HEALTHY, FORCE) < 0.15
+
+
+@pytest.mark.parametrize("share", [1e-4, 1e-3])
+def test_without_load_the_approach_is_the_sink(share: float) -> None:
+    radius = relative_radius(PITCH_POINT, PAIR.line_of_action_m)
+    approach = static_approaches_m(THROUGH, share * FORCE, np.array([ALONE]))[0]
+    assert approach == pytest.approx(SPALL_M**2 / (8.0 * radius), rel=0.02)  # as `largest_sink_m`
+
+
+def test_the_loss_falls_with_the_load_since_the_sink_stays() -> None:
+    losses = [largest_secant_loss(THROUGH, HEALTHY, share * FORCE) for share in (0.01, 0.1, 1.0, 10.0)]
+    assert np.all(np.diff(losses) < 0.0)
+    assert losses[0] > 0.99
+    whole = static_approaches_m(HEALTHY, FORCE, np.array([ALONE]))[0]
+    sink = SPALL_M**2 / (8.0 * relative_radius(PITCH_POINT, PAIR.line_of_action_m))
+    # Alone in contact the approach grows by the sink and by little more: the edges carry what the land carried.
+    assert losses[2] == pytest.approx(sink / (whole + sink), abs=0.02)
+
+
+def test_the_largest_loss_is_that_of_a_fine_scan_over_the_damaged_tooth() -> None:
+    pitches = np.linspace(-1.0, 3.0, 40_001)
+    loss = 1.0 - static_approaches_m(HEALTHY, FORCE, pitches) / static_approaches_m(THROUGH, FORCE, pitches)
+    found = largest_secant_loss(THROUGH, HEALTHY, FORCE)
+    # A step of the scan is 0.9 µm of the path, over which the sink of 12 µm changes by 0.036 µm: 3e-3.
+    assert float(loss.max()) - 1e-9 <= found < float(loss.max()) + 1e-3
+
+
+def test_damage_on_both_gears_is_scanned_where_the_damaged_teeth_meet() -> None:
+    both = (*SPALL, replace(chord_pit(PAIR, SPALL_M, PITCH_POINT, which="gear"), tooth=1))
+    over = mesh_tables(PAIR, (), STIFFNESS)
+    rows = np.zeros((18, 47), dtype=np.int32)
+    rows[0], rows[:, 1], rows[0, 1] = 1, 2, 3
+    chosen = law(
+        over=replace(over, pair_stiffness_n_per_m=np.repeat(over.pair_stiffness_n_per_m, 4, 0), table_of_pair=rows)
+    )
+    newest = pairs_before_damage(chosen)
+    met = {int(rows[n % 18, n % 47]) for first in newest for n in range(first - chosen.slots, first + 2)}
+    assert met == {0, 1, 2, 3}
+    assert largest_secant_loss(damaged(both), HEALTHY, FORCE) >= largest_secant_loss(THROUGH, HEALTHY, FORCE) - 1e-9
+
+
+@pytest.mark.parametrize("pitches", [ALONE, ALONE + 0.06, 0.2, 7.0 + ALONE])
+def test_the_time_loop_comes_to_rest_at_the_same_approach(pitches: float) -> None:
+    """An independent way: the whole gearbox is let go 20 µm away and swings until its dampers have stopped it."""
+    run = motion(make_structure(), damaged(SPALL, damping_ratio=0.2), torque_nm=TORQUE)
+    still = np.full(40_001, pitches)
+    states = np.zeros((still.size, 2 * len(run.structure.coordinates)))
+    states[0, 0] = 20e-6 / PAIR.pinion.base_radius_m
+    for _ in range(6):
+        run.advance(still, no_inputs(still), states)
+        states[0] = states[-1]
+    found = columns(run, states[-2:], still[-2:])
+    expected = static_approaches_m(run.law, FORCE, np.array([pitches]))[0]
+    # After 1.2 s a swing has decayed to less than 1e-11 of the approach.
+    assert found["approach_m"][-1] == pytest.approx(expected, rel=1e-9)
+    assert found["mesh_force_n"][-1] == pytest.approx(FORCE, rel=1e-9)
+
+
+@pytest.mark.parametrize("force", [0.0, -1.0, np.nan, 1e9])
+def test_forces_that_no_drive_flank_carries_are_refused(force: float) -> None:
+    with pytest.raises(ValueError, match=r"force_n: received .* allowed are"):
+        secant_stiffness_n_per_m(THROUGH, force, np.array([0.5]))

@@ -1,0 +1,118 @@
+"""Sets of earlier versions stay readable; `schema_1` was generated when there was no second version yet."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import siggen
+from siggen.cli.app import app
+from siggen.columns.record import signal_matrix
+from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.config import parse, read_yaml
+from siggen.dataset.manifest import read_manifest, sealed, simulation_version, unsealed
+from siggen.dataset.sidecar import committed, read_sidecar
+from siggen.dataset.storage import LocalFolder
+from siggen.errors import DatasetError
+from siggen.sets.verification import verify
+from tests.dataset.fake_set import simulate, write_fake_set
+
+FIRST = Path(__file__).parent / "schema_1"
+NEW_LABEL = "mesh_stiffness_loss_as_simulated"
+
+
+def say(folder: Path, **facts: object) -> None:
+    """Change what a manifest says about its set, and seal it again."""
+    manifest = folder / "manifest.json"
+    manifest.write_bytes(sealed({**unsealed("manifest.json", manifest.read_bytes()), **facts}))
+
+
+def test_a_set_of_version_1_opens_and_its_records_are_read() -> None:
+    dataset = siggen.open(FIRST)
+    assert dataset.manifest["schema_version"] == "1"
+    assert simulation_version(dataset.manifest) == 1
+    labels = dataset.labels()
+    assert labels["state"].to_pylist() == ["healthy", "severe"]
+    assert NEW_LABEL not in labels.column_names
+    (batch,) = dataset.records()
+    signals = signal_matrix(batch.column("accel_lid_vertical_m_s2"))
+    assert signals.shape == (2, 1600)
+    # A spall through the face, where the healthy gearbox hums: read, not made up.
+    assert signals[1].std() > 2.0 * signals[0].std()
+    # 1.5 mm of arc near the pitch point: l²/(8 R_e) with R_e of 6.7 mm and the edges' rounding of 0.1 mm.
+    assert dataset.record(1)["sink_depth_um"] == pytest.approx(1e3 * 1.5**2 / (8.0 * 6.78), rel=0.01)
+    assert dataset.damage().num_rows == 1
+
+
+def test_its_hashes_are_verified_and_a_flipped_byte_shows(tmp_path: Path) -> None:
+    assert verify(FIRST).mismatches == ()
+    folder = Path(shutil.copytree(FIRST, tmp_path / "set"))
+    data = folder / "data" / "train-00000.parquet"
+    content = bytearray(data.read_bytes())
+    content[len(content) // 2] ^= 1
+    data.write_bytes(content)
+    assert [m.what for m in verify(folder).mismatches] == ["data/train-00000.parquet"]
+
+
+def test_its_identity_is_still_that_of_its_configuration() -> None:
+    config = parse(read_yaml(FIRST / "config.yaml")).config
+    assert config is not None
+    assert config.identity == siggen.open(FIRST).manifest["identity"]
+
+
+@pytest.mark.slow
+def test_its_records_are_still_what_this_version_simulates() -> None:
+    found = verify(FIRST, 2, workers=0)
+    assert found.records == (0, 1)
+    assert found.mismatches == ()
+
+
+def test_its_shards_are_not_mixed_with_those_of_this_version() -> None:
+    storage = LocalFolder(FIRST)
+    with pytest.raises(DatasetError, match=f"schema version 1 .* allowed are {SCHEMA_VERSION}"):
+        read_sidecar(storage, "train-00000")
+    assert committed(storage, "train-00000", read_manifest(storage)["identity"], ((0, 0),)) is None
+
+
+def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    say(tmp_path, schema_version="99")
+    with pytest.raises(DatasetError, match="received schema version 99; allowed are 1 and 2"):
+        siggen.open(tmp_path)
+    found = verify(tmp_path, 3, simulate=simulate, workers=0)
+    assert found.mismatches == ()
+    assert found.comparison.startswith("hashes checked; 3 records not simulated again")
+
+
+def test_a_finished_set_of_a_newer_version_is_not_made_again(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    say(tmp_path, schema_version="99")
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*")}
+    with pytest.raises(DatasetError, match="received schema version 99"):
+        write_fake_set(tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path in before} == before
+
+
+def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    other = SIMULATION_VERSION + 1
+    say(tmp_path, simulation_version=other)
+    result = CliRunner().invoke(app, ["verify", str(tmp_path), "--sample", "3"])
+    assert result.exit_code == 0, result.output
+    told = f"hashes checked; 3 records not simulated again: made by simulation version {other}, this is {other - 1}"
+    assert told in result.stdout.splitlines()
+    found = json.loads(CliRunner().invoke(app, ["verify", str(tmp_path), "--json"]).stdout)
+    assert found["records"] == []
+    assert found["ok"]
+
+
+def test_a_new_set_says_which_simulation_made_it(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    manifest = siggen.open(tmp_path).manifest
+    assert (manifest["schema_version"], manifest["simulation_version"]) == (SCHEMA_VERSION, SIMULATION_VERSION)
+    assert np.isfinite(siggen.open(tmp_path).labels(columns=[NEW_LABEL])[NEW_LABEL].to_numpy()).all()
