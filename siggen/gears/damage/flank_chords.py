@@ -18,6 +18,17 @@ from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.row_columns import (
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 from siggen.gears.damage.union import square_depth
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
@@ -149,25 +160,25 @@ def _line_unions(face: FloatArray, pits: FloatArray, highest: float) -> tuple[Fl
 @njit(cache=True)
 def _heights_on_line(face: float, pits: FloatArray, i: int) -> tuple[float, float]:
     """Return the heights between which row i covers the line at `face`; an empty interval where it does not."""
-    if pits[i, 6] == 0.0:
-        v = (face - pits[i, 1]) / pits[i, 2]
-        reach = pits[i, 3] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
-        return pits[i, 0] - reach, pits[i, 0] + reach
+    if pits[i, TRAPEZOID] == 0.0:
+        v = (face - pits[i, FACE]) / pits[i, SEMI_FACE]
+        reach = pits[i, SEMI_HEIGHT] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
+        return pits[i, HEIGHT] - reach, pits[i, HEIGHT] + reach
     # A trapezoid: from its lowest (0) to its highest point (1), where left side <= face <= right side, both straight.
     first, last = 0.0, 1.0
     for side in range(2):
         sign = 1.0 if side == 0 else -1.0
-        at_low, at_high = sign * (face - pits[i, 9 + side]), sign * (face - pits[i, 11 + side])
+        at_low, at_high = sign * (face - pits[i, LEFT_LOW + side]), sign * (face - pits[i, LEFT_HIGH + side])
         if at_low < 0.0 and at_high < 0.0:
             return 0.0, 0.0
         if at_low < 0.0:
             first = max(first, at_low / (at_low - at_high))
         elif at_high < 0.0:
             last = min(last, at_low / (at_low - at_high))
-    height = pits[i, 8] - pits[i, 7]
+    height = pits[i, HIGHEST] - pits[i, LOWEST]
     return (
-        pits[i, 7] if first == 0.0 else pits[i, 7] + first * height,
-        pits[i, 8] if last == 1.0 else pits[i, 7] + last * height,
+        pits[i, LOWEST] if first == 0.0 else pits[i, LOWEST] + first * height,
+        pits[i, HIGHEST] if last == 1.0 else pits[i, LOWEST] + last * height,
     )
 
 

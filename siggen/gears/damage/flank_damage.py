@@ -16,7 +16,8 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.covering import hidden_rows, hides
-from siggen.gears.damage.outlines import COLUMNS, Ellipse, Outline
+from siggen.gears.damage.outlines import Ellipse, Outline
+from siggen.gears.damage.row_columns import COLUMNS
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -135,11 +136,8 @@ def damaged_teeth(damage: Iterable[Pit | Spall], which: str) -> tuple[int, ...]:
 def pit_rows(pits: Iterable[Pit | Spall]) -> FloatArray:
     """Return the pits and spalls of one flank as rows (n, 13).
 
-    Columns: 0-3 height and face coordinate of the centre, semi-axes across face and along height (of a trapezoid:
-    half its width, and half the height range of its polygon about that range's middle), 4 depth [m], 5 dish (0 or 1),
-    6 shape (0 ellipse, 1 trapezoid), 7-8 lowest and highest point, 9-12 a trapezoid's left and right end at its lowest
-    and at its highest point. Sorted, without duplicates and without what a deeper one hides: a union depends on none
-    of these, and neither does any bit of what follows.
+    Columns: `siggen.gears.damage.row_columns`. Sorted, without duplicates and without what a deeper one hides: a
+    union depends on none of these, and neither does any bit of what follows.
 
     Raises
     ------

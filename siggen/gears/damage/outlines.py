@@ -19,9 +19,6 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.errors import counted
 
-COLUMNS = 13
-"""Width of a row of `rows`; see there."""
-
 
 @dataclass(frozen=True, slots=True)
 class Ellipse:
@@ -58,7 +55,7 @@ class Ellipse:
                 yield name, f"{name} {value!r} m", "finite and above 0"
 
     def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
-        """Return the one row of an ellipse; see `rows`."""
+        """Return the one row of an ellipse; columns: `siggen.gears.damage.row_columns`."""
         low, high = self.height_range_m
         box = (self.height_m, self.face_m, self.semi_axis_face_m, self.semi_axis_profile_m)
         return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0)]
@@ -115,7 +112,7 @@ class Polygon:
                 yield "vertices_m", received, "a simple polygon: edges of some length that meet at their ends only"
 
     def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
-        """Return one row per trapezoid; see `rows`. A dish refers to the height range of the whole polygon."""
+        """Return one row per trapezoid. A dish refers to the height range of the whole polygon."""
         low, high = self.height_range_m
         return [_trapezoid_row(t, 0.5 * (low + high), 0.5 * (high - low), depth_m, dish) for t in trapezoids(self)]
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.damage.flank_damage import Pit, Spall, flank_heights, pit_rows
 from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.damage.outlines import COLUMNS
+from siggen.gears.damage.row_columns import COLUMNS
 from siggen.gears.damage.union import (
     active_pits,
     add_intervals,
