@@ -71,7 +71,9 @@ class Verification:
     mismatches: tuple[Mismatch, ...]
 
 
-def verify(path: Path | str, sample: int = 0, *, workers: int = 1, engine: Engine | str | None = None) -> Verification:
+def verify(
+    path: Path | str, sample: int = 0, *, workers: int | None = None, engine: Engine | str | None = None
+) -> Verification:
     """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
 
     Records are compared bit for bit if versions and CPU family are those that made them; elsewhere signals may
@@ -82,8 +84,8 @@ def verify(path: Path | str, sample: int = 0, *, workers: int = 1, engine: Engin
     path : path
     sample : int
         Number of records; which ones follows from the manifest, so a verification can be repeated.
-    workers : int
-        Worker processes; 0 simulates in this process.
+    workers : int, optional
+        Worker processes, by default 1; 0 simulates in this process.
     engine : Engine or str, optional
         As for `generate`.
 
@@ -140,7 +142,7 @@ def _run(storage: Storage) -> Iterator[Mismatch]:
 
 
 def _simulate_again(
-    storage: Storage, sample: int, engine: Engine | str | None, workers: int
+    storage: Storage, sample: int, engine: Engine | str | None, workers: int | None
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
@@ -154,7 +156,8 @@ def _simulate_again(
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
-    with closing(engine_of(engine, workers).map(function, tasks)) as results:
+    chosen = engine_of(engine, 1 if engine is None and workers is None else workers)
+    with closing(chosen.map(function, tasks)) as results:
         for index, result in results:
             record_id, batch = ids[index], result.batch()
             if result.failures:
