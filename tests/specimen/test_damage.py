@@ -11,7 +11,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.gears.damage.flank_damage import Damage, damage_problems, flank_heights
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair

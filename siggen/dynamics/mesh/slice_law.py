@@ -24,8 +24,8 @@ from numba import njit
 from siggen.arrays import FloatArray
 from siggen.dynamics.friction.contact_kinematics import hertz_half_width, relative_radius
 from siggen.gears.contact.slice_contact import SliceSprings, grouped_sinks, sink_depths, slice_force, slice_springs
-from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords, has_extent
-from siggen.gears.damage.flank_damage import Damage, pits_of
+from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords
+from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import StiffnessOptions, tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, rolls_at
@@ -84,7 +84,7 @@ def slice_law(
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit or Spall
+    damage : tuple of ToothDamage
         Pits without extent in some direction are no pits.
     stiffness : StiffnessOptions
         Of the teeth's compliance.
@@ -318,7 +318,9 @@ def _stiffness(
     tooth: dict[tuple[str, int], FloatArray] = {}
     for column, which in enumerate(("pinion", "gear")):
         for index in sorted({kind[column] for kind in kinds}):
-            pits = pits_of(damage, which, index) if section_loss else ()
+            pits = pits_of(damage, which, index)
+            # What shows on no flank acts through the tooth alone.
+            pits = pits if section_loss else tuple(one for one in pits if one.outline is None)
             tooth[which, index] = tooth_compliance(pair, which, rolls[which], options, pits).total
     return np.stack([1.0 / (contact + tooth["pinion", i] + tooth["gear", j]) for i, j in kinds])
 

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.row_columns import (
     FACE,
     HEIGHT,
@@ -29,6 +29,7 @@ from siggen.gears.damage.row_columns import (
     SEMI_HEIGHT,
     TRAPEZOID,
 )
+from siggen.gears.damage.tooth_damage import ToothDamage, has_extent
 from siggen.gears.damage.union import square_depth
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
@@ -66,13 +67,13 @@ class ContactChords(NamedTuple):
     depth_m: FloatArray
 
 
-def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, slices: int) -> FlankChords:
+def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float, slices: int) -> FlankChords:
     """Return the chords of one flank; pits without extent in any direction are no pits.
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
     slices : int
@@ -85,7 +86,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: floa
     """
     if slices < 1:
         raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
-    rows = pit_rows(pit for pit in pits if has_extent(pit))
+    rows = pit_rows(one for one in pits if has_extent(one))
     face = face_width_m * (np.arange(slices) + 0.5) / slices
     highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
     low, high, count = _line_unions(face, rows, highest)
@@ -115,12 +116,6 @@ def contact_chords(
     # Shares of several pits may add up to 1 less a rounding error: that is no land.
     np.copyto(out.covered, 1.0, where=out.covered > 1.0 - 1e-12)
     return out
-
-
-def has_extent(damage: Pit | Spall) -> bool:
-    """Whether a pit or spall has depth, height and width; one without is none at all (a limit case of the tests)."""
-    (low, high), (left, right) = damage.outline.height_range_m, damage.outline.face_range_m
-    return damage.depth_m != 0.0 and low != high and left != right
 
 
 @njit(cache=True)

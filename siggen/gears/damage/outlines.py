@@ -44,6 +44,23 @@ class Ellipse:
         """First and last point across the face [m]."""
         return self.face_m - self.semi_axis_face_m, self.face_m + self.semi_axis_face_m
 
+    @property
+    def semi_axes_m(self) -> tuple[float, float]:
+        """Semi-axes across the face and along the height [m]."""
+        return self.semi_axis_face_m, self.semi_axis_profile_m
+
+    @property
+    def corners_m(self) -> tuple[tuple[float, float], ...]:
+        """No corners."""
+        return ()
+
+    def drawn_m(self, points: int = 181) -> FloatArray:
+        """Return a polygon on the outline (points, 2), height and face [m]; the first corner is not repeated."""
+        turn = 2.0 * np.pi * np.arange(points) / points
+        face = self.face_m + self.semi_axis_face_m * np.cos(turn)
+        height = self.height_m + self.semi_axis_profile_m * np.sin(turn)
+        return np.stack([height, face], axis=1)
+
     def problems(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, received, allowed) of everything that makes this no ellipse."""
         for name in ("height_m", "face_m"):
@@ -97,6 +114,21 @@ class Polygon:
         """First and last point across the face [m]."""
         faces = [face for _, face in self.vertices_m]
         return min(faces), max(faces)
+
+    @property
+    def semi_axes_m(self) -> tuple[float, float]:
+        """Half the ranges across the face and along the height [m]."""
+        (low, high), (left, right) = self.height_range_m, self.face_range_m
+        return 0.5 * (right - left), 0.5 * (high - low)
+
+    @property
+    def corners_m(self) -> tuple[tuple[float, float], ...]:
+        """The corners as (height, face), in order [m]."""
+        return self.vertices_m
+
+    def drawn_m(self, points: int = 181) -> FloatArray:  # noqa: ARG002 - as an ellipse is asked
+        """Return the corners (n, 2), height and face, however many points are asked for [m]."""
+        return np.array(self.vertices_m)
 
     def problems(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, received, allowed) of what makes this no simple polygon."""
