@@ -154,6 +154,17 @@ DAMAGE_COLUMNS = (
     Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
 """Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
+EDGE_COLUMNS = (
+    Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
+    Column(
+        "strip_depth_mm",
+        list_of(pa.float64()),
+        MILLIMETRE,
+        "depth between neighbouring corners of the lower edge, which come first and ascend across the face; "
+        "empty: depth_mm everywhere",
+    ),
+)
+"""More columns of `damage/<split>.parquet` in sets whose damage has edges of its own."""
 
 
 def channels(config: Config) -> tuple[Channel, ...]:
@@ -214,7 +225,13 @@ def label_schema(config: Config) -> pa.Schema:
 
 def damage_schema(config: Config) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    return pa.schema([column.field() for column in DAMAGE_COLUMNS], metadata=schema_metadata(config))
+    columns = (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()))
+    return pa.schema([column.field() for column in columns], metadata=schema_metadata(config))
+
+
+def has_drawn_edges(config: Config) -> bool:
+    """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
+    return any(state.damage is not None and state.damage.drawn_edges for state in config.states)
 
 
 def schema_metadata(config: Config) -> dict[str, str]:

@@ -12,6 +12,7 @@ from typing import Annotated, Literal, TypeAlias, get_args
 from pydantic import Field, model_validator
 
 from siggen.config.damage_section import DamageSection, HitTeeth
+from siggen.config.irregular import IrregularSpalls
 from siggen.config.number import Number, Within
 from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import refusal
@@ -133,7 +134,7 @@ class ListedPits(DamageSection):
         return bool(found) and all(parallel for parallel, _ in found), any(through for _, through in found)
 
 
-DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits
+DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits | IrregularSpalls
 
 KINDS: dict[str, type[DamageSection]] = {
     get_args(model.model_fields["kind"].annotation)[0]: model for model in get_args(DamageModel)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from typing import Any, TypeAlias, get_args
 
+from siggen.config.problems import BRANCHES
 from siggen.config.section import Section
 
 HitTeeth: TypeAlias = Iterator[tuple[str, str, int | tuple[int, ...]]]
@@ -13,6 +14,11 @@ HitTeeth: TypeAlias = Iterator[tuple[str, str, int | tuple[int, ...]]]
 
 class DamageSection(Section):
     """Base of the sections of damage; what is said here holds for pits on neighbouring teeth of one gear."""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Make the kind known to the messages, in whose paths it is no key."""
+        BRANCHES.update(get_args(cls.model_fields["kind"].annotation))
 
     @classmethod
     def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003 - of use where a section holds several kinds

@@ -7,11 +7,12 @@ spall hides is no damage of its own any more.
 
 from __future__ import annotations
 
-from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, ListedPits, Spalls
+from siggen.config import ClusteredPits, Config, DamageModel, IrregularSpalls, LayeredPits, ListedPits, Spalls
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.specimen.damage_kind import DamageKind
 from siggen.specimen.growth import Growth
+from siggen.specimen.irregular import IRREGULAR
 from siggen.specimen.listed import LISTED
 from siggen.specimen.pits import CLUSTERED, LAYERED
 from siggen.specimen.spalls import SPALLS
@@ -21,6 +22,7 @@ KINDS: dict[type, DamageKind] = {
     ClusteredPits: CLUSTERED,
     Spalls: SPALLS,
     ListedPits: LISTED,
+    IrregularSpalls: IRREGULAR,
 }
 """Section of the configuration -> how it is drawn and checked; the one list of kinds behind `siggen.config.damage`."""
 

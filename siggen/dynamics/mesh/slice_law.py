@@ -35,10 +35,10 @@ from siggen.gears.stiffness.mesh_tables import MeshTables, pair_kinds, table_of_
 class SliceOptions(NamedTuple):
     """How pits act on the contact.
 
-    `line_load_n_per_m`: load that sets the Hertz width which bridges narrow pits; `edge_radius_m`: of the pits' edges,
-    0 for sharp ones; `section_loss`: whether pits also weaken the tooth's sections (an upper bound of their effect, as
-    in potential-energy papers); `slices` across the face, narrower than a pit; `groups` that stand for them in the
-    table.
+    `line_load_n_per_m`: load that sets the Hertz width which bridges narrow pits; `edge_radius_m`: of the edges of
+    damage that states none itself, 0 for sharp ones; `section_loss`: whether pits also weaken the tooth's sections (an
+    upper bound of their effect, as in potential-energy papers); `slices` across the face, narrower than a pit; `groups`
+    that stand for them in the table.
     """
 
     line_load_n_per_m: float
@@ -300,8 +300,9 @@ def _chords(
 
 
 def _sinks(pair: GearPair, chords: ContactChords, options: SliceOptions, position: FloatArray) -> FloatArray:
-    radius = relative_radius(position, pair.line_of_action_m)[:, None]
-    return sink_depths(chords.edge_m, chords.depth_m, radius, options.edge_radius_m)
+    edge = np.where(chords.edge_radius_m < 0.0, options.edge_radius_m, chords.edge_radius_m)
+    radius = relative_radius(position, pair.line_of_action_m)[:, None] + edge
+    return sink_depths(chords.edge_m, chords.depth_m, radius, 0.0)
 
 
 def _stiffness(

@@ -18,6 +18,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.errors import counted
+from siggen.gears.damage.row_columns import UNSTATED
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ class Ellipse:
         """Return the one row of an ellipse; columns: `siggen.gears.damage.row_columns`."""
         low, high = self.height_range_m
         box = (self.height_m, self.face_m, self.semi_axis_face_m, self.semi_axis_profile_m)
-        return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0)]
+        return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0, UNSTATED)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +144,17 @@ class Polygon:
                 received = f"a polygon whose edges {crossing[0]} and {crossing[1]} meet (edge i starts at vertex i)"
                 yield "vertices_m", received, "a simple polygon: edges of some length that meet at their ends only"
 
-    def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
-        """Return one row per trapezoid. A dish refers to the height range of the whole polygon."""
-        low, high = self.height_range_m
-        return [_trapezoid_row(t, 0.5 * (low + high), 0.5 * (high - low), depth_m, dish) for t in trapezoids(self)]
+    def rows(
+        self,
+        depth_m: float,
+        dish: bool,
+        edge_radius_m: float = UNSTATED,
+        height_range_m: tuple[float, float] | None = None,
+    ) -> list[tuple[float, ...]]:
+        """Return one row per trapezoid. A dish refers to the height range of the whole polygon unless one is given."""
+        low, high = self.height_range_m if height_range_m is None else height_range_m
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        return [(*_trapezoid_row(t, middle, half, depth_m, dish), edge_radius_m) for t in trapezoids(self)]
 
 
 Outline: TypeAlias = Ellipse | Polygon
