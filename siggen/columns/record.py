@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column
+from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
+from siggen.columns.damage_columns import damage_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
@@ -71,11 +72,6 @@ class RecordFailure:
     reason: str
 
 
-def list_of(value: pa.DataType, size: int = -1) -> pa.DataType:
-    """Return a list type whose elements are not null; 'element' is the name Parquet gives them."""
-    return pa.list_(pa.field("element", value, nullable=False), size)
-
-
 ID_COLUMNS = (
     Column("record_id", pa.int64(), "", "index of the record in the plan; a pure function of the configuration"),
     Column("specimen_id", pa.int64(), "", "gearbox the record belongs to; splits never share one"),
@@ -122,49 +118,6 @@ VARIATION_COLUMNS = (
 )
 """Columns of sets in which speed or torque varies within a record."""
 TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
-
-DAMAGE_COLUMNS = (
-    Column("record_id", pa.int64(), "", "record that shows the damage"),
-    Column("gear", pa.string(), "", "pinion or gear"),
-    Column("tooth", pa.int32(), "", "index of the tooth"),
-    Column("kind", pa.string(), "", "pit or spall"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v or polygon"),
-    Column(
-        "height_mm",
-        pa.float64(),
-        MILLIMETRE,
-        "centre above the base circle along the tooth's axis; of a polygon the middle of its range",
-    ),
-    Column("face_mm", pa.float64(), MILLIMETRE, "centre across the face, from the face's edge"),
-    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face; of a polygon half its range"),
-    Column(
-        "semi_axis_profile_mm",
-        pa.float64(),
-        MILLIMETRE,
-        "semi-axis along the tooth's axis; of a polygon half its range",
-    ),
-    Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
-    Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
-    Column(
-        "polygon_face_mm",
-        list_of(pa.float64()),
-        MILLIMETRE,
-        "corners (rectangle, v, polygon) across the face; else empty",
-    ),
-    Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
-)
-"""Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
-EDGE_COLUMNS = (
-    Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
-    Column(
-        "strip_depth_mm",
-        list_of(pa.float64()),
-        MILLIMETRE,
-        "depth between neighbouring corners of the lower edge, which come first and ascend across the face; "
-        "empty: depth_mm everywhere",
-    ),
-)
-"""More columns of `damage/<split>.parquet` in sets whose damage has edges of its own."""
 
 
 def channels(config: Config) -> tuple[Channel, ...]:
@@ -225,13 +178,7 @@ def label_schema(config: Config) -> pa.Schema:
 
 def damage_schema(config: Config) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    columns = (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()))
-    return pa.schema([column.field() for column in columns], metadata=schema_metadata(config))
-
-
-def has_drawn_edges(config: Config) -> bool:
-    """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
-    return any(state.damage is not None and state.damage.drawn_edges for state in config.states)
+    return pa.schema([column.field() for column in damage_columns(config)], metadata=schema_metadata(config))
 
 
 def schema_metadata(config: Config) -> dict[str, str]:

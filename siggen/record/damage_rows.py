@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from siggen.columns.record import has_drawn_edges
+from siggen.columns.damage_columns import has_drawn_edges
 from siggen.config import Config, constant
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.plan import planned_record

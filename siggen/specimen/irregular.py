@@ -176,7 +176,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
             return
         along = read_m(gear, height, reading)
         if along - reach_m < ends[0] or along + reach_m > ends[1]:
-            received = f"{_said(size.profile_length_mm)}: with skew and waves the edges reach from "
+            received = f"{_said(size.profile_length_mm)} mm: with skew and waves the edges reach from "
             received += f"{(along - reach_m) / MM:.4g} to {(along + reach_m) / MM:.4g} mm above the base circle"
             yield Problem(
                 "profile_length_mm", received, f"allowed: {ends[0] / MM:.4g} to {ends[1] / MM:.4g} mm, the flank"
