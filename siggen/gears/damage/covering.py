@@ -117,6 +117,13 @@ def hidden_rows(rows: FloatArray) -> NDArray[np.bool_]:
     out = np.zeros(count, np.bool_)
     for i in range(count):
         for k in range(count):
+            # What `hides` asks first, without taking rows out of the table.
+            if (
+                rows[k, LOWEST] > rows[i, LOWEST]
+                or rows[k, HIGHEST] < rows[i, HIGHEST]
+                or rows[k, DEPTH] < rows[i, DEPTH]
+            ):
+                continue
             # Of two that hide each other (outlines equal but for rounding) the first stays.
             if k != i and not out[k] and hides(rows[k], rows[i]) and (k < i or not hides(rows[i], rows[k])):
                 out[i] = True

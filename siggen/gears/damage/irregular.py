@@ -19,7 +19,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.heights import clipped_arc_m
-from siggen.gears.damage.on_flank import OnFlank
+from siggen.gears.damage.on_flank import OnFlank, floor_problems
 from siggen.gears.damage.outlines import Polygon
 from siggen.gears.damage.tooth_damage import Refusal, ToothDamage
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -129,15 +129,23 @@ class IrregularSpall(OnFlank):
         return OnFlank.hides(self, other)
 
     def own_problems(self) -> Iterator[Refusal]:
-        """Yield what any damage inside an outline may have, edges that cross, and an edge radius that is none."""
-        for face, low, high in self.stations_m:
-            if not low <= high:
-                received = f"a lower edge at {low:.6g} m and an upper one at {high:.6g} m, {face:.6g} m across the face"
-                yield Refusal("stations_m", received, "edges that do not cross")
-                return
+        """Yield stations that do not ascend, edges that cross, and floor, depth or edge radius that are none.
+
+        Between stations that ascend and edges that do not cross the outline cannot meet itself.
+        """
+        face, low, high = np.array(self.stations_m).T
+        if not (np.isfinite(face).all() and np.all(np.diff(face) > 0.0) and face.size > 1):
+            yield Refusal("stations_m", f"stations at {face.tolist()} m", "at least two, ascending across the face")
+        elif not np.all(low <= high):
+            i = int(np.argmin(low <= high))
+            received = f"a lower edge at {low[i]:.6g} m and an upper one at {high[i]:.6g} m, {face[i]:.6g} m across the"
+            yield Refusal("stations_m", f"{received} face", "edges that do not cross")
+        if len(self.strip_depths_m) != face.size - 1:
+            received = f"{len(self.strip_depths_m)} depths of strips between {face.size} stations"
+            yield Refusal("strip_depths_m", received, "one between neighbouring stations")
         if not (np.isfinite(self.edge_radius_m) and self.edge_radius_m >= 0.0):
             yield Refusal("edge_radius_m", f"edge_radius_m {self.edge_radius_m!r} m", "finite and at least 0")
-        yield from OnFlank.own_problems(self)
+        yield from floor_problems(self)
 
     def table_row(self) -> dict[str, object]:
         """Return place, size, outline and floor in mm, with the radius of the edges and the depth of every strip."""

@@ -80,12 +80,10 @@ class OnFlank:
 
     def own_problems(self: Outlined) -> Iterator[Refusal]:
         """Yield an unknown floor, an impossible outline, a depth that is none."""
-        if self.floor not in self.floors:
-            yield Refusal("floor", f"floor {self.floor!r}", ", ".join(self.floors))
-        for name, received, allowed in self.outline.problems():
-            yield Refusal(name, received, allowed)
-        if not (isfinite(self.depth_m) and self.depth_m > 0.0):
-            yield Refusal("depth_m", f"depth_m {self.depth_m!r} m", "finite and above 0")
+        found = list(floor_problems(self))
+        yield from (refusal for refusal in found if refusal.name == "floor")
+        yield from (Refusal(*problem) for problem in self.outline.problems())
+        yield from (refusal for refusal in found if refusal.name != "floor")
 
     def place_problems(self: Outlined, pair: GearPair) -> Iterator[Refusal]:
         """Yield a tooth that there is not, a centre off the flank, a depth beyond the half tooth thickness.
@@ -131,3 +129,11 @@ class OnFlank:
             "polygon_face_mm": [1e3 * face for _, face in outline.corners_m],
             "polygon_height_mm": [1e3 * height for height, _ in outline.corners_m],
         }
+
+
+def floor_problems(damage: Outlined) -> Iterator[Refusal]:
+    """Yield an unknown floor and a depth that is none."""
+    if damage.floor not in damage.floors:
+        yield Refusal("floor", f"floor {damage.floor!r}", ", ".join(damage.floors))
+    if not (isfinite(damage.depth_m) and damage.depth_m > 0.0):
+        yield Refusal("depth_m", f"depth_m {damage.depth_m!r} m", "finite and above 0")
