@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
+from siggen.config.damage import KINDS
 from siggen.config.number import bounds
 from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
@@ -203,10 +204,19 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     for index, state in states.items():
         with_spalls = [i for i in states if i <= index and _has_spalls(states[i])]
         if state.fault == "spalling" and not with_spalls:
-            allowed = "allowed: pitting; spalling needs kind: spall, or spalls in kind: list, here or in a milder state"
+            spalls = " or ".join(
+                kind for kind, section in KINDS.items() if section.default_fault(_nothing) == "spalling"
+            )
+            allowed = (
+                f"allowed: pitting; spalling needs kind: {spalls}, or spalls in kind: list, here or in a milder state"
+            )
             yield Problem(f"states.{index}.fault", "spalling, with pits alone", allowed)
         if state.fault == "pitting" and state.damage is not None and not state.damage.may_be_pitting:
             yield Problem(f"states.{index}.fault", "pitting, with a spall", "allowed: spalling")
+
+
+def _nothing(_: str) -> None:
+    """Stand for a section that says nothing but its kind."""
 
 
 def _has_spalls(state: State) -> bool:

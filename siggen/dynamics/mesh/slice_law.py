@@ -12,6 +12,8 @@ slice is flush with d = 0, and the groups stand for the whole face.
 The error against all slices, directly at the middle of all cells, is given by `slice_law_error`. With the defaults,
 18/47 teeth of module 3 mm and penetrations of 3, 5, 8 and 45 µm it is, of the healthy force, below 0.1 % for 16 round
 pits of 0.6 mm, below 0.5 % for a pit of 1.5 mm through the whole face and below 4 % where pits leave 4 % of the face.
+Skewed and wavy edges are crossed slice by slice: for a spall of 1 mm through the face, skews up to 0.8 mm and waves of
+15 %, 200 slices are within 0.03 % of 3,200, and the groups within 0.23 % of all slices.
 """
 
 from __future__ import annotations
