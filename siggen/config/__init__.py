@@ -11,7 +11,6 @@ from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
-from siggen.config.irregular import IrregularSpalls
 from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
@@ -45,7 +44,6 @@ __all__ = [
     "Housing",
     "Internals",
     "Inverter",
-    "IrregularSpalls",
     "LayeredPits",
     "ListedPit",
     "ListedPits",

@@ -7,7 +7,8 @@ spall hides is no damage of its own any more.
 
 from __future__ import annotations
 
-from siggen.config import ClusteredPits, Config, DamageModel, IrregularSpalls, LayeredPits, ListedPits, Spalls
+from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, ListedPits, Spalls
+from siggen.config.irregular import IrregularSpalls
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.specimen.damage_kind import DamageKind

@@ -8,7 +8,8 @@ from math import sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import IrregularSpalls, Number, bounds, constant, draw
+from siggen.config import Number, bounds, constant, draw
+from siggen.config.irregular import IrregularSpalls
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
