@@ -218,7 +218,7 @@ def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def _depth_at(height: float, face: float, pits: FloatArray) -> float:
+def depth_at(height: float, face: float, pits: FloatArray) -> float:
     """Return the largest depth of the pits at a point of the flank, 0 on a land."""
     deepest = 0.0
     for i in range(pits.shape[0]):
@@ -229,7 +229,7 @@ def _depth_at(height: float, face: float, pits: FloatArray) -> float:
 
 
 @njit(cache=True)
-def _tangent_union(
+def tangent_union(
     pinion: FlankChords, gear: FlankChords, j: int, arc_1: float, arc_2: float, room: FloatArray, merged: FloatArray
 ) -> int:
     """Write the pits of both flanks on line j along the tangent at the contact, as separate intervals."""
@@ -264,7 +264,7 @@ def _fill_contact(
         for j in range(pinion.intervals.size):
             if pinion.intervals[j] + gear.intervals[j] == 0:
                 continue
-            count = _tangent_union(pinion, gear, j, arc_1, arc_2, room, merged)
+            count = tangent_union(pinion, gear, j, arc_1, arc_2, room, merged)
             for k in range(count):
                 low, high = merged[0, k], merged[1, k]
                 share = semi_ellipse_share(high / half_width[i]) - semi_ellipse_share(low / half_width[i])
@@ -272,5 +272,5 @@ def _fill_contact(
                 if low < 0.0 < high:
                     out.edge_m[i, j] = min(-low, high)
                     out.edge_radius_m[i, j] = merged[2, k] if -low <= high else merged[3, k]
-                    depth = _depth_at(height_1, pinion.face_m[j], pinion.pits)
-                    out.depth_m[i, j] = depth + _depth_at(height_2, gear.face_m[j], gear.pits)
+                    depth = depth_at(height_1, pinion.face_m[j], pinion.pits)
+                    out.depth_m[i, j] = depth + depth_at(height_2, gear.face_m[j], gear.pits)
