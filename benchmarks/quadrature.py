@@ -16,7 +16,8 @@ from numba import njit
 from scipy.integrate import IntegrationWarning, quad
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.flank_damage import Damage, pit_rows, pits_of
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.damage.union import active_pits, add_intervals, depth_moments, lengths_covered, stretch_room
 from siggen.gears.geometry import involute, trochoid
 from siggen.gears.geometry.gear_pair import GearPair

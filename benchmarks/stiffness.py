@@ -18,7 +18,7 @@ from benchmarks.row import Row, cost_row
 from benchmarks.shipped import QUICKSTART, shipped
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, mesh_stiffness
 from siggen.gears.stiffness.mesh_tables import mesh_tables

@@ -13,8 +13,8 @@ from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
 from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.flank_damage import Spall
 from siggen.gears.damage.outlines import Polygon
+from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 
 APPROACHES_M = np.linspace(0.2e-6, 16e-6, 33)

@@ -9,8 +9,8 @@ from siggen.views.flank_figure import save_flank_figure
 from siggen.config import Config
 from siggen.planning.specimen import draw_specimen
 from siggen.views.flank_views import flank_damage_table, flank_views
-from siggen.gears.stiffness.mesh_stiffness.sections import contact_length_loss
-from siggen.gears.damage.flank_damage.flank_damage import pits_of
+from siggen.gears.stiffness.sections import contact_length_loss
+from siggen.gears.damage.tooth_damage import pits_of
 from siggen.checks.loading import load_config
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.damage import state_damage

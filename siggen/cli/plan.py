@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 
+NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes")
+"""Lists of sentences in the summary, in the order in which they are printed."""
+
+
 def plan(
     config: Annotated[
         Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
@@ -41,13 +45,14 @@ def plan(
     console.print(_overview(summary))
     console.print(_states(summary))
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
-    for note in (*summary["stiffness_notes"], *summary["lubrication_notes"], *summary["torque_notes"]):
+    for note in (note for kind in NOTES for note in summary[kind]):
         console.print(f"note: {note}", highlight=False, markup=False)
 
 
 def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.checks.contact_notes import contact_notes
+    from siggen.checks.damage_notes import damage_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen.gears import model_notes
@@ -81,6 +86,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "variation": list(variation_notes(config)),
         "lubrication_notes": list(contact_notes(config)),
         "torque_notes": list(reversal_notes(config)),
+        "damage_notes": list(damage_notes(config)),
     }
 
 

@@ -73,12 +73,13 @@ def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
 
 
 def _damage(dataset: Dataset, record: Mapping[str, Any]) -> Table:
+    import pyarrow as pa
     import pyarrow.compute as pc
     from rich.table import Table
 
     rows = dataset.damage(record["split"])
     own = rows.filter(pc.equal(rows["record_id"], record["record_id"])).drop_columns(["record_id"])
-    names = [name for name in own.column_names if not name.startswith("polygon")]
+    names = [field.name for field in own.schema if not pa.types.is_list(field.type)]
     table = Table(*names, title="Damage", title_justify="left")
     for row in own.select(names).to_pylist():
         table.add_row(*(_text(row[name]) for name in names))

@@ -22,3 +22,8 @@ class Column:
         """Return the Arrow field; no column of a set holds nulls."""
         metadata = {"unit": self.unit, "meaning": self.meaning}
         return pa.field(self.name, self.type, nullable=False, metadata={k: v for k, v in metadata.items() if v})
+
+
+def list_of(value: pa.DataType, size: int = -1) -> pa.DataType:
+    """Return a list type whose elements are not null; 'element' is the name Parquet gives them."""
+    return pa.list_(pa.field("element", value, nullable=False), size)

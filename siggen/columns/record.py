@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column
+from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
+from siggen.columns.damage_columns import damage_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.versions import SCHEMA_VERSION
@@ -67,11 +68,6 @@ class RecordFailure:
     record_id: int
     status: str
     reason: str
-
-
-def list_of(value: pa.DataType, size: int = -1) -> pa.DataType:
-    """Return a list type whose elements are not null; 'element' is the name Parquet gives them."""
-    return pa.list_(pa.field("element", value, nullable=False), size)
 
 
 ID_COLUMNS = (
@@ -134,38 +130,6 @@ VARIATION_COLUMNS = (
 """Columns of sets in which speed or torque varies within a record."""
 TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
 
-DAMAGE_COLUMNS = (
-    Column("record_id", pa.int64(), "", "record that shows the damage"),
-    Column("gear", pa.string(), "", "pinion or gear"),
-    Column("tooth", pa.int32(), "", "index of the tooth"),
-    Column("kind", pa.string(), "", "pit or spall"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v or polygon"),
-    Column(
-        "height_mm",
-        pa.float64(),
-        MILLIMETRE,
-        "centre above the base circle along the tooth's axis; of a polygon the middle of its range",
-    ),
-    Column("face_mm", pa.float64(), MILLIMETRE, "centre across the face, from the face's edge"),
-    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face; of a polygon half its range"),
-    Column(
-        "semi_axis_profile_mm",
-        pa.float64(),
-        MILLIMETRE,
-        "semi-axis along the tooth's axis; of a polygon half its range",
-    ),
-    Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
-    Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
-    Column(
-        "polygon_face_mm",
-        list_of(pa.float64()),
-        MILLIMETRE,
-        "corners (rectangle, v, polygon) across the face; else empty",
-    ),
-    Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
-)
-"""Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
-
 
 def channels(config: Config) -> tuple[Channel, ...]:
     """Return the channels of a configuration in the order of its sensors and their axes."""
@@ -225,7 +189,7 @@ def label_schema(config: Config) -> pa.Schema:
 
 def damage_schema(config: Config) -> pa.Schema:
     """Return the schema of `damage/*.parquet`."""
-    return pa.schema([column.field() for column in DAMAGE_COLUMNS], metadata=schema_metadata(config))
+    return pa.schema([column.field() for column in damage_columns(config)], metadata=schema_metadata(config))
 
 
 def schema_metadata(config: Config) -> dict[str, str]:

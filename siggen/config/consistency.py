@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from siggen.config.damage import ClusteredPits, LayeredPits, ListedPits
+from siggen.config.damage import KINDS
 from siggen.config.number import bounds
 from siggen.config.path import MeasuredPath
-from siggen.config.spall import Spalls
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 
@@ -203,46 +202,44 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     """Yield labels that do not say what is on the flank: spalling needs a spall, here or before, and vice versa."""
     states: Mapping[int, State] = sections.get("states", {})
     for index, state in states.items():
-        with_spalls = [i for i in states if i <= index and _has_spalls(states[i].damage)]
+        with_spalls = [i for i in states if i <= index and _has_spalls(states[i])]
         if state.fault == "spalling" and not with_spalls:
-            allowed = "allowed: pitting; spalling needs kind: spall, or spalls in kind: list, here or in a milder state"
+            spalls = " or ".join(
+                kind for kind, section in KINDS.items() if section.default_fault(_nothing) == "spalling"
+            )
+            allowed = (
+                f"allowed: pitting; spalling needs kind: {spalls}, or spalls in kind: list, here or in a milder state"
+            )
             yield Problem(f"states.{index}.fault", "spalling, with pits alone", allowed)
-        if state.fault == "pitting" and isinstance(state.damage, Spalls):
+        if state.fault == "pitting" and state.damage is not None and not state.damage.may_be_pitting:
             yield Problem(f"states.{index}.fault", "pitting, with a spall", "allowed: spalling")
 
 
-def _has_spalls(damage: object) -> bool:
-    return isinstance(damage, Spalls) or (isinstance(damage, ListedPits) and bool(damage.spalls))
+def _nothing(_: str) -> None:
+    """Stand for a section that says nothing but its kind."""
+
+
+def _has_spalls(state: State) -> bool:
+    return state.damage is not None and state.damage.has_spalls
 
 
 def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
     if SEVERITIES.index(milder.severity) > SEVERITIES.index(state.severity):
         received = f"'{state.grows_from}', which is {milder.name} ({milder.severity}), for a {state.severity} state"
         yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
-    key = _count_that_adds_nothing(milder.damage, state.damage)
-    if key:
+    if milder.damage is None or state.damage is None:
+        return
+    if key := state.damage.key_that_adds_nothing(milder.damage):
         received = f"no pits beyond those of {milder.name}, which this state contains (grows_from)"
         allowed = f"allowed: more pits than {milder.name} has, or grows_from: none"
         yield Problem(f"{path}.damage.{key}", received, allowed)
-
-
-def _count_that_adds_nothing(milder: object, damage: object) -> str | None:
-    match milder, damage:
-        case ClusteredPits(), ClusteredPits():
-            same_teeth = (milder.gear, milder.teeth) == (damage.gear, damage.teeth)
-            return "count" if same_teeth and damage.count <= milder.count else None
-        case LayeredPits(), LayeredPits():
-            same_teeth = (milder.gear, milder.teeth) == (damage.gear, damage.teeth)
-            fewer = damage.layers <= milder.layers and damage.pits_per_layer <= milder.pits_per_layer
-            return "layers" if same_teeth and fewer else None
-    return None
 
 
 def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "gears" not in sections:
         return
     for index, state in sections.get("states", {}).items():
-        for key, gear, selected in _selected_teeth(state):
+        for key, gear, selected in () if state.damage is None else state.damage.hit_teeth():
             path, count = f"states.{index}.damage.{key}", getattr(sections["gears"], gear).teeth
             if isinstance(selected, int):
                 if selected > count:
@@ -250,13 +247,3 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
                 continue
             allowed = f"allowed: an index from 0 to {count - 1}, the {gear} has {count} teeth"
             yield from (Problem(path, f"tooth {tooth}", allowed) for tooth in selected if tooth >= count)
-
-
-def _selected_teeth(state: State) -> Iterator[tuple[str, str, int | tuple[int, ...]]]:
-    """Yield the keys of a state that name teeth, the gear they belong to, and how many or which ones they name."""
-    match state.damage:
-        case ListedPits(pits=pits, spalls=spalls):
-            yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(pits))
-            yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(spalls))
-        case LayeredPits() | ClusteredPits() | Spalls() as damage:
-            yield "teeth", damage.gear, damage.teeth

@@ -6,10 +6,13 @@ A distribution of a size is drawn once per pit or spall.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Callable
+from typing import Annotated, Literal, TypeAlias, get_args
 
 from pydantic import Field, model_validator
 
+from siggen.config.damage_section import DamageSection, HitTeeth
+from siggen.config.irregular import IrregularSpalls
 from siggen.config.number import Number, Within
 from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import refusal
@@ -31,7 +34,7 @@ class PitSize(Section):
     )
 
 
-class LayeredPits(PitSize):
+class LayeredPits(PitSize, DamageSection):
     """Rows of equal count, one above the other, as in paper A."""
 
     kind: Literal["layered"] = "layered"
@@ -52,8 +55,14 @@ class LayeredPits(PitSize):
         default=None, description="middle of the rows across the face; null: of the face"
     )
 
+    def key_that_adds_nothing(self, milder: DamageSection) -> str | None:
+        """Return 'layers' for no more layers nor pits than the milder state has on the same teeth."""
+        if not isinstance(milder, LayeredPits) or (milder.gear, milder.teeth) != (self.gear, self.teeth):
+            return None
+        return "layers" if self.layers <= milder.layers and self.pits_per_layer <= milder.pits_per_layer else None
 
-class ClusteredPits(PitSize):
+
+class ClusteredPits(PitSize, DamageSection):
     """Pits scattered around a height."""
 
     kind: Literal["clustered"] = "clustered"
@@ -69,6 +78,12 @@ class ClusteredPits(PitSize):
         default=None, description="standard deviation across the face about its middle; null: evenly over the face"
     )
 
+    def key_that_adds_nothing(self, milder: DamageSection) -> str | None:
+        """Return 'count' for no more pits than the milder state has on the same teeth."""
+        if not isinstance(milder, ClusteredPits) or (milder.gear, milder.teeth) != (self.gear, self.teeth):
+            return None
+        return "count" if self.count <= milder.count else None
+
 
 class ListedPit(PitSize):
     """One pit at a given place."""
@@ -79,7 +94,7 @@ class ListedPit(PitSize):
     face_mm: Annotated[Number, Within(least=0)] = Field(description="centre across the face, from one end of the tooth")
 
 
-class ListedPits(Section):
+class ListedPits(DamageSection):
     """Pits and spalls one by one."""
 
     kind: Literal["list"] = "list"
@@ -93,7 +108,37 @@ class ListedPits(Section):
             raise refusal([Problem("pits", "no pits and no spalls", "allowed: at least 1 pit or spall")])
         return self
 
+    @classmethod
+    def default_fault(cls, read: Callable[[str], object]) -> str:
+        """Return spalling for a list of spalls alone."""
+        return "spalling" if read("spalls") and not read("pits") else "pitting"
 
-DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits
+    @property
+    def has_spalls(self) -> bool:
+        """Whether a spall is listed."""
+        return bool(self.spalls)
 
-DAMAGE = AllowedText("null, or a mapping with kind: layered, clustered, spall or list")
+    @property
+    def may_be_pitting(self) -> bool:
+        """Whatever is listed may be called pitting."""
+        return True
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield every listed tooth."""
+        yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(self.pits))
+        yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(self.spalls))
+
+    def parallel_edges(self, face_width_mm: float) -> tuple[bool, bool]:
+        """Return whether all listed spalls are rectangles, and whether one may go through the face."""
+        found = [spall.parallel(face_width_mm) for spall in self.spalls]
+        return bool(found) and all(parallel for parallel, _ in found), any(through for _, through in found)
+
+
+DamageModel: TypeAlias = LayeredPits | ClusteredPits | Spalls | ListedPits | IrregularSpalls
+
+KINDS: dict[str, type[DamageSection]] = {
+    get_args(model.model_fields["kind"].annotation)[0]: model for model in get_args(DamageModel)
+}
+"""Kind -> section, in the order of the union."""
+
+DAMAGE = AllowedText("null, or a mapping with kind: {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1]))

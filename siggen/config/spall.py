@@ -6,12 +6,13 @@ effect.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from siggen.config.number import Number, Within
+from siggen.config.damage_section import DamageSection
+from siggen.config.number import Number, Within, bounds
 from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Real, Section, Whole
@@ -76,6 +77,12 @@ class SpallSize(Section):
             raise refusal(problems)
         return self
 
+    def parallel(self, face_width_mm: float) -> tuple[bool, bool]:
+        """Return whether its edges are parallel to the axis, and whether it may then go through the face."""
+        if self.shape != "rectangle" or self.face_length_mm is None:
+            return False, False
+        return True, bounds(self.face_length_mm)[1] >= face_width_mm
+
     def _size_problems(self) -> Iterator[Problem]:
         needed = SIZES[self.shape]
         for key in dict.fromkeys(key for keys in SIZES.values() for key in keys):
@@ -106,7 +113,7 @@ class SpallSize(Section):
             yield Problem("depth_coefficient_um_per_mm2", "a value", allowed)
 
 
-class Spalls(SpallSize):
+class Spalls(SpallSize, DamageSection):
     """A spall on each damaged tooth."""
 
     kind: Literal["spall"] = "spall"
@@ -114,6 +121,20 @@ class Spalls(SpallSize):
         default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
     )
     height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
+
+    @classmethod
+    def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003
+        """Return spalling."""
+        return "spalling"
+
+    @property
+    def has_spalls(self) -> bool:
+        """A spall it is."""
+        return True
+
+    def parallel_edges(self, face_width_mm: float) -> tuple[bool, bool]:
+        """Return whether it is a rectangle, and whether it may go through the face."""
+        return self.parallel(face_width_mm)
 
 
 class ListedSpall(SpallSize):

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
-from siggen.config.damage import DAMAGE, DamageModel
+from siggen.config.damage import DAMAGE, KINDS, DamageModel
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Section
 from siggen.config.wording import AllowedText
@@ -102,9 +102,10 @@ def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
 
 
 def _fault(damage: object) -> str:
-    """Return the fault that a damage, raw or parsed, is by default; a list is spalling if it has spalls and no pits."""
+    """Return the fault that a damage, raw or parsed, is by default."""
     read: Callable[[str], object] = (
         damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
     )
-    spalls_alone = read("kind") == "list" and bool(read("spalls")) and not read("pits")
-    return "spalling" if read("kind") == "spall" or spalls_alone else "pitting"
+    kind = read("kind")
+    section = KINDS.get(kind) if isinstance(kind, str) else None
+    return "pitting" if section is None else section.default_fault(read)

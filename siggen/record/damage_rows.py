@@ -1,12 +1,12 @@
-"""Rows of the damage table: the pits and spalls of one record with their places and sizes."""
+"""Rows of the damage table: the damage of one record with its places and sizes."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
-from siggen.config import Config
-from siggen.gears.damage.flank_damage import Damage, Pit, Spall
-from siggen.gears.damage.outlines import Ellipse, Polygon
+from siggen.columns.damage_columns import has_drawn_edges
+from siggen.config import Config, constant
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
@@ -14,37 +14,17 @@ from siggen.specimen.gears import gear_pair
 
 
 def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
-    """Return one row per pit or spall of a record, lengths in mm; none for a healthy record."""
+    """Return one row per damage of a record, lengths in mm; none for a healthy record."""
     record = planned_record(config, record_id)
-    damage = _damage(config, record.specimen_id, record.state_id)
-    return [{"record_id": record_id, **_row(pit)} for pit in damage]
+    damage, edges = _damage(config, record.specimen_id, record.state_id)
+    return [{"record_id": record_id, **edges, **one.table_row()} for one in damage]
 
 
 @lru_cache(maxsize=8)  # records of one specimen and state come one after the other
-def _damage(config: Config, specimen_id: int, state_id: int) -> Damage:
-    pair = gear_pair(draw_specimen(config, specimen_id).gears)
-    return state_damage(config, specimen_id, pair, state_id)
-
-
-def _row(pit: Pit | Spall) -> dict[str, object]:
-    outline = pit.outline
-    (low, high), (left, right) = outline.height_range_m, outline.face_range_m
-    corners = outline.vertices_m if isinstance(outline, Polygon) else ()
-    if isinstance(outline, Ellipse):
-        across, along = outline.semi_axis_face_m, outline.semi_axis_profile_m
-    else:
-        across, along = 0.5 * (right - left), 0.5 * (high - low)
-    return {
-        "gear": pit.gear,
-        "tooth": pit.tooth,
-        "kind": pit.kind,
-        "shape": outline.shape,
-        "height_mm": 1e3 * outline.height_m,
-        "face_mm": 1e3 * outline.face_m,
-        "semi_axis_face_mm": 1e3 * across,
-        "semi_axis_profile_mm": 1e3 * along,
-        "depth_mm": 1e3 * pit.depth_m,
-        "depth_law": pit.floor,
-        "polygon_face_mm": [1e3 * face for _, face in corners],
-        "polygon_height_mm": [1e3 * height for height, _ in corners],
-    }
+def _damage(config: Config, specimen_id: int, state_id: int) -> tuple[Damage, dict[str, object]]:
+    """Return the damage of a state, and in sets that store edges those of damage that states none itself."""
+    specimen = draw_specimen(config, specimen_id)
+    damage = state_damage(config, specimen_id, gear_pair(specimen.gears), state_id)
+    if not has_drawn_edges(config):
+        return damage, {}
+    return damage, {"edge_radius_mm": constant(specimen.dynamics.mesh.pit_edge_radius_mm), "strip_depth_mm": []}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from siggen.config import State
 from siggen.dynamics.time.response import Response
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions

@@ -14,7 +14,7 @@ from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.response import Response, response_of
 from siggen.errors import SolverFailure
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record

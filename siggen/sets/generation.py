@@ -15,26 +15,23 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
 from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
-from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate, chunks
+from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
 from siggen.dataset.folder import config_bytes, is_finished
-from siggen.dataset.label_tables import DamageRows, write_damage, write_metadata
+from siggen.dataset.label_tables import write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest, sealed
 from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import LocalFolder, Storage
-from siggen.engines.processes import ProcessEngine, default_workers
 from siggen.engines.protocol import Engine
-from siggen.engines.serial import SerialEngine
+from siggen.engines.registry import engine_of
 from siggen.errors import EXIT_INTERRUPTED, SiggenError
 from siggen.planning.plan import ShardPlan, plan, record_ids_of, rows_per_group, shards
+from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
 
 if TYPE_CHECKING:
     from siggen.config import Config
-
-Quantities = Callable[["Config"], Sequence[Column]]
-"""config -> columns of `internals/`, as `siggen.record.internals.stored_quantities` gives them."""
 
 Progress = Callable[[int, int], None]
 """(records done, records of the set); called after every chunk."""
@@ -77,9 +74,7 @@ def generate(
     workers: int | None = None,
     progress: Progress | None = None,
     *,
-    simulate: Simulate | None = None,
-    damage_rows: DamageRows | None = None,
-    quantities: Quantities | None = None,
+    engine: Engine | str | None = None,
 ) -> Generation:
     """Generate a data set, or continue one that was interrupted; the files do not depend on `workers` nor on stops.
 
@@ -92,13 +87,15 @@ def generate(
         Worker processes, by default one per core. 0 runs everything in this process (for debuggers).
     progress : callable, optional
         Called with (records done, records of the set).
-    simulate, damage_rows, quantities : callable, optional
-        By default the physics of `siggen.record.simulation` and `siggen.record.internals`; module-level functions.
+    engine : Engine or str, optional
+        'serial', 'processes' (the default), or an object with `map` and `workers` as `siggen.engines.protocol` has it.
 
     Raises
     ------
     DatasetError
         If the folder holds something else, or is being written by another process.
+    UsageError
+        If there is no such engine, or it cannot have so many workers.
     InterruptionError
         After SIGINT or SIGTERM.
     EngineError
@@ -109,38 +106,14 @@ def generate(
         if is_finished(storage, config):
             return _unchanged(storage)
         storage.delete_leftovers()
-        engine = _engine(workers)
-        stored = _stored_quantities(config, quantities)
+        chosen = engine_of(engine, workers)
         with Interruption() as interruption:
-            physics = _physics(simulate, damage_rows)
-            run = _Run(config, storage, engine, *physics, stored, progress or _silent, interruption)
+            physics = contents.physics()
+            run = _Run(config, storage, chosen, physics, physics.stored(config), progress or _silent, interruption)
             try:
                 return run.finish()
             except KeyboardInterrupt:
                 raise InterruptionError(_how_to_continue(storage, run)) from None
-
-
-def _physics(simulate: Simulate | None, damage_rows: DamageRows | None) -> tuple[Simulate, DamageRows]:
-    if simulate is None or damage_rows is None:
-        import siggen.record.simulation as physics
-
-        return simulate or physics.simulate_specimen, damage_rows or physics.damage_rows
-    return simulate, damage_rows
-
-
-def _stored_quantities(config: Config, quantities: Quantities | None) -> tuple[Column, ...]:
-    if config.internals is None:
-        return ()
-    if quantities is not None:
-        return tuple(quantities(config))
-    from siggen.record.internals import stored_quantities
-
-    return stored_quantities(config)
-
-
-def _engine(workers: int | None) -> Engine:
-    # one worker is a process too: its libraries run one thread, as everywhere, and threads change how sums round
-    return SerialEngine() if workers == 0 else ProcessEngine(default_workers() if workers is None else workers)
 
 
 def _shards(config: Config) -> list[ShardPlan]:
@@ -158,8 +131,7 @@ class _Run:
     config: Config
     storage: Storage
     engine: Engine
-    simulate: Simulate
-    damage_rows: DamageRows
+    physics: contents.Physics
     quantities: tuple[Column, ...]
     progress: Progress
     interruption: Interruption
@@ -203,7 +175,8 @@ class _Run:
         """Simulate and write shards one after the other, from one stream of chunks."""
         work = {shard.key: self._chunks(shard) for shard in missing}
         tasks = (chunk for pieces in work.values() for chunk in pieces)
-        with closing(self.engine.map(ChunkSimulation(self.config, self.simulate, self.quantities), tasks)) as results:
+        function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
+        with closing(self.engine.map(function, tasks)) as results:
             ordered = in_order(results)
             for shard in missing:
                 self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
@@ -264,7 +237,7 @@ class _Run:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
                 written.append(write_metadata(self.storage, self.config, split, of_split).name)
-                written.append(write_damage(self.storage, self.config, split, of_split, self.damage_rows).name)
+                written.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows).name)
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
         manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, written)

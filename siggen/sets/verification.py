@@ -14,7 +14,7 @@ import numpy as np
 from siggen.columns.internals import FOLDER as INTERNALS_FOLDER
 from siggen.columns.record import signal_column
 from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
-from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, Simulate
+from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation
 from siggen.dataset.environment import environment
 from siggen.dataset.manifest import (
     CONFIG,
@@ -30,10 +30,10 @@ from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
 from siggen.dataset.storage import LocalFolder, Storage, sha256
-from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
-from siggen.engines.serial import SerialEngine
+from siggen.engines.registry import engine_of
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
+from siggen.sets import physics as contents
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -83,7 +83,9 @@ class Verification:
     mismatches: tuple[Mismatch, ...]
 
 
-def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = None, workers: int = 1) -> Verification:
+def verify(
+    path: Path | str, sample: int = 0, *, workers: int | None = None, engine: Engine | str | None = None
+) -> Verification:
     """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
 
     Records are compared bit for bit if versions and CPU family are those that made them; elsewhere signals may
@@ -95,10 +97,10 @@ def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = Non
     path : path
     sample : int
         Number of records; which ones follows from the manifest, so a verification can be repeated.
-    simulate : callable, optional
-        By default the physics of `siggen.record.simulation`.
-    workers : int
-        Worker processes; 0 simulates in this process.
+    workers : int, optional
+        Worker processes, by default 1; 0 simulates in this process.
+    engine : Engine or str, optional
+        As for `generate`.
 
     Raises
     ------
@@ -124,7 +126,7 @@ def verify(path: Path | str, sample: int = 0, *, simulate: Simulate | None = Non
     elif sample and (reason := _why_not_again(manifest, sample)):
         comparison = reason
     elif sample:
-        records, comparison, different = _simulate_again(storage, sample, simulate, workers)
+        records, comparison, different = _simulate_again(storage, sample, engine, workers)
         mismatches += different
     total = sum(facts["bytes"] for facts in manifest["files"].values())
     return Verification(storage.location, len(manifest["files"]) + 2, total, records, comparison, tuple(mismatches))
@@ -166,7 +168,7 @@ def _run(storage: Storage) -> Iterator[Mismatch]:
 
 
 def _simulate_again(
-    storage: Storage, sample: int, simulate: Simulate | None, workers: int
+    storage: Storage, sample: int, engine: Engine | str | None, workers: int | None
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
@@ -177,11 +179,11 @@ def _simulate_again(
     ids = _sample(dataset, sample)
     here = environment()
     exact = {record_id: _environment(dataset.manifest, record_id) == here for record_id in ids}
-    engine: Engine = ProcessEngine(workers) if workers else SerialEngine()
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
-    function = ChunkSimulation(config, simulate or _physics(), dataset.internal_columns)
-    with closing(engine.map(function, tasks)) as results:
+    function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
+    chosen = engine_of(engine, 1 if engine is None and workers is None else workers)
+    with closing(chosen.map(function, tasks)) as results:
         for index, result in results:
             record_id, batch = ids[index], result.batch()
             if result.failures:
@@ -192,12 +194,6 @@ def _simulate_again(
             mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
     comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
-
-
-def _physics() -> Simulate:
-    from siggen.record.simulation import simulate_specimen
-
-    return simulate_specimen
 
 
 def _config(storage: Storage, manifest: Mapping[str, Any]) -> Config:

@@ -11,8 +11,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
 from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table, face_slices
-from siggen.gears.damage.flank_chords import has_extent
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from siggen.config import Config, Gears, Stiffness, Wheel, constant, corners
-from siggen.gears.damage.flank_damage import axial_height
+from siggen.gears.damage.heights import axial_height
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions

@@ -3,15 +3,29 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
-from siggen.config import SpallSize, constant
-from siggen.gears.damage.flank_damage import Spall, length_squared_depth_m
+from siggen.config import Spalls, SpallSize, bounds, constant, corners, draw
+from siggen.errors import Problem
+from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.outlines import Ellipse, Outline, Polygon, rectangle, v_outline
+from siggen.gears.damage.spall import Spall, length_squared_depth_m
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
 from siggen.specimen.gears import pit_height_m
+from siggen.specimen.growth import MM, Growth
 
-MM = 1e-3
+SIZE_KEYS = ("face_length_mm", "profile_length_mm", "lower_width_mm", "upper_width_mm", "depth_mm")
+SPALL_KEYS = {
+    "height_m": "centre_height_mm",
+    "face_m": "face_centre_mm",
+    "depth_m": "depth_mm",
+    "vertices_m": "vertices",
+}
+"""Key of the configuration that a problem of a spall is about."""
 
 
 def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
@@ -44,13 +58,13 @@ def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) ->
 def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
     gear = pair.member(size.gear)
     if size.shape == "polygon":
-        corners = [(_axial_m(gear, MM * v.height_mm, reading), MM * v.face_mm) for v in size.vertices]
+        corners = [(axial_m(gear, MM * v.height_mm, reading), MM * v.face_mm) for v in size.vertices]
         return Polygon(tuple(corners))
     centre = size.centre_height_mm
     middle = pit_height_m(pair, size.gear, centre if isinstance(centre, str) else constant(centre), reading)
-    along = _read_m(gear, middle, reading)
+    along = read_m(gear, middle, reading)
     half = 0.5 * MM * _given(size.profile_length_mm)
-    heights = _axial_m(gear, along - half, reading), _axial_m(gear, along + half, reading)
+    heights = axial_m(gear, along - half, reading), axial_m(gear, along + half, reading)
     face = 0.5 * pair.face_width_m if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
     if size.shape == "v":
         return v_outline(heights, face, MM * _given(size.lower_width_mm), MM * _given(size.upper_width_mm))
@@ -67,7 +81,7 @@ def _given(number: object) -> float:
     return number
 
 
-def _read_m(gear: SpurGear, height_m: float, reading: str) -> float:
+def read_m(gear: SpurGear, height_m: float, reading: str) -> float:
     """Return the distance from the base circle of a flank point at an axial height, as a reading measures it [m]."""
     if reading == "axial":
         return height_m
@@ -75,7 +89,7 @@ def _read_m(gear: SpurGear, height_m: float, reading: str) -> float:
     return 0.5 * base * roll * roll if reading == "arc" else base * (math.hypot(1.0, roll) - 1.0)
 
 
-def _axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
+def axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
     """Return the axial height of a reading; below the base circle and above the tip along the flank's tangent [m].
 
     Ends of damage that reach off the flank need a height, whatever is cut off there afterwards. Derived: dx/darc =
@@ -84,9 +98,51 @@ def _axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
     """
     if reading == "axial":
         return value_m
-    tip = _read_m(gear, float(gear.height_m(gear.tip_roll_rad)), reading)
+    tip = read_m(gear, float(gear.height_m(gear.tip_roll_rad)), reading)
     if value_m < 0.0:
         return value_m * math.cos(gear.base_half_angle_rad)
     ratio = min(value_m, tip) / gear.base_radius_m
     roll = math.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else math.sqrt(2.0 * ratio)
     return float(gear.height_m(roll)) + max(value_m - tip, 0.0) * math.cos(gear.tip_roll_rad - gear.base_half_angle_rad)
+
+
+def _spalls(model: Spalls, growth: Growth) -> Damage:
+    """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
+    uniform = growth.place(model.gear, Spalls)
+    return tuple(
+        spall_on_tooth(growth.pair, draw(model, uniform, f"spall.{model.gear}.{tooth}"), model.height_reading, tooth)
+        for tooth in growth.teeth(model)
+    )
+
+
+def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:
+    """Yield what is wrong with a spall by itself, at every combination of its bounds."""
+    for corner in corners(size):
+        spall = spall_on_tooth(pair, corner, reading, 0)
+        for problem in damage_problems(pair, (spall,)):
+            if problem.name != "contact":
+                key = _spall_key(size, problem.name)
+                yield Problem(prefix + key, in_mm(problem.received), allowed_text(problem.allowed))
+
+
+def _spall_key(size: SpallSize, name: str) -> str:
+    if size.shape == "polygon" and name in ("height_m", "face_m"):
+        return "vertices"
+    if name == "depth_m" and size.depth_law == "length_squared":
+        return "depth_coefficient_um_per_mm2"
+    return SPALL_KEYS.get(name, "profile_length_mm")
+
+
+def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+    """Return a spall with all its sizes at their upper and its place at its lower bounds, without depth to speak of."""
+    sizes = {key: value for key in SIZE_KEYS if (value := getattr(size, key)) is not None}
+    largest = size.model_copy(update={key: bounds(value)[1] for key, value in sizes.items()})
+    spall = spall_on_tooth(pair, next(corners(largest)), reading, tooth)
+    return replace(spall, depth_m=PROBE_M)
+
+
+SPALLS = DamageKind(
+    _spalls,
+    lambda pair, model: spall_problems(pair, model, model.height_reading),
+    lambda pair, model: (largest_spall(pair, model, model.height_reading, 0),),
+)

@@ -38,7 +38,9 @@ def flank_figure(views: Sequence[FlankView]) -> Figure:
     )
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    colours = ScalarMappable(Normalize(0.0, max(max(view.depths_mm) for view in shown)), "YlOrRd")
+    colours = ScalarMappable(
+        Normalize(0.0, max((depth for view in shown for depth in view.depths_mm), default=0.0) or 1.0), "YlOrRd"
+    )
     for axis, view in zip(axes, shown, strict=False):
         _draw(axis, view, colours)
     for axis in axes[len(shown) :]:

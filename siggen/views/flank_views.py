@@ -12,7 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gears.damage.flank_damage import Damage, damaged_teeth, pits_of
+from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -131,6 +131,7 @@ def _view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) ->
     gear = pair.member(which)
     area_m2 = union_area_m2(gear, damage, pair.face_width_m)
     zones = _flank_zones(pair, which)
+    shown = [(one.outline, one.depth_m) for one in damage if one.outline is not None]
     return FlankView(
         state=state,
         gear=which,
@@ -141,8 +142,8 @@ def _view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) ->
         pitch_mm=_arc_mm(gear, float(np.tan(pair.working_pressure_angle_rad))),
         tip_mm=_arc_mm(gear, gear.tip_roll_rad),
         zones=zones,
-        outlines_mm=tuple(_along_the_arc(gear, outline_mm(one)) for one in damage),
-        depths_mm=tuple(1e3 * one.depth_m for one in damage),
+        outlines_mm=tuple(_along_the_arc(gear, outline_mm(outline)) for outline, _ in shown),
+        depths_mm=tuple(1e3 * depth_m for _, depth_m in shown),
         area_mm2=1e6 * area_m2,
         area_share=area_m2 / (pair.face_width_m * flank_arc_m(gear)),
     )

@@ -9,8 +9,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.mesh.slice_law import SliceLaw, slice_tables
 from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.damage.flank_chords import has_extent
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds, table_of_pair
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.gears.damage.flank_damage import Damage, pits_of
+from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error

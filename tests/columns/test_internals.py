@@ -27,6 +27,7 @@ from tests.dataset.fake_set import (
     simulate_with_failures,
     simulate_with_longer_contact,
     simulate_with_thicker_films,
+    verify_fake_set,
     write_fake_set,
 )
 
@@ -89,7 +90,7 @@ def test_rows_join_the_records_and_hold_their_series(reference: Path) -> None:
 def test_undefined_films_hide_no_difference(reference, monkeypatch, elsewhere, simulation, problem) -> None:
     if elsewhere:  # then records need only be close
         monkeypatch.setattr(siggen.sets.verification, "environment", lambda: {"cpu": "another"})
-    mismatches = verify(reference, 30, simulate=simulation, workers=0).mismatches
+    mismatches = verify_fake_set(reference, 30, simulation=simulation).mismatches
     assert len(mismatches) == (0 if problem is None else 18)  # those of specimens 0, 2 and 4
     assert all(problem in mismatch.problem for mismatch in mismatches)
 
@@ -124,7 +125,7 @@ def test_records_can_be_chosen_by_state_and_specimen(tmp_path: Path) -> None:
     assert sorted(i for batch in dataset.internals() for i in batch["record_id"].to_pylist()) == expected
     assert [i for i in range(30) if has_internals(chosen, planned_record(chosen, i))] == expected
     assert dataset.record_internals(1) is None
-    assert verify(tmp_path, 30, simulate=simulate, workers=0).mismatches == ()
+    assert verify_fake_set(tmp_path, 30).mismatches == ()
 
 
 @pytest.mark.parametrize("damage", ["lost", "flipped"])
@@ -150,7 +151,7 @@ def test_an_interrupted_shard_leaves_neither_of_its_files(tmp_path: Path) -> Non
 
 
 def test_verification_reads_every_byte_and_simulates_internals_again(reference: Path, folder: Path) -> None:
-    found = verify(reference, 30, simulate=simulate, workers=0)
+    found = verify_fake_set(reference, 30)
     assert (found.mismatches, found.comparison, found.files) == ((), EXACT, len(FILES))
     file = folder / "internals/test-00000.parquet"
     content = bytearray(file.read_bytes())
@@ -167,7 +168,7 @@ def simulate_other_forces(config, record_ids):
 
 
 def test_another_internal_quantity_is_a_mismatch_of_its_record(reference: Path) -> None:
-    found = verify(reference, 2, simulate=simulate_other_forces, workers=0)
+    found = verify_fake_set(reference, 2, simulation=simulate_other_forces)
     assert len(found.mismatches) == 2
     assert "internal quantity mesh_force_n differs" in found.mismatches[0].problem
 

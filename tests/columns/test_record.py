@@ -8,8 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from siggen.columns.damage_columns import DAMAGE_COLUMNS
 from siggen.columns.record import (
-    DAMAGE_COLUMNS,
     channels,
     damage_schema,
     label_names,

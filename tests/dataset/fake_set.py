@@ -6,7 +6,8 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -18,7 +19,9 @@ from siggen.columns.record import Column, Record, RecordFailure
 from siggen.config import Config, parse
 from siggen.planning import plan
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
+from siggen.sets import physics
 from siggen.sets.generation import Generation, generate
+from siggen.sets.verification import Verification, verify
 
 STEP_M_S2 = 2.0**-6
 """Least power of two that covers 2 * 500 m/s^2 in 16 bits, as the converter of the configuration has it."""
@@ -211,15 +214,27 @@ def damage_rows(config: Config, record_id: int) -> list[dict[str, object]]:
     return [{**ellipse, "record_id": record_id, "face_mm": 8.0 + pit} for pit in range(count)]
 
 
+@contextmanager
+def fake_physics(simulation: Any = simulate) -> Iterator[None]:
+    """Put the stand-in where `generate` and `verify` look for the physics; workers receive its functions by name."""
+    stand_in = physics.Physics(simulation, damage_rows, quantities)
+    with patch.object(physics, "physics", lambda: stand_in):
+        yield
+
+
 def write_fake_set(
     path: Path, config: Config | None = None, *, workers: int = 0, simulation: Any = simulate
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
-    with patch.multiple(
-        plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096
-    ):  # row groups of 2: several chunks per shard
-        chosen = config or fake_config()
-        return generate(chosen, path, workers, simulate=simulation, damage_rows=damage_rows, quantities=quantities)
+    # row groups of 2: several chunks per shard
+    with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
+        return generate(config or fake_config(), path, workers)
+
+
+def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: Any = simulate) -> Verification:
+    """Verify a set with records of the stand-in, simulated in this process unless workers are asked for."""
+    with fake_physics(simulation):
+        return verify(path, sample, workers=workers)
 
 
 FAKE_FILES = sorted(

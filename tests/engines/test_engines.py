@@ -7,10 +7,11 @@ from contextlib import closing
 
 import pytest
 
-from siggen.engines.processes import WINDOW_PER_WORKER, ProcessEngine
+from siggen.engines.processes import WINDOW_PER_WORKER, ProcessEngine, default_workers
 from siggen.engines.protocol import Engine
+from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
-from siggen.errors import EngineError
+from siggen.errors import EngineError, UsageError
 from tests.engines.tasks import fail_at_three, slow_at_first, square
 
 ENGINES = [SerialEngine(), ProcessEngine(1), ProcessEngine(2)]
@@ -59,3 +60,20 @@ def test_closing_the_results_stops_the_work() -> None:
     next(results)
     results.close()
     assert list(results) == []
+
+
+def test_engines_are_found_by_name_and_objects_are_taken_as_they_are() -> None:
+    assert isinstance(engine_of(None, 0), SerialEngine)
+    assert isinstance(engine_of("serial", None), SerialEngine)
+    assert engine_of(None, 3).workers == 3
+    assert engine_of("processes", None).workers == default_workers()
+    mine = ProcessEngine(2)
+    assert engine_of(mine, None) is mine
+    assert engine_of(mine, 2) is mine
+
+
+def test_an_unknown_engine_and_two_numbers_of_workers_are_refused() -> None:
+    with pytest.raises(UsageError, match="received the engine 'ray'; allowed: serial, processes, or an Engine object"):
+        engine_of("ray", 2)
+    with pytest.raises(UsageError, match="received workers 3 and an engine of 2 workers"):
+        engine_of(ProcessEngine(2), 3)

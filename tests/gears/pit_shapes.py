@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from siggen.gears.damage.flank_damage import Pit
+from siggen.gears.damage.pit import Pit
 from siggen.gears.geometry.gear_pair import GearPair
 
 

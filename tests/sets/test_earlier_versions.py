@@ -20,7 +20,7 @@ from siggen.dataset.sidecar import committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import simulate, write_fake_set
+from tests.dataset.fake_set import verify_fake_set, write_fake_set
 
 FIRST = Path(__file__).parent / "schema_1"
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
@@ -84,7 +84,7 @@ def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(t
     say(tmp_path, schema_version="99")
     with pytest.raises(DatasetError, match="received schema version 99; allowed are 1 and 2"):
         siggen.open(tmp_path)
-    found = verify(tmp_path, 3, simulate=simulate, workers=0)
+    found = verify_fake_set(tmp_path, 3)
     assert found.mismatches == ()
     assert found.comparison.startswith("hashes checked; 3 records not simulated again")
 

@@ -14,10 +14,9 @@ from siggen.errors import DatasetError, EngineError
 from siggen.sets.generation import generate, in_order
 from tests.dataset.fake_set import (
     FAKE_FILES,
-    damage_rows,
     fake_config,
+    fake_physics,
     file_bytes,
-    simulate,
     simulate_none,
     simulate_with_a_bug,
     simulate_with_failures,
@@ -129,7 +128,8 @@ def test_progress_counts_every_record_once(tmp_path: Path) -> None:
     def show(done: int, total: int) -> None:
         seen.append((done, total))
 
-    generate(fake_config(), tmp_path, 0, show, simulate=simulate, damage_rows=damage_rows)
+    with fake_physics():
+        generate(fake_config(), tmp_path, 0, show)
     assert seen[-1] == (30, 30)
     assert [done for done, _ in seen] == sorted({done for done, _ in seen})
 
@@ -150,3 +150,26 @@ def test_run_json_holds_the_speed_and_carries_its_own_digest(tmp_path: Path) -> 
 
 def test_results_are_put_back_in_order() -> None:
     assert list(in_order(iter([(2, "c"), (0, "a"), (3, "d"), (1, "b")]))) == ["a", "b", "c", "d"]  # type: ignore[arg-type]
+
+
+def test_a_set_does_not_depend_on_the_engine(tmp_path: Path) -> None:
+    class Backwards:
+        """Gives the results of every two tasks in the wrong order."""
+
+        workers = 2
+
+        def map(self, function, tasks):
+            waiting = []
+            for index, task in enumerate(tasks):
+                waiting.append((index, function(task)))
+                if len(waiting) == 2:
+                    yield from reversed(waiting)
+                    waiting.clear()
+            yield from waiting
+
+    made = {}
+    for name, engine in (("named", "serial"), ("object", Backwards())):
+        with fake_physics():
+            generate(fake_config(), tmp_path / name, engine=engine)
+        made[name] = file_bytes(tmp_path / name)
+    assert made["named"] == made["object"]

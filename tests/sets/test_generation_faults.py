@@ -17,10 +17,9 @@ from siggen.dataset.storage import LEFTOVER_SUFFIX
 from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
 from siggen.sets.generation import InterruptionError, generate
 from tests.dataset.fake_set import (
-    damage_rows,
     fake_config,
+    fake_physics,
     file_bytes,
-    simulate,
     simulate_and_die,
     simulate_and_die_once,
     write_fake_set,
@@ -126,9 +125,9 @@ def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dic
         if done >= 8:
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(InterruptionError, match="0 of 3 shards"):
-        # shards of the usual size hold a whole split, none of which is finished after 8 records
-        generate(fake_config(), tmp_path, 0, interrupt, simulate=simulate, damage_rows=damage_rows)
+    # shards of the usual size hold a whole split, none of which is finished after 8 records
+    with fake_physics(), pytest.raises(InterruptionError, match="0 of 3 shards"):
+        generate(fake_config(), tmp_path, 0, interrupt)
     write_fake_set(tmp_path)
     assert_complete(tmp_path, reference)
 
@@ -152,10 +151,11 @@ MEMORY = """
 import sys
 from pathlib import Path
 from siggen.sets.generation import generate
-from tests.dataset.fake_set import damage_rows, fake_config, simulate
+from tests.dataset.fake_set import fake_config, fake_physics
 if __name__ == "__main__":
     config = fake_config(fs_hz=51200.0, duration_s=10.0, specimens=int(sys.argv[2]))
-    generate(config, Path(sys.argv[1]), 2, simulate=simulate, damage_rows=damage_rows)
+    with fake_physics():
+        generate(config, Path(sys.argv[1]), 2)
 """
 
 

@@ -18,7 +18,7 @@ from siggen.config import Config
 from siggen.dataset.environment import environment
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.sets.verification import CLOSE, EXACT, verify
-from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, write_fake_set
+from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, verify_fake_set, write_fake_set
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def flip(path: Path, place: int, bit: int) -> None:
 
 
 def test_an_untouched_set_is_as_promised(reference: Path) -> None:
-    found = verify(reference, 30, simulate=simulate, workers=0)
+    found = verify_fake_set(reference, 30)
     assert found.mismatches == ()
     assert found.files == len(FAKE_FILES)
     assert found.records == tuple(range(30))
@@ -112,7 +112,7 @@ def elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_here_a_single_sample_that_differs_by_one_step_is_a_mismatch(reference: Path) -> None:
-    found = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, STEP_M_S2), workers=0)
+    found = verify_fake_set(reference, 3, simulation=lambda config, ids: shifted(config, ids, STEP_M_S2))
     assert len(found.mismatches) == 3
     assert "accel_bearing_horizontal_m_s2 differs by up to 0.0156 (allowed 0)" in found.mismatches[0].problem
     assert found.comparison == EXACT
@@ -122,10 +122,10 @@ def test_elsewhere_one_step_of_the_converter_is_allowed_and_two_are_not(
     reference: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     elsewhere(monkeypatch)
-    one = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, STEP_M_S2), workers=0)
+    one = verify_fake_set(reference, 3, simulation=lambda config, ids: shifted(config, ids, STEP_M_S2))
     assert one.mismatches == ()
     assert one.comparison.startswith(CLOSE)
-    two = verify(reference, 3, simulate=lambda config, ids: shifted(config, ids, 2 * STEP_M_S2), workers=0)
+    two = verify_fake_set(reference, 3, simulation=lambda config, ids: shifted(config, ids, 2 * STEP_M_S2))
     assert len(two.mismatches) == 3
 
 
@@ -144,28 +144,28 @@ def test_labels_are_compared_too(
     def changed(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
         return [replace(record, labels={**record.labels, label: value}) for record in simulate(config, ids)]
 
-    assert len(verify(reference, 2, simulate=changed, workers=0).mismatches) == 2
+    assert len(verify_fake_set(reference, 2, simulation=changed).mismatches) == 2
     elsewhere(monkeypatch)
-    assert (verify(reference, 2, simulate=changed, workers=0).mismatches == ()) == allowed_elsewhere
+    assert (verify_fake_set(reference, 2, simulation=changed).mismatches == ()) == allowed_elsewhere
 
 
 def test_a_record_that_now_fails_is_a_mismatch(reference: Path) -> None:
     def fails(config: Config, ids: Sequence[int]) -> list[Record | RecordFailure]:
         return [RecordFailure(i, "diverged", "why not") for i in ids]
 
-    found = verify(reference, 1, simulate=fails, workers=0)
+    found = verify_fake_set(reference, 1, simulation=fails)
     assert found.mismatches[0].problem == "now fails: diverged (why not)"
 
 
 def test_workers_simulate_again_too_and_the_sample_is_repeatable(reference: Path) -> None:
-    first = verify(reference, 4, simulate=simulate)
+    first = verify_fake_set(reference, 4, workers=1)
     assert first.mismatches == ()
     assert len(first.records) == 4
-    assert verify(reference, 4, simulate=simulate, workers=0).records == first.records
+    assert verify_fake_set(reference, 4).records == first.records
 
 
 def test_records_are_not_simulated_when_files_differ(folder: Path) -> None:
     flip(folder / "config.yaml", 10, 0)
-    found = verify(folder, 3, simulate=simulate, workers=0)
+    found = verify_fake_set(folder, 3)
     assert found.records == ()
     assert found.comparison == "none, since files differ"

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from siggen.errors import ConfigError
-from siggen.gears.damage.flank_damage import damage_problems, profile_arc_m
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows

@@ -12,6 +12,8 @@ slice is flush with d = 0, and the groups stand for the whole face.
 The error against all slices, directly at the middle of all cells, is given by `slice_law_error`. With the defaults,
 18/47 teeth of module 3 mm and penetrations of 3, 5, 8 and 45 µm it is, of the healthy force, below 0.1 % for 16 round
 pits of 0.6 mm, below 0.5 % for a pit of 1.5 mm through the whole face and below 4 % where pits leave 4 % of the face.
+Skewed and wavy edges are crossed slice by slice: for a spall of 1 mm through the face, skews up to 0.8 mm and waves of
+15 %, 200 slices are within 0.03 % of 3,200, and the groups within 0.23 % of all slices.
 """
 
 from __future__ import annotations
@@ -24,8 +26,8 @@ from numba import njit
 from siggen.arrays import FloatArray
 from siggen.dynamics.friction.contact_kinematics import hertz_half_width, relative_radius
 from siggen.gears.contact.slice_contact import SliceSprings, grouped_sinks, sink_depths, slice_force, slice_springs
-from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords, has_extent
-from siggen.gears.damage.flank_damage import Damage, pits_of
+from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords
+from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, rolls_at
@@ -36,10 +38,10 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 class SliceOptions(NamedTuple):
     """How pits act on the contact.
 
-    `line_load_n_per_m`: load that sets the Hertz width which bridges narrow pits; `edge_radius_m`: of the pits' edges,
-    0 for sharp ones; `section_loss`: whether pits also weaken the tooth's sections (an upper bound of their effect, as
-    in potential-energy papers); `slices` across the face, narrower than a pit; `groups` that stand for them in the
-    table.
+    `line_load_n_per_m`: load that sets the Hertz width which bridges narrow pits; `edge_radius_m`: of the edges of
+    damage that states none itself, 0 for sharp ones; `section_loss`: whether pits also weaken the tooth's sections (an
+    upper bound of their effect, as in potential-energy papers); `slices` across the face, narrower than a pit; `groups`
+    that stand for them in the table.
     """
 
     line_load_n_per_m: float
@@ -85,7 +87,7 @@ def slice_law(
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit or Spall
+    damage : tuple of ToothDamage
         Pits without extent in some direction are no pits.
     stiffness : StiffnessOptions
         Of the teeth's compliance.
@@ -303,8 +305,9 @@ def _chords(
 
 
 def _sinks(pair: GearPair, chords: ContactChords, options: SliceOptions, position: FloatArray) -> FloatArray:
-    radius = np.asarray(relative_radius(position, pair.line_of_action_m))[:, None]
-    return sink_depths(chords.edge_m, chords.depth_m, radius, options.edge_radius_m)
+    edge = np.where(chords.edge_radius_m < 0.0, options.edge_radius_m, chords.edge_radius_m)
+    radius = np.asarray(relative_radius(position, pair.line_of_action_m))[:, None] + edge
+    return sink_depths(chords.edge_m, chords.depth_m, radius, 0.0)
 
 
 def _stiffness(
@@ -321,7 +324,9 @@ def _stiffness(
     tooth: dict[tuple[str, int], FloatArray] = {}
     for column, which in enumerate(("pinion", "gear")):
         for index in sorted({kind[column] for kind in kinds}):
-            pits = pits_of(damage, which, index) if section_loss else ()
+            pits = pits_of(damage, which, index)
+            # What shows on no flank acts through the tooth alone.
+            pits = pits if section_loss else tuple(one for one in pits if one.outline is None)
             tooth[which, index] = tooth_compliance(pair, which, rolls[which], options, pits).total
     return np.stack([1.0 / (contact + tooth["pinion", i] + tooth["gear", j]) for i, j in kinds])
 

@@ -31,8 +31,8 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import SolverRoom, solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_faces
-from siggen.gears.damage.flank_chords import flank_chords, has_extent
-from siggen.gears.damage.flank_damage import Damage, pits_of
+from siggen.gears.damage.flank_chords import flank_chords
+from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import centre_line_depth, contact_half_width
@@ -89,11 +89,15 @@ class ContactTable(NamedTuple):
 
 
 class KindRow(NamedTuple):
-    """One kind of pair on the fine grid (points,): positions, gaps and compliance of all but the contact."""
+    """One kind of pair on the fine grid (points,): positions, gaps, compliance of all but the contact, radius of edges.
+
+    The radius is the mean of those that the damage of both teeth states, or else that of the options.
+    """
 
     position_m: FloatArray
     gaps: FaceGaps
     rest_m_per_n: FloatArray
+    edge_radius_m: float
 
 
 class TableSolver(NamedTuple):
@@ -185,9 +189,17 @@ def kind_row(
         flank_chords(pair.member(which), of_tooth, pair.face_width_m, face_slices(pair, options))
         for which, _, of_tooth in members
     ]
-    weak = options.section_loss
-    rest = [tooth_compliance(pair, which, roll, stiffness, p if weak else ()).total for which, roll, p in members]
-    return KindRow(position, face_gaps(pair, chords[0], chords[1], position), np.add(*rest))
+    # What shows on no flank acts through the tooth alone, as in `slice_law`.
+    rest = [
+        tooth_compliance(
+            pair, which, roll, stiffness, tuple(d for d in damage if options.section_loss or d.outline is None)
+        ).total
+        for which, roll, damage in members
+    ]
+    stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
+    stated = stated[stated > 0.0]
+    edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
+    return KindRow(position, face_gaps(pair, chords[0], chords[1], position), np.add(*rest), edge_radius)
 
 
 def table_solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, lead_m: FloatArray) -> TableSolver:
@@ -266,7 +278,7 @@ def _half_width(pair: GearPair, position_m: FloatArray, force_n: float) -> Float
 def first_touch(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
     """Return the least rigid sink of all slices, missing material across the face included (chosen,) [m]."""
     position, line = row.position_m[chosen], solver.pair.line_of_action_m
-    radius = position * (line - position) / line + solver.options.edge_radius_m
+    radius = position * (line - position) / line + row.edge_radius_m
     gaps = row.gaps
     near = np.maximum(np.minimum(gaps.left_m[chosen], gaps.right_m[chosen]), 0.0)
     floor = np.where(gaps.floor_m[chosen] > 0.0, gaps.floor_m[chosen], np.inf)
@@ -283,7 +295,7 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
         FaceGaps(*(array[chosen] for array in row.gaps)),
         row.position_m[chosen],
         row.rest_m_per_n[chosen],
-        FaceOptions(typical, options.edge_radius_m, options.coupled),
+        FaceOptions(typical, row.edge_radius_m, options.coupled),
         solver.lead_m,
     )
 

@@ -25,7 +25,7 @@ from siggen.gears.contact.contact_table import (
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -80,7 +80,9 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     from scipy.interpolate import CubicHermiteSpline
 
     place = np.array([2 * cell + 1])
-    here = KindRow(row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place])
+    here = KindRow(
+        row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place], row.edge_radius_m
+    )
     only = np.zeros(1, dtype=np.int64)
     approach = float(first_touch(solver, here, only)[0]) + np.array(APPROACHES) * table.reach_m
     slices = row_faces(solver, here, only)[0]

@@ -13,68 +13,103 @@ from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.gears.damage.row_columns import (
+    DEPTH,
+    DISH,
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 
 
 @njit(cache=True)
 def _sides_at(row: FloatArray, x: float) -> tuple[float, float]:
-    share = (x - row[7]) / (row[8] - row[7])
-    return row[9] + share * (row[11] - row[9]), row[10] + share * (row[12] - row[10])
+    share = (x - row[LOWEST]) / (row[HIGHEST] - row[LOWEST])
+    return row[LEFT_LOW] + share * (row[LEFT_HIGH] - row[LEFT_LOW]), row[RIGHT_LOW] + share * (
+        row[RIGHT_HIGH] - row[RIGHT_LOW]
+    )
 
 
 @njit(cache=True)
 def _contains_point(one: FloatArray, x: float, w: float) -> bool:
-    u, v = (x - one[0]) / one[3], (w - one[1]) / one[2]
+    u, v = (x - one[HEIGHT]) / one[SEMI_HEIGHT], (w - one[FACE]) / one[SEMI_FACE]
     return bool(u * u + v * v <= 1.0)
 
 
 @njit(cache=True)
 def _outline_contains(one: FloatArray, two: FloatArray) -> bool:
     """Whether the outline of row `one` holds that of row `two`; two ellipses of unlike shape only where it is plain."""
-    if two[7] < one[7] or two[8] > one[8]:
+    if two[LOWEST] < one[LOWEST] or two[HIGHEST] > one[HIGHEST]:
         return False
-    if one[6] == 0.0 and two[6] == 0.0:
-        u, v = (two[0] - one[0]) / one[3], (two[1] - one[1]) / one[2]
-        return bool(sqrt(u * u + v * v) + max(two[3] / one[3], two[2] / one[2]) <= 1.0)
-    if one[6] == 0.0:
-        low = _contains_point(one, two[7], two[9]) and _contains_point(one, two[7], two[10])
-        return low and _contains_point(one, two[8], two[11]) and _contains_point(one, two[8], two[12])
-    if two[6] == 0.0:
-        left, right = _sides_at(one, two[0])
-        span = one[8] - one[7]
-        lean_left, lean_right = (one[11] - one[9]) / span * two[3], (one[12] - one[10]) / span * two[3]
-        from_left = two[1] - left - sqrt(two[2] * two[2] + lean_left * lean_left)
-        return bool(from_left >= 0.0 and right - two[1] - sqrt(two[2] * two[2] + lean_right * lean_right) >= 0.0)
-    left_low, right_low = _sides_at(one, two[7])
-    left_high, right_high = _sides_at(one, two[8])
-    return bool(left_low <= two[9] and left_high <= two[11] and right_low >= two[10] and right_high >= two[12])
+    if one[TRAPEZOID] == 0.0 and two[TRAPEZOID] == 0.0:
+        u, v = (two[HEIGHT] - one[HEIGHT]) / one[SEMI_HEIGHT], (two[FACE] - one[FACE]) / one[SEMI_FACE]
+        return bool(
+            sqrt(u * u + v * v) + max(two[SEMI_HEIGHT] / one[SEMI_HEIGHT], two[SEMI_FACE] / one[SEMI_FACE]) <= 1.0
+        )
+    if one[TRAPEZOID] == 0.0:
+        low = _contains_point(one, two[LOWEST], two[LEFT_LOW]) and _contains_point(one, two[LOWEST], two[RIGHT_LOW])
+        return (
+            low
+            and _contains_point(one, two[HIGHEST], two[LEFT_HIGH])
+            and _contains_point(one, two[HIGHEST], two[RIGHT_HIGH])
+        )
+    if two[TRAPEZOID] == 0.0:
+        left, right = _sides_at(one, two[HEIGHT])
+        span = one[HIGHEST] - one[LOWEST]
+        lean_left, lean_right = (
+            (one[LEFT_HIGH] - one[LEFT_LOW]) / span * two[SEMI_HEIGHT],
+            (one[RIGHT_HIGH] - one[RIGHT_LOW]) / span * two[SEMI_HEIGHT],
+        )
+        from_left = two[FACE] - left - sqrt(two[SEMI_FACE] * two[SEMI_FACE] + lean_left * lean_left)
+        return bool(
+            from_left >= 0.0
+            and right - two[FACE] - sqrt(two[SEMI_FACE] * two[SEMI_FACE] + lean_right * lean_right) >= 0.0
+        )
+    left_low, right_low = _sides_at(one, two[LOWEST])
+    left_high, right_high = _sides_at(one, two[HIGHEST])
+    return bool(
+        left_low <= two[LEFT_LOW]
+        and left_high <= two[LEFT_HIGH]
+        and right_low >= two[RIGHT_LOW]
+        and right_high >= two[RIGHT_HIGH]
+    )
 
 
 @njit(cache=True)
 def _square_excess(one: FloatArray, two: FloatArray, x: float) -> float:
     """Return the difference of the squared depths of two dishes without curvature across the face."""
-    u, v = (x - one[0]) / one[3], (x - two[0]) / two[3]
-    excess: float = one[4] ** 2 * (1.0 - u) * (1.0 + u) - two[4] ** 2 * (1.0 - v) * (1.0 + v)
-    return excess
+    u, v = (x - one[HEIGHT]) / one[SEMI_HEIGHT], (x - two[HEIGHT]) / two[SEMI_HEIGHT]
+    return float(one[DEPTH] ** 2 * (1.0 - u) * (1.0 + u) - two[DEPTH] ** 2 * (1.0 - v) * (1.0 + v))
 
 
 @njit(cache=True)
 def hides(one: FloatArray, two: FloatArray) -> bool:
     """Whether row `one` is at least as deep as row `two` everywhere inside the outline of `two`."""
-    if one[4] < two[4] or not _outline_contains(one, two):
+    if one[DEPTH] < two[DEPTH] or not _outline_contains(one, two):
         return False
-    if one[5] == 0.0 or two[5] == 0.0 or one[6] != two[6]:
-        return bool(one[5] == 0.0)
-    if one[6] == 0.0:
+    if one[DISH] == 0.0 or two[DISH] == 0.0 or one[TRAPEZOID] != two[TRAPEZOID]:
+        return bool(one[DISH] == 0.0)
+    if one[TRAPEZOID] == 0.0:
         # Concentric: the difference of squares is linear in the squared distances, so three corners decide.
-        return bool(one[0] == two[0] and one[1] == two[1])
+        return bool(one[HEIGHT] == two[HEIGHT] and one[FACE] == two[FACE])
     # A quadratic of the height: its ends, and its vertex where it is convex.
-    curve = two[4] ** 2 / two[3] ** 2 - one[4] ** 2 / one[3] ** 2
-    if _square_excess(one, two, two[7]) < 0.0 or _square_excess(one, two, two[8]) < 0.0:
+    curve = two[DEPTH] ** 2 / two[SEMI_HEIGHT] ** 2 - one[DEPTH] ** 2 / one[SEMI_HEIGHT] ** 2
+    if _square_excess(one, two, two[LOWEST]) < 0.0 or _square_excess(one, two, two[HIGHEST]) < 0.0:
         return False
     if curve <= 0.0:
         return True
-    vertex = (two[0] * two[4] ** 2 / two[3] ** 2 - one[0] * one[4] ** 2 / one[3] ** 2) / curve
-    return not two[7] < vertex < two[8] or _square_excess(one, two, vertex) >= 0.0
+    vertex = (
+        two[HEIGHT] * two[DEPTH] ** 2 / two[SEMI_HEIGHT] ** 2 - one[HEIGHT] * one[DEPTH] ** 2 / one[SEMI_HEIGHT] ** 2
+    ) / curve
+    return not two[LOWEST] < vertex < two[HIGHEST] or _square_excess(one, two, vertex) >= 0.0
 
 
 @njit(cache=True)
@@ -84,6 +119,13 @@ def hidden_rows(rows: FloatArray) -> NDArray[np.bool_]:
     out = np.zeros(count, np.bool_)
     for i in range(count):
         for k in range(count):
+            # What `hides` asks first, without taking rows out of the table.
+            if (
+                rows[k, LOWEST] > rows[i, LOWEST]
+                or rows[k, HIGHEST] < rows[i, HIGHEST]
+                or rows[k, DEPTH] < rows[i, DEPTH]
+            ):
+                continue
             # Of two that hide each other (outlines equal but for rounding) the first stays.
             if k != i and not out[k] and hides(rows[k], rows[i]) and (k < i or not hides(rows[i], rows[k])):
                 out[i] = True

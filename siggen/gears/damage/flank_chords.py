@@ -17,7 +17,21 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.row_columns import (
+    EDGE_RADIUS,
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+    UNSTATED,
+)
+from siggen.gears.damage.tooth_damage import ToothDamage, has_extent
 from siggen.gears.damage.union import square_depth
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
@@ -30,12 +44,15 @@ BEYOND_TIP = 1.5
 class FlankChords(NamedTuple):
     """Pits of one flank on the middle line of every slice (a named tuple, since compiled code takes no dataclass).
 
-    `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `intervals` (slices,): how many;
-    `face_m` (slices,): the lines; `pits` (n, 13): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
+    `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `low_radius_m`, `high_radius_m`: radii
+    of their edges [m], negative where the damage states none; `intervals` (slices,): how many; `face_m` (slices,): the
+    lines; `pits` (n, COLUMNS): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
     """
 
     low: FloatArray
     high: FloatArray
+    low_radius_m: FloatArray
+    high_radius_m: FloatArray
     intervals: IntArray
     face_m: FloatArray
     pits: FloatArray
@@ -47,21 +64,23 @@ class ContactChords(NamedTuple):
     """What slices meet at positions, each (positions, slices).
 
     `covered`: share of the Hertz band over pits; `edge_m`: distance to the nearest edge of the pit at the contact, 0 on
-    a land; `depth_m`: depth of the floor there, 0 on a land.
+    a land; `depth_m`: depth of the floor there, 0 on a land; `edge_radius_m`: radius of that edge, negative where the
+    damage states none and on a land.
     """
 
     covered: FloatArray
     edge_m: FloatArray
     depth_m: FloatArray
+    edge_radius_m: FloatArray
 
 
-def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, slices: int) -> FlankChords:
+def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float, slices: int) -> FlankChords:
     """Return the chords of one flank; pits without extent in any direction are no pits.
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
     slices : int
@@ -74,13 +93,15 @@ def flank_chords(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: floa
     """
     if slices < 1:
         raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
-    rows = pit_rows(pit for pit in pits if has_extent(pit))
+    rows = pit_rows(one for one in pits if has_extent(one))
     face = face_width_m * (np.arange(slices) + 0.5) / slices
     highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
-    low, high, count = _line_unions(face, rows, highest)
+    low, high, low_radius, high_radius, count = _line_unions(face, rows, highest)
     return FlankChords(
         low=_arcs(gear, low),
         high=_arcs(gear, high),
+        low_radius_m=low_radius,
+        high_radius_m=high_radius,
         intervals=count,
         face_m=face,
         pits=rows,
@@ -98,18 +119,12 @@ def contact_chords(
     the band covers next to nothing, a wide one all.
     """
     shape = (position_m.size, pinion.intervals.size)
-    out = ContactChords(np.zeros(shape), np.zeros(shape), np.zeros(shape))
+    out = ContactChords(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.full(shape, UNSTATED))
     room = pinion.low.shape[1] + gear.low.shape[1]
-    _fill_contact(pair.line_of_action_m, pinion, gear, position_m, half_width_m, np.empty((2, room)), out)
+    _fill_contact(pair.line_of_action_m, pinion, gear, position_m, half_width_m, np.empty((4, room)), out)
     # Shares of several pits may add up to 1 less a rounding error: that is no land.
     np.copyto(out.covered, 1.0, where=out.covered > 1.0 - 1e-12)
     return out
-
-
-def has_extent(damage: Pit | Spall) -> bool:
-    """Whether a pit or spall has depth, height and width; one without is none at all (a limit case of the tests)."""
-    (low, high), (left, right) = damage.outline.height_range_m, damage.outline.face_range_m
-    return damage.depth_m != 0.0 and low != high and left != right
 
 
 @njit(cache=True)
@@ -123,63 +138,75 @@ def semi_ellipse_share(offset: float) -> float:
 
 
 @njit(cache=True)
-def _line_unions(face: FloatArray, pits: FloatArray, highest: float) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Return the merged intervals of height (slices, rows) on every line, clipped to 0 and `highest`."""
-    room = pits.shape[0]
-    low, high = np.zeros((face.size, room)), np.zeros((face.size, room))
-    left, right = np.empty(room), np.empty(room)
+def _line_unions(
+    face: FloatArray, pits: FloatArray, highest: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, IntArray]:
+    """Return merged intervals of height and the radii of their edges (slices, rows each), clipped to 0 and `highest`.
+
+    The last array is how many there are on every line.
+    """
+    found = np.zeros((4, face.size, pits.shape[0]))
+    room = np.empty((4, pits.shape[0]))
     merged = np.zeros(face.size, np.int64)
     for j in range(face.size):
         filled = 0
-        for i in range(room):
+        for i in range(pits.shape[0]):
             first, last = _heights_on_line(face[j], pits, i)
             first, last = max(first, 0.0), min(last, highest)
-            if last <= first:
-                continue
-            k = filled
-            while k > 0 and left[k - 1] > first:
-                left[k], right[k] = left[k - 1], right[k - 1]
-                k -= 1
-            left[k], right[k] = first, last
-            filled += 1
-        merged[j] = _merge(left, right, filled, low[j], high[j])
-    return low, high, merged
+            if last > first:
+                filled = _insert(first, last, pits[i, EDGE_RADIUS], pits[i, EDGE_RADIUS], room, filled)
+        merged[j] = _merge(room, filled, found[:, j])
+    return found[0], found[1], found[2], found[3], merged
+
+
+@njit(cache=True)
+def _insert(low: float, high: float, low_radius: float, high_radius: float, room: FloatArray, filled: int) -> int:
+    """Insert an interval with the radii of its edges into a list (4, n) sorted by the low ends; return how many."""
+    k = filled
+    while k > 0 and room[0, k - 1] > low:
+        for part in range(4):
+            room[part, k] = room[part, k - 1]
+        k -= 1
+    room[0, k], room[1, k], room[2, k], room[3, k] = low, high, low_radius, high_radius
+    return filled + 1
 
 
 @njit(cache=True)
 def _heights_on_line(face: float, pits: FloatArray, i: int) -> tuple[float, float]:
     """Return the heights between which row i covers the line at `face`; an empty interval where it does not."""
-    if pits[i, 6] == 0.0:
-        v = (face - pits[i, 1]) / pits[i, 2]
-        reach = pits[i, 3] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
-        return pits[i, 0] - reach, pits[i, 0] + reach
+    if pits[i, TRAPEZOID] == 0.0:
+        v = (face - pits[i, FACE]) / pits[i, SEMI_FACE]
+        reach = pits[i, SEMI_HEIGHT] * sqrt(max((1.0 - v) * (1.0 + v), 0.0))
+        return pits[i, HEIGHT] - reach, pits[i, HEIGHT] + reach
     # A trapezoid: from its lowest (0) to its highest point (1), where left side <= face <= right side, both straight.
     first, last = 0.0, 1.0
     for side in range(2):
         sign = 1.0 if side == 0 else -1.0
-        at_low, at_high = sign * (face - pits[i, 9 + side]), sign * (face - pits[i, 11 + side])
+        at_low, at_high = sign * (face - pits[i, LEFT_LOW + side]), sign * (face - pits[i, LEFT_HIGH + side])
         if at_low < 0.0 and at_high < 0.0:
             return 0.0, 0.0
         if at_low < 0.0:
             first = max(first, at_low / (at_low - at_high))
         elif at_high < 0.0:
             last = min(last, at_low / (at_low - at_high))
-    height = pits[i, 8] - pits[i, 7]
+    height = pits[i, HIGHEST] - pits[i, LOWEST]
     return (
-        pits[i, 7] if first == 0.0 else pits[i, 7] + first * height,
-        pits[i, 8] if last == 1.0 else pits[i, 7] + last * height,
+        pits[i, LOWEST] if first == 0.0 else pits[i, LOWEST] + first * height,
+        pits[i, HIGHEST] if last == 1.0 else pits[i, LOWEST] + last * height,
     )
 
 
 @njit(cache=True)
-def _merge(left: FloatArray, right: FloatArray, filled: int, low: FloatArray, high: FloatArray) -> int:
-    """Write the union of intervals sorted by `left` as separate intervals and return their number."""
+def _merge(room: FloatArray, filled: int, out: FloatArray) -> int:
+    """Write the union of sorted intervals (4, n) as separate intervals and return their number."""
     count = 0
     for k in range(filled):
-        if count and left[k] <= high[count - 1]:
-            high[count - 1] = max(high[count - 1], right[k])
+        if count and room[0, k] <= out[1, count - 1]:
+            if room[1, k] > out[1, count - 1]:
+                out[1, count - 1], out[3, count - 1] = room[1, k], room[3, k]
         else:
-            low[count], high[count] = left[k], right[k]
+            for part in range(4):
+                out[part, count] = room[part, k]
             count += 1
     return count
 
@@ -207,20 +234,13 @@ def tangent_union(
 ) -> int:
     """Write the pits of both flanks on line j along the tangent at the contact, as separate intervals."""
     filled = 0
-    for side in range(2):
-        count = pinion.intervals[j] if side == 0 else gear.intervals[j]
-        for k in range(count):
-            if side == 0:
-                low, high = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
-            else:
-                low, high = arc_2 - gear.high[j, k], arc_2 - gear.low[j, k]
-            at = filled
-            while at > 0 and room[0, at - 1] > low:
-                room[0, at], room[1, at] = room[0, at - 1], room[1, at - 1]
-                at -= 1
-            room[0, at], room[1, at] = low, high
-            filled += 1
-    return _merge(room[0], room[1], filled, merged[0], merged[1])
+    for k in range(pinion.intervals[j]):
+        low, high = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
+        filled = _insert(low, high, pinion.low_radius_m[j, k], pinion.high_radius_m[j, k], room, filled)
+    for k in range(gear.intervals[j]):
+        low, high = arc_2 - gear.high[j, k], arc_2 - gear.low[j, k]
+        filled = _insert(low, high, gear.high_radius_m[j, k], gear.low_radius_m[j, k], room, filled)
+    return _merge(room, filled, merged)
 
 
 @njit(cache=True)
@@ -251,5 +271,6 @@ def _fill_contact(
                 out.covered[i, j] += share
                 if low < 0.0 < high:
                     out.edge_m[i, j] = min(-low, high)
+                    out.edge_radius_m[i, j] = merged[2, k] if -low <= high else merged[3, k]
                     depth = depth_at(height_1, pinion.face_m[j], pinion.pits)
                     out.depth_m[i, j] = depth + depth_at(height_2, gear.face_m[j], gear.pits)

@@ -14,6 +14,21 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.gears.damage.row_columns import (
+    DEPTH,
+    DISH,
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 from siggen.gears.damage.straight_edges import corner_points, side_conic_points, side_side_points
 from siggen.gears.damage.union import square_depth
 from siggen.gears.damage.visible_points import edge_square, segment_shows, shows
@@ -160,20 +175,32 @@ def _face_points(mu: float, w: float, a: float, b: float, face_width: float, poi
 @njit(cache=True)
 def _crossing_points(one: FloatArray, two: FloatArray, points: list[tuple[float, float]]) -> None:
     """Append the points where the outlines of two rows cross."""
-    if one[6] == 0.0 and two[6] == 0.0:
-        _ellipse_points(one[0], one[1], one[2], one[3], two[0], two[1], two[2], two[3], points)
-    elif one[6] != 0.0 and two[6] != 0.0:
+    if one[TRAPEZOID] == 0.0 and two[TRAPEZOID] == 0.0:
+        _ellipse_points(
+            one[HEIGHT],
+            one[FACE],
+            one[SEMI_FACE],
+            one[SEMI_HEIGHT],
+            two[HEIGHT],
+            two[FACE],
+            two[SEMI_FACE],
+            two[SEMI_HEIGHT],
+            points,
+        )
+    elif one[TRAPEZOID] != 0.0 and two[TRAPEZOID] != 0.0:
         side_side_points(one, two, points)
     else:
-        ellipse, trapezoid = (one, two) if one[6] == 0.0 else (two, one)
-        _ellipse_side_points(ellipse[0], ellipse[1], ellipse[2], ellipse[3], trapezoid, points)
+        ellipse, trapezoid = (one, two) if one[TRAPEZOID] == 0.0 else (two, one)
+        _ellipse_side_points(
+            ellipse[HEIGHT], ellipse[FACE], ellipse[SEMI_FACE], ellipse[SEMI_HEIGHT], trapezoid, points
+        )
 
 
 @njit(cache=True)
 def _ellipse_side_points(
     mu: float, w: float, a: float, b: float, trapezoid: FloatArray, points: list[tuple[float, float]]
 ) -> None:
-    low, high = max(mu - b, trapezoid[7]), min(mu + b, trapezoid[8])
+    low, high = max(mu - b, trapezoid[LOWEST]), min(mu + b, trapezoid[HIGHEST])
     square = (a / b) ** 2
     # (w - w_i)^2 + (a/b)^2 (x - mu)^2 - a^2 = 0 about the ellipse's centre
     side_conic_points(trapezoid, mu, w, 1.0, 0.0, -a * a, 0.0, square, low, high, points)
@@ -184,20 +211,20 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
     one: FloatArray, two: FloatArray, face_width: float, points: list[tuple[float, float]]
 ) -> None:
     """Append lowest, highest and edge points of the curve on which two rows, at least one a dish, are equally deep."""
-    low, high = max(one[7], two[7]), min(one[8], two[8])
-    if one[5] == 0.0 or two[5] == 0.0:
-        dish, flat = (two, one) if one[5] == 0.0 else (one, two)
-        if flat[4] >= dish[4]:
+    low, high = max(one[LOWEST], two[LOWEST]), min(one[HIGHEST], two[HIGHEST])
+    if one[DISH] == 0.0 or two[DISH] == 0.0:
+        dish, flat = (two, one) if one[DISH] == 0.0 else (one, two)
+        if flat[DEPTH] >= dish[DEPTH]:
             return
-        scale = sqrt(1.0 - (flat[4] / dish[4]) ** 2)
-        mu, w, a, b = dish[0], dish[1], scale * dish[2], scale * dish[3]
+        scale = sqrt(1.0 - (flat[DEPTH] / dish[DEPTH]) ** 2)
+        mu, w, a, b = dish[HEIGHT], dish[FACE], scale * dish[SEMI_FACE], scale * dish[SEMI_HEIGHT]
         level = [(mu - b, w), (mu + b, w)]
-        if dish[6] != 0.0:
+        if dish[TRAPEZOID] != 0.0:
             level = [(mu - b, np.nan), (mu + b, np.nan)]
         else:
             _face_points(mu, w, a, b, face_width, level)
-            if flat[6] == 0.0:
-                _ellipse_points(mu, w, a, b, flat[0], flat[1], flat[2], flat[3], level)
+            if flat[TRAPEZOID] == 0.0:
+                _ellipse_points(mu, w, a, b, flat[HEIGHT], flat[FACE], flat[SEMI_FACE], flat[SEMI_HEIGHT], level)
             else:
                 _ellipse_side_points(mu, w, a, b, flat, level)
         for point in level:
@@ -209,31 +236,34 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
     # face, and the sides of trapezoids, where a dish has a depth
     c2 = c1 = k0 = k1 = k2 = 0.0
     for sign, pit in ((1.0, one), (-1.0, two)):
-        square = sign * pit[4] * pit[4]
-        shift_w, shift_x = pit[1] - one[1], pit[0] - one[0]
-        curve_w, curve_x = square / pit[2] ** 2 if pit[6] == 0.0 else 0.0, square / pit[3] ** 2
+        square = sign * pit[DEPTH] * pit[DEPTH]
+        shift_w, shift_x = pit[FACE] - one[FACE], pit[HEIGHT] - one[HEIGHT]
+        curve_w, curve_x = (
+            square / pit[SEMI_FACE] ** 2 if pit[TRAPEZOID] == 0.0 else 0.0,
+            square / pit[SEMI_HEIGHT] ** 2,
+        )
         c2 -= curve_w
         c1 += 2.0 * curve_w * shift_w
         k2 -= curve_x
         k1 += 2.0 * curve_x * shift_x
         k0 += square - curve_w * shift_w**2 - curve_x * shift_x**2
-    first, last = low - one[0], high - one[0]
+    first, last = low - one[HEIGHT], high - one[HEIGHT]
     if c2 == 0.0 and c1 == 0.0:
         if k0 != 0.0 or k1 != 0.0 or k2 != 0.0:
             for x in roots_between(np.array([k0, k1, k2]), first, last, 0.0):
-                points.append((one[0] + x, np.nan))
+                points.append((one[HEIGHT] + x, np.nan))
         return
     if c2 != 0.0:
         turning = np.array([c1 * c1 - 4.0 * c2 * k0, -4.0 * c2 * k1, -4.0 * c2 * k2])
         for x in roots_between(turning, first, last, 0.0):
-            points.append((one[0] + x, one[1] - 0.5 * c1 / c2))
+            points.append((one[HEIGHT] + x, one[FACE] - 0.5 * c1 / c2))
     for end in (0.0, face_width):
-        v = end - one[1]
+        v = end - one[FACE]
         for x in roots_between(np.array([c2 * v * v + c1 * v + k0, k1, k2]), first, last, 0.0):
-            points.append((one[0] + x, end))
+            points.append((one[HEIGHT] + x, end))
     for row in (one, two):
-        if row[6] != 0.0:
-            side_conic_points(row, one[0], one[1], c2, c1, k0, k1, k2, low, high, points)
+        if row[TRAPEZOID] != 0.0:
+            side_conic_points(row, one[HEIGHT], one[FACE], c2, c1, k0, k1, k2, low, high, points)
 
 
 @njit(cache=True)
@@ -242,12 +272,15 @@ def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) ->
     row = pits[i]
     points = [(0.0, 0.0)]
     points.pop()
-    if row[6] == 0.0:
-        points.append((row[7], row[1]))
-        points.append((row[8], row[1]))
-        _face_points(row[0], row[1], row[2], row[3], face_width, points)
+    if row[TRAPEZOID] == 0.0:
+        points.append((row[LOWEST], row[FACE]))
+        points.append((row[HIGHEST], row[FACE]))
+        _face_points(row[HEIGHT], row[FACE], row[SEMI_FACE], row[SEMI_HEIGHT], face_width, points)
     else:
-        for x, left, right in ((row[7], row[9], row[10]), (row[8], row[11], row[12])):
+        for x, left, right in (
+            (row[LOWEST], row[LEFT_LOW], row[RIGHT_LOW]),
+            (row[HIGHEST], row[LEFT_HIGH], row[RIGHT_HIGH]),
+        ):
             if segment_shows(x, left, right, edge_square(x, left, pits, i), pits, i):
                 out.append(x)
         corner_points(row, face_width, points)
@@ -267,7 +300,10 @@ def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
         _row_kinks(i, pits, face_width, out)
         for j in range(i):
             two = pits[j]
-            apart = max(one[7], two[7]) >= min(one[8], two[8]) or abs(one[1] - two[1]) >= one[2] + two[2]
+            apart = (
+                max(one[LOWEST], two[LOWEST]) >= min(one[HIGHEST], two[HIGHEST])
+                or abs(one[FACE] - two[FACE]) >= one[SEMI_FACE] + two[SEMI_FACE]
+            )
             if apart:
                 continue
             points.clear()
@@ -275,7 +311,7 @@ def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
             for x, w in points:
                 if shows(x, w, max(edge_square(x, w, pits, i), edge_square(x, w, pits, j)), pits, i, j):
                     out.append(x)
-            if one[5] != 0.0 or two[5] != 0.0:
+            if one[DISH] != 0.0 or two[DISH] != 0.0:
                 points.clear()
                 _equal_depth_points(one, two, face_width, points)
                 for x, w in points:

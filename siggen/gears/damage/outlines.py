@@ -18,9 +18,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.errors import counted
-
-COLUMNS = 13
-"""Width of a row of `rows`; see there."""
+from siggen.gears.damage.row_columns import UNSTATED
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +45,23 @@ class Ellipse:
         """First and last point across the face [m]."""
         return self.face_m - self.semi_axis_face_m, self.face_m + self.semi_axis_face_m
 
+    @property
+    def semi_axes_m(self) -> tuple[float, float]:
+        """Semi-axes across the face and along the height [m]."""
+        return self.semi_axis_face_m, self.semi_axis_profile_m
+
+    @property
+    def corners_m(self) -> tuple[tuple[float, float], ...]:
+        """No corners."""
+        return ()
+
+    def drawn_m(self, points: int = 181) -> FloatArray:
+        """Return a polygon on the outline (points, 2), height and face [m]; the first corner is not repeated."""
+        turn = 2.0 * np.pi * np.arange(points) / points
+        face = self.face_m + self.semi_axis_face_m * np.cos(turn)
+        height = self.height_m + self.semi_axis_profile_m * np.sin(turn)
+        return np.stack([height, face], axis=1)
+
     def problems(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, received, allowed) of everything that makes this no ellipse."""
         for name in ("height_m", "face_m"):
@@ -58,10 +73,10 @@ class Ellipse:
                 yield name, f"{name} {value!r} m", "finite and above 0"
 
     def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
-        """Return the one row of an ellipse; see `rows`."""
+        """Return the one row of an ellipse; columns: `siggen.gears.damage.row_columns`."""
         low, high = self.height_range_m
         box = (self.height_m, self.face_m, self.semi_axis_face_m, self.semi_axis_profile_m)
-        return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0)]
+        return [(*box, depth_m, float(dish), 0.0, low, high, 0.0, 0.0, 0.0, 0.0, UNSTATED)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +116,21 @@ class Polygon:
         faces = [face for _, face in self.vertices_m]
         return min(faces), max(faces)
 
+    @property
+    def semi_axes_m(self) -> tuple[float, float]:
+        """Half the ranges across the face and along the height [m]."""
+        (low, high), (left, right) = self.height_range_m, self.face_range_m
+        return 0.5 * (right - left), 0.5 * (high - low)
+
+    @property
+    def corners_m(self) -> tuple[tuple[float, float], ...]:
+        """The corners as (height, face), in order [m]."""
+        return self.vertices_m
+
+    def drawn_m(self, points: int = 181) -> FloatArray:  # noqa: ARG002 - as an ellipse is asked
+        """Return the corners (n, 2), height and face, however many points are asked for [m]."""
+        return np.array(self.vertices_m)
+
     def problems(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, received, allowed) of what makes this no simple polygon."""
         if len(self.vertices_m) < 3:
@@ -114,10 +144,17 @@ class Polygon:
                 received = f"a polygon whose edges {crossing[0]} and {crossing[1]} meet (edge i starts at vertex i)"
                 yield "vertices_m", received, "a simple polygon: edges of some length that meet at their ends only"
 
-    def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
-        """Return one row per trapezoid; see `rows`. A dish refers to the height range of the whole polygon."""
-        low, high = self.height_range_m
-        return [_trapezoid_row(t, 0.5 * (low + high), 0.5 * (high - low), depth_m, dish) for t in trapezoids(self)]
+    def rows(
+        self,
+        depth_m: float,
+        dish: bool,
+        edge_radius_m: float = UNSTATED,
+        height_range_m: tuple[float, float] | None = None,
+    ) -> list[tuple[float, ...]]:
+        """Return one row per trapezoid. A dish refers to the height range of the whole polygon unless one is given."""
+        low, high = self.height_range_m if height_range_m is None else height_range_m
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        return [(*_trapezoid_row(t, middle, half, depth_m, dish), edge_radius_m) for t in trapezoids(self)]
 
 
 Outline: TypeAlias = Ellipse | Polygon

@@ -10,13 +10,14 @@ from math import sqrt
 from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.gears.damage.row_columns import HIGHEST, LEFT_HIGH, LEFT_LOW, LOWEST
 
 
 @njit(cache=True)
 def _side(row: FloatArray, right: int) -> tuple[float, float]:
     """Return p and m of the left (0) or right (1) side of a trapezoid."""
-    start = row[9 + right]
-    return start, (row[11 + right] - start) / (row[8] - row[7])
+    start = row[LEFT_LOW + right]
+    return start, (row[LEFT_HIGH + right] - start) / (row[HIGHEST] - row[LOWEST])
 
 
 @njit(cache=True)
@@ -27,15 +28,15 @@ def corner_points(row: FloatArray, face_width: float, points: list[tuple[float, 
         if slope == 0.0:
             continue
         for end in (0.0, face_width):
-            x = row[7] + (end - start) / slope
-            if row[7] < x < row[8]:
+            x = row[LOWEST] + (end - start) / slope
+            if row[LOWEST] < x < row[HIGHEST]:
                 points.append((x, end))
 
 
 @njit(cache=True)
 def side_side_points(one: FloatArray, two: FloatArray, points: list[tuple[float, float]]) -> None:
     """Append the points where the sides of two trapezoids cross."""
-    low, high = max(one[7], two[7]), min(one[8], two[8])
+    low, high = max(one[LOWEST], two[LOWEST]), min(one[HIGHEST], two[HIGHEST])
     for right in range(2):
         start, slope = _side(one, right)
         for other in range(2):
@@ -43,9 +44,9 @@ def side_side_points(one: FloatArray, two: FloatArray, points: list[tuple[float,
             if slope == slope2:
                 continue
             # About the first one's lowest point: no difference of large products.
-            x = one[7] + (start2 + slope2 * (one[7] - two[7]) - start) / (slope - slope2)
+            x = one[LOWEST] + (start2 + slope2 * (one[LOWEST] - two[LOWEST]) - start) / (slope - slope2)
             if low <= x <= high:
-                points.append((x, start + slope * (x - one[7])))
+                points.append((x, start + slope * (x - one[LOWEST])))
 
 
 @njit(cache=True)
@@ -68,7 +69,7 @@ def side_conic_points(
     """
     for right in range(2):
         start, slope = _side(row, right)
-        offset = start + slope * (x0 - row[7]) - w0
+        offset = start + slope * (x0 - row[LOWEST]) - w0
         a = c2 * slope * slope + k2
         b = 2.0 * c2 * slope * offset + c1 * slope + k1
         c = c2 * offset * offset + c1 * offset + k0
@@ -79,4 +80,4 @@ def side_conic_points(
         for top, bottom in ((q, a), (c, q)):
             if bottom != 0.0 and low <= x0 + top / bottom <= high:
                 t = top / bottom
-                points.append((x0 + t, start + slope * (x0 + t - row[7])))
+                points.append((x0 + t, start + slope * (x0 + t - row[LOWEST])))

@@ -18,6 +18,21 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.gears.damage.row_columns import (
+    DEPTH,
+    DISH,
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 
 EDGE = 1e-13
 """Ends of an interval this near to a dish's edge, in its semi-axes, are the edge: rounding of face coordinates."""
@@ -31,7 +46,7 @@ def active_pits(x: float, pits: FloatArray, active: IntArray) -> int:
     """
     count = 0
     for i in range(pits.shape[0]):
-        if pits[i, 7] < x < pits[i, 8] or (x == pits[i, 7] and pits[i, 6] != 0.0):
+        if pits[i, LOWEST] < x < pits[i, HIGHEST] or (x == pits[i, LOWEST] and pits[i, TRAPEZOID] != 0.0):
             active[count] = i
             count += 1
     return count
@@ -55,12 +70,12 @@ def add_intervals(
     """
     for position in range(count):
         i = active[position]
-        if pits[i, 6] != 0.0:
-            share = (x - pits[i, 7]) / (pits[i, 8] - pits[i, 7])
-            low = max(pits[i, 9] + share * (pits[i, 11] - pits[i, 9]), 0.0)
-            high = min(pits[i, 10] + share * (pits[i, 12] - pits[i, 10]), face_width)
+        if pits[i, TRAPEZOID] != 0.0:
+            share = (x - pits[i, LOWEST]) / (pits[i, HIGHEST] - pits[i, LOWEST])
+            low = max(pits[i, LEFT_LOW] + share * (pits[i, LEFT_HIGH] - pits[i, LEFT_LOW]), 0.0)
+            high = min(pits[i, RIGHT_LOW] + share * (pits[i, RIGHT_HIGH] - pits[i, RIGHT_LOW]), face_width)
         else:
-            mu, w, a, b = pits[i, 0], pits[i, 1], pits[i, 2], pits[i, 3]
+            mu, w, a, b = pits[i, HEIGHT], pits[i, FACE], pits[i, SEMI_FACE], pits[i, SEMI_HEIGHT]
             if not mu - b < x < mu + b:
                 continue
             u = (x - mu) / b
@@ -95,27 +110,26 @@ def covered_length(left: FloatArray, right: FloatArray, count: int) -> float:
 @njit(cache=True)
 def curved(pits: FloatArray, i: int) -> bool:
     """Whether the depth of row i changes across the face."""
-    return bool(pits[i, 5] != 0.0 and pits[i, 6] == 0.0)
+    return bool(pits[i, DISH] != 0.0 and pits[i, TRAPEZOID] == 0.0)
 
 
 @njit(cache=True)
 def level_depth(x: float, pits: FloatArray, i: int) -> float:
     """Return the depth at height x of a row whose depth does not change across the face [m]."""
-    depth: float = pits[i, 4]
-    if pits[i, 5] == 0.0:
-        return depth
-    u = (x - pits[i, 0]) / pits[i, 3]
-    return depth * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
+    if pits[i, DISH] == 0.0:
+        return float(pits[i, DEPTH])
+    u = (x - pits[i, HEIGHT]) / pits[i, SEMI_HEIGHT]
+    return float(pits[i, DEPTH] * sqrt(max((1.0 - u) * (1.0 + u), 0.0)))
 
 
 @njit(cache=True)
 def square_depth(x: float, w: float, pits: FloatArray, i: int) -> float:
     """Return the squared depth of row i at a point inside its outline [m2]."""
-    square: float = pits[i, 4] * pits[i, 4]
-    if pits[i, 5] == 0.0:
-        return square
-    u, v = (x - pits[i, 0]) / pits[i, 3], (w - pits[i, 1]) / pits[i, 2]
-    if pits[i, 6] != 0.0:
+    square = pits[i, DEPTH] * pits[i, DEPTH]
+    if pits[i, DISH] == 0.0:
+        return float(square)
+    u, v = (x - pits[i, HEIGHT]) / pits[i, SEMI_HEIGHT], (w - pits[i, FACE]) / pits[i, SEMI_FACE]
+    if pits[i, TRAPEZOID] != 0.0:
         v = 0.0
     dished: float = square * max((1.0 - u) * (1.0 + u) - v * v, 0.0)
     return dished
@@ -124,7 +138,7 @@ def square_depth(x: float, w: float, pits: FloatArray, i: int) -> float:
 @njit(cache=True)
 def _add_piece(x: float, low: float, high: float, pits: FloatArray, i: int, moments: FloatArray) -> None:
     """Add int D dw, int D^2 dw, int D^3 dw of row i over [low, high]."""
-    depth = pits[i, 4]
+    depth = pits[i, DEPTH]
     if not curved(pits, i):
         depth = level_depth(x, pits, i)
         span = high - low
@@ -132,13 +146,13 @@ def _add_piece(x: float, low: float, high: float, pits: FloatArray, i: int, mome
         moments[1] += depth * depth * span
         moments[2] += depth * depth * depth * span
         return
-    u, scale = (x - pits[i, 0]) / pits[i, 3], depth * pits[i, 2]
+    u, scale = (x - pits[i, HEIGHT]) / pits[i, SEMI_HEIGHT], depth * pits[i, SEMI_FACE]
     square = max((1.0 - u) * (1.0 + u), 0.0)
     reach = sqrt(square)
     if reach == 0.0:
         return
     for sign, end in ((1.0, high), (-1.0, low)):
-        v = (end - pits[i, 1]) / pits[i, 2]
+        v = (end - pits[i, FACE]) / pits[i, SEMI_FACE]
         if abs(v) > reach - EDGE:
             # The edge itself: what is left out beside it is the 1.5th power of its distance.
             v, root = (reach, 0.0) if v > 0.0 else (-reach, 0.0)
@@ -160,27 +174,27 @@ def _depth_crossings(x: float, pits: FloatArray, i: int, j: int) -> tuple[float,
     """
     c2 = c1 = c0 = 0.0
     for sign, k in ((1.0, i), (-1.0, j)):
-        square = sign * pits[k, 4] * pits[k, 4]
-        if pits[k, 5] == 0.0:
+        square = sign * pits[k, DEPTH] * pits[k, DEPTH]
+        if pits[k, DISH] == 0.0:
             c0 += square
-        elif pits[k, 6] != 0.0:
-            u = (x - pits[k, 0]) / pits[k, 3]
+        elif pits[k, TRAPEZOID] != 0.0:
+            u = (x - pits[k, HEIGHT]) / pits[k, SEMI_HEIGHT]
             c0 += square * (1.0 - u) * (1.0 + u)
         else:
-            u, shift = (x - pits[k, 0]) / pits[k, 3], pits[k, 1] - pits[i, 1]
-            curve = square / (pits[k, 2] * pits[k, 2])
+            u, shift = (x - pits[k, HEIGHT]) / pits[k, SEMI_HEIGHT], pits[k, FACE] - pits[i, FACE]
+            curve = square / (pits[k, SEMI_FACE] * pits[k, SEMI_FACE])
             c2 -= curve
             c1 += 2.0 * curve * shift
             c0 += square * (1.0 - u) * (1.0 + u) - curve * shift * shift
     if c2 == 0.0:
-        return (pits[i, 1] - c0 / c1, np.nan) if c1 != 0.0 else (np.nan, np.nan)
+        return (pits[i, FACE] - c0 / c1, np.nan) if c1 != 0.0 else (np.nan, np.nan)
     discriminant = c1 * c1 - 4.0 * c2 * c0
     if discriminant <= 0.0:
         return np.nan, np.nan
     q = -0.5 * (c1 + (sqrt(discriminant) if c1 >= 0.0 else -sqrt(discriminant)))
     if q == 0.0:
-        return pits[i, 1], np.nan
-    one, two = pits[i, 1] + q / c2, pits[i, 1] + c0 / q
+        return pits[i, FACE], np.nan
+    one, two = pits[i, FACE] + q / c2, pits[i, FACE] + c0 / q
     return min(one, two), max(one, two)
 
 
@@ -216,10 +230,10 @@ def _append_deeper(
 ) -> int:
     """Append [low, high] split where rows i and j are equally deep, each part to the deeper one; return how many."""
     curved_i, curved_j = curved(pits, i), curved(pits, j)
-    if not curved_i and (not curved_j or level_depth(x, pits, i) >= pits[j, 4]):
+    if not curved_i and (not curved_j or level_depth(x, pits, i) >= pits[j, DEPTH]):
         deeper = j if not curved_j and level_depth(x, pits, j) >= level_depth(x, pits, i) else i
         return _append(x, pits, low, high, deeper, stretches, count)
-    if not curved_j and level_depth(x, pits, j) >= pits[i, 4]:
+    if not curved_j and level_depth(x, pits, j) >= pits[i, DEPTH]:
         return _append(x, pits, low, high, j, stretches, count)
     one, two = _depth_crossings(x, pits, i, j)
     start = low

@@ -11,6 +11,21 @@ from math import isnan
 from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.gears.damage.row_columns import (
+    DEPTH,
+    DISH,
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 from siggen.gears.damage.union import curved, square_depth
 
 INSIDE = 1e-6
@@ -22,14 +37,17 @@ DEEPER = 1e-6
 @njit(cache=True)
 def strictly_inside(x: float, w: float, row: FloatArray) -> bool:
     """Whether a point lies inside the outline of a row and not near it."""
-    if row[6] == 0.0:
-        u, v = (x - row[0]) / row[3], (w - row[1]) / row[2]
+    if row[TRAPEZOID] == 0.0:
+        u, v = (x - row[HEIGHT]) / row[SEMI_HEIGHT], (w - row[FACE]) / row[SEMI_FACE]
         return bool(u * u + v * v < 1.0 - INSIDE)
-    span = row[8] - row[7]
-    share, margin = (x - row[7]) / span, INSIDE * row[2]
+    span = row[HIGHEST] - row[LOWEST]
+    share, margin = (x - row[LOWEST]) / span, INSIDE * row[SEMI_FACE]
     if not INSIDE < share < 1.0 - INSIDE:
         return False
-    left, right = row[9] + share * (row[11] - row[9]), row[10] + share * (row[12] - row[10])
+    left, right = (
+        row[LEFT_LOW] + share * (row[LEFT_HIGH] - row[LEFT_LOW]),
+        row[RIGHT_LOW] + share * (row[RIGHT_HIGH] - row[RIGHT_LOW]),
+    )
     return bool(left + margin < w < right - margin)
 
 
@@ -45,7 +63,7 @@ def hidden_by(x: float, w: float, square: float, pits: FloatArray, k: int) -> bo
     if not strictly_inside(x, w, pits[k]):
         return False
     own = square_depth(x, w, pits, k)
-    return own >= square if pits[k, 5] == 0.0 else own > square * (1.0 + DEEPER) + DEEPER * pits[k, 4] ** 2
+    return own >= square if pits[k, DISH] == 0.0 else own > square * (1.0 + DEEPER) + DEEPER * pits[k, DEPTH] ** 2
 
 
 @njit(cache=True)
@@ -63,7 +81,7 @@ def shows(x: float, w: float, square: float, pits: FloatArray, i: int, j: int) -
 def segment_shows(x: float, left: float, right: float, square: float, pits: FloatArray, i: int) -> bool:
     """Whether no other flat row hides the whole segment across the face on which row i ends (outlines are convex)."""
     for k in range(pits.shape[0]):
-        both = k != i and pits[k, 5] == 0.0 and hidden_by(x, left, square, pits, k)
+        both = k != i and pits[k, DISH] == 0.0 and hidden_by(x, left, square, pits, k)
         if both and hidden_by(x, right, square, pits, k):
             return False
     return True

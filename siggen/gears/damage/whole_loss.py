@@ -16,6 +16,19 @@ from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.damage.kinks import section_kinks
+from siggen.gears.damage.row_columns import (
+    FACE,
+    HEIGHT,
+    HIGHEST,
+    LEFT_HIGH,
+    LEFT_LOW,
+    LOWEST,
+    RIGHT_HIGH,
+    RIGHT_LOW,
+    SEMI_FACE,
+    SEMI_HEIGHT,
+    TRAPEZOID,
+)
 from siggen.gears.damage.union import active_pits, add_intervals, covered_length
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
@@ -118,19 +131,19 @@ def _add_extremes(
 ) -> int:
     """Insert the extreme ends of each row between two heights into lists sorted by `left`; return their number."""
     for i in range(rows.shape[0]):
-        if rows[i, 7] > top or rows[i, 8] < bottom:
+        if rows[i, LOWEST] > top or rows[i, HIGHEST] < bottom:
             continue
-        if rows[i, 6] != 0.0:
-            span = rows[i, 8] - rows[i, 7]
-            one = (max(bottom, rows[i, 7]) - rows[i, 7]) / span
-            two = (min(top, rows[i, 8]) - rows[i, 7]) / span
-            lean_left, lean_right = rows[i, 11] - rows[i, 9], rows[i, 12] - rows[i, 10]
-            first = rows[i, 9] + min(one * lean_left, two * lean_left)
-            last = rows[i, 10] + max(one * lean_right, two * lean_right)
+        if rows[i, TRAPEZOID] != 0.0:
+            span = rows[i, HIGHEST] - rows[i, LOWEST]
+            one = (max(bottom, rows[i, LOWEST]) - rows[i, LOWEST]) / span
+            two = (min(top, rows[i, HIGHEST]) - rows[i, LOWEST]) / span
+            lean_left, lean_right = rows[i, LEFT_HIGH] - rows[i, LEFT_LOW], rows[i, RIGHT_HIGH] - rows[i, RIGHT_LOW]
+            first = rows[i, LEFT_LOW] + min(one * lean_left, two * lean_left)
+            last = rows[i, RIGHT_LOW] + max(one * lean_right, two * lean_right)
         else:
-            u = (min(max(rows[i, 0], bottom), top) - rows[i, 0]) / rows[i, 3]
-            reach = rows[i, 2] * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
-            first, last = rows[i, 1] - reach, rows[i, 1] + reach
+            u = (min(max(rows[i, HEIGHT], bottom), top) - rows[i, HEIGHT]) / rows[i, SEMI_HEIGHT]
+            reach = rows[i, SEMI_FACE] * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
+            first, last = rows[i, FACE] - reach, rows[i, FACE] + reach
         first, last = max(first, 0.0), min(last, face_width)
         if last <= first:
             continue

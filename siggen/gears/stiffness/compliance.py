@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.flank_damage import Pit, Spall, pit_rows
+from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.kinks import section_kinks
+from siggen.gears.damage.tooth_damage import ToothDamage
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -40,7 +41,7 @@ PIECE_RAD = 0.02
 
 @dataclass(frozen=True, slots=True)
 class ToothCompliance:
-    """Compliances of one tooth at each contact, (k,) [m/N]."""
+    """Compliances of one tooth at each contact, (k,) [m/N]; the last one with what damage adds beside its rows."""
 
     bending: FloatArray
     shear: FloatArray
@@ -54,7 +55,7 @@ class ToothCompliance:
 
 
 def tooth_compliance(
-    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[Pit | Spall] = ()
+    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[ToothDamage] = ()
 ) -> ToothCompliance:
     """Return the compliances of one tooth loaded at roll angles (k,).
 
@@ -66,7 +67,7 @@ def tooth_compliance(
     roll : (k,)
         Roll angles of the contact, in any order [rad].
     options : StiffnessOptions
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of this tooth; their `gear` and `tooth` are not read.
 
     Raises
@@ -77,6 +78,7 @@ def tooth_compliance(
     Source: paper A, section 2.2; with 'calibrated' derived (finite elements, healthy tooth).
     """
     gear = pair.member(which)
+    pits = tuple(pits)
     rows = pit_rows(pits)
     angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
     beam = _beam_compliances(pair, gear, angles, beam_integrals(gear, options.shape, angles, pair.face_width_m))
@@ -91,6 +93,8 @@ def tooth_compliance(
         beam, foundation = factor * beam, factor * foundation
     if rows.size:
         beam = beam + _beam_compliances(pair, gear, angles, _pit_gain(pair, gear, options.shape, angles, rows))
+    for one in pits:
+        foundation = foundation + one.tooth_compliance_m_per_n(pair, angles)
     for array in (beam, foundation):
         array.setflags(write=False)
     return ToothCompliance(beam[0], beam[1], beam[2], foundation)

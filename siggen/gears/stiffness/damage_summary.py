@@ -11,16 +11,10 @@ from math import sqrt
 
 import numpy as np
 
-from siggen.gears.damage.flank_damage import (
-    Damage,
-    Pit,
-    Spall,
-    damaged_teeth,
-    flank_heights,
-    lost_contacts,
-    pits_of,
-    profile_arc_m,
-)
+from siggen.gears.damage.flank_damage import lost_contacts
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.outlines import Outline
+from siggen.gears.damage.tooth_damage import Damage, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.sections import largest_contact_length_loss, union_area_m2
@@ -33,7 +27,7 @@ class DamageSummary:
     Parameters
     ----------
     count : int
-        Number of pits and spalls, as listed.
+        Number of damages, as listed.
     union_area_m2 : float
         Area of the union on all teeth, face width times arc along the involute [m2].
     area_share : float
@@ -76,13 +70,14 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
             area += own
             share = max(share, own / (width * flank_arc_m(gear)))
             loss = max(loss, largest_contact_length_loss(gear, pits, width))
-    longest = max(damage, key=lambda pit: profile_arc_m(pair.member(pit.gear), pit.outline), default=None)
+    longest = max(damage, key=lambda one: one.profile_arc_m(pair.member(one.gear)), default=None)
+    outlines = [one.outline for one in damage if one.outline is not None]
     return DamageSummary(
         count=len(damage),
         union_area_m2=area,
         area_share=share,
-        largest_face_length_m=max((_face_length(pit, width) for pit in damage), default=0.0),
-        largest_profile_length_m=profile_arc_m(pair.member(longest.gear), longest.outline) if longest else 0.0,
+        largest_face_length_m=max((_face_length(outline, width) for outline in outlines), default=0.0),
+        largest_profile_length_m=longest.profile_arc_m(pair.member(longest.gear)) if longest else 0.0,
         contact_length_loss_m=loss,
         through_face=any(lost_contacts(pair, damage)),
         sagitta_m=_sagitta_m(pair, longest) if longest else 0.0,
@@ -94,12 +89,14 @@ def flank_arc_m(gear: SpurGear) -> float:
     return 0.5 * gear.base_radius_m * (gear.tip_roll_rad**2 - gear.involute_start_roll_rad**2)
 
 
-def _face_length(pit: Pit | Spall, width: float) -> float:
-    low, high = pit.outline.face_range_m
+def _face_length(outline: Outline, width: float) -> float:
+    low, high = outline.face_range_m
     return min(high, width) - max(low, 0.0)
 
 
-def _sagitta_m(pair: GearPair, pit: Pit | Spall) -> float:
+def _sagitta_m(pair: GearPair, pit: ToothDamage) -> float:
+    if pit.outline is None:
+        return 0.0
     gear = pair.member(pit.gear)
     low, high = gear.roll_at_height(np.clip(pit.outline.height_range_m, *flank_heights(gear)))
     # The arc is R_b psi^2/2: its middle has the mean square of the roll angles.
@@ -107,4 +104,4 @@ def _sagitta_m(pair: GearPair, pit: Pit | Spall) -> float:
     line = pair.line_of_action_m
     position = travel if pit.gear == "pinion" else line - travel
     s = min(max(position, pair.contact_start_m), pair.contact_end_m)
-    return profile_arc_m(gear, pit.outline) ** 2 * line / (8.0 * s * (line - s))
+    return pit.profile_arc_m(gear) ** 2 * line / (8.0 * s * (line - s))

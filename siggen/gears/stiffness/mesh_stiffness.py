@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.damage.flank_damage import Damage, Pit, Spall, damaged_teeth, pit_rows, pits_of
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.tooth_damage import Damage, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.damage.union import lengths_covered
 from siggen.gears.damage.whole_loss import WHOLE_FACE
 from siggen.gears.geometry import involute
@@ -74,8 +75,8 @@ def rolls_at(pair: GearPair, position_m: FloatArray) -> tuple[FloatArray, FloatA
 def contact_compliance(
     pair: GearPair,
     position_m: ArrayLike,
-    pinion_pits: Iterable[Pit | Spall] = (),
-    gear_pits: Iterable[Pit | Spall] = (),
+    pinion_pits: Iterable[ToothDamage] = (),
+    gear_pits: Iterable[ToothDamage] = (),
     options: StiffnessOptions = LINEAR,
     *,
     through_face: bool = False,
@@ -89,7 +90,7 @@ def contact_compliance(
     pair : GearPair
     position_m : (k,)
         Contact positions from the pinion's base tangent point, in any order [m].
-    pinion_pits, gear_pits : iterables of Pit
+    pinion_pits, gear_pits : iterables of ToothDamage
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
     options : StiffnessOptions
         Contact law and its force; the tooth's options are not read.
@@ -134,8 +135,8 @@ def pair_compliance(
     pair: GearPair,
     position_m: ArrayLike,
     options: StiffnessOptions,
-    pinion_pits: Iterable[Pit | Spall] = (),
-    gear_pits: Iterable[Pit | Spall] = (),
+    pinion_pits: Iterable[ToothDamage] = (),
+    gear_pits: Iterable[ToothDamage] = (),
     *,
     through_face: bool = False,
 ) -> PairCompliance:
@@ -159,8 +160,8 @@ def pair_stiffness(
     pair: GearPair,
     position_m: ArrayLike,
     options: StiffnessOptions,
-    pinion_pits: Iterable[Pit | Spall] = (),
-    gear_pits: Iterable[Pit | Spall] = (),
+    pinion_pits: Iterable[ToothDamage] = (),
+    gear_pits: Iterable[ToothDamage] = (),
     *,
     through_face: bool = False,
 ) -> FloatArray:
@@ -172,7 +173,7 @@ def pair_stiffness(
     position_m : (k,)
         Contact positions from the pinion's base tangent point, s_A to s_E, in any order [m].
     options : StiffnessOptions
-    pinion_pits, gear_pits : iterables of Pit or Spall
+    pinion_pits, gear_pits : iterables of ToothDamage
         Pits of the two teeth in contact; their `gear` and `tooth` are not read.
     through_face : bool
         Whether a contact may lose its whole length; the pair has no stiffness there.
@@ -205,7 +206,7 @@ def mesh_stiffness(
         global count is pinion tooth n mod z1 and gear tooth n mod z2, at s = s_A + R_b1 (angle - 2 pi n/z1). Zones
         are closed.
     options : StiffnessOptions
-    damage : tuple of Pit or Spall
+    damage : tuple of ToothDamage
         On any teeth of both gears.
     through_face : bool
         Whether a contact may lose its whole length; such a pair adds nothing.

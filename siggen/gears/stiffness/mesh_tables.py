@@ -14,7 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.flank_damage import Damage, damaged_teeth, flank_heights, pit_rows, pits_of
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.row_columns import HEIGHT, HIGHEST, LOWEST
+from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.compliance import tooth_compliance
@@ -75,7 +78,7 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit or Spall
+    damage : tuple of ToothDamage
     options : StiffnessOptions
     points : int
         Grid points from s_A to s_E, at least 2.
@@ -148,7 +151,7 @@ def kind_stiffness(
     Parameters
     ----------
     pair : GearPair
-    damage : tuple of Pit
+    damage : tuple of ToothDamage
     options : StiffnessOptions
     kinds : tuple of (int, int)
         Pinion tooth and gear tooth of each kind, HEALTHY for any undamaged one.
@@ -257,7 +260,7 @@ def _newest_positions(pair: GearPair, damage: Damage) -> FloatArray:
     for which in ("pinion", "gear"):
         gear = pair.member(which)
         rows = pit_rows(pit for pit in damage if pit.gear == which)
-        ends = np.concatenate([rows[:, 0], rows[:, 7], rows[:, 8]])
+        ends = np.concatenate([rows[:, HEIGHT], rows[:, LOWEST], rows[:, HIGHEST]])
         low, high = flank_heights(gear)
         travel = np.asarray(gear.roll_at_height(np.clip(ends, low, high))) * gear.base_radius_m
         marks.append(travel if which == "pinion" else pair.line_of_action_m - travel)

@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.gears.damage.row_columns import DISH, FACE, HEIGHT, LOWEST, SEMI_HEIGHT, TRAPEZOID
 from siggen.gears.damage.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
 from siggen.gears.damage.visible_points import edge_square, shows
 from siggen.gears.geometry.involute import half_thickness, height
@@ -99,9 +100,9 @@ def _add_piece(
     clearance = smallest = np.inf
     for k in range(count):
         i = active[k]
-        smallest = min(smallest, pits[i, 3])
-        if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
-            clearance = min(clearance, bottom - lowest[i], pits[i, 0] + pits[i, 3] - top)
+        smallest = min(smallest, pits[i, SEMI_HEIGHT])
+        if pits[i, TRAPEZOID] == 0.0 or pits[i, DISH] != 0.0:
+            clearance = min(clearance, bottom - lowest[i], pits[i, HEIGHT] + pits[i, SEMI_HEIGHT] - top)
     smooth = clearance >= 2.0 * (top - bottom) or top - bottom <= THIN * smallest
     nodes, weights = (NODES_6, WEIGHTS_6) if smooth else (NODES_16, WEIGHTS_16)
     narrow = top - bottom <= NARROW * smallest
@@ -133,10 +134,10 @@ def _add_piece(
 @njit(cache=True)
 def _lower_ends(pits: FloatArray) -> FloatArray:
     """Return the height of each row's lower end (n,) [m]; -inf where a deeper row hides it: it must change no bit."""
-    out = pits[:, 0] - pits[:, 3]
+    out = pits[:, HEIGHT] - pits[:, SEMI_HEIGHT]
     for i in range(pits.shape[0]):
-        x, w = pits[i, 7], pits[i, 1]
-        if pits[i, 6] == 0.0 and not shows(x, w, edge_square(x, w, pits, i), pits, i, i):
+        x, w = pits[i, LOWEST], pits[i, FACE]
+        if pits[i, TRAPEZOID] == 0.0 and not shows(x, w, edge_square(x, w, pits, i), pits, i, i):
             out[i] = -np.inf
     return out
 
@@ -159,9 +160,9 @@ def _stride(
     clearance = smallest = np.inf
     for k in range(count):
         i = active[k]
-        smallest = min(smallest, pits[i, 3])
-        if pits[i, 6] == 0.0 or pits[i, 5] != 0.0:
-            clearance = min(clearance, abs(x - lowest[i]), abs(pits[i, 0] + pits[i, 3] - x))
+        smallest = min(smallest, pits[i, SEMI_HEIGHT])
+        if pits[i, TRAPEZOID] == 0.0 or pits[i, DISH] != 0.0:
+            clearance = min(clearance, abs(x - lowest[i]), abs(pits[i, HEIGHT] + pits[i, SEMI_HEIGHT] - x))
     slope = base_radius * roll * cos(roll - half_angle)
     return max(0.25 * clearance, 0.99 * NARROW * smallest) / slope if slope > 0.0 else np.inf
 

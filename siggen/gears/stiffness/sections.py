@@ -15,9 +15,11 @@ from numba import njit
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.damage.flank_damage import Pit, Spall, flank_heights, pit_rows
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.damage.outlines import COLUMNS
+from siggen.gears.damage.row_columns import COLUMNS
+from siggen.gears.damage.tooth_damage import ToothDamage
 from siggen.gears.damage.union import (
     active_pits,
     add_intervals,
@@ -42,12 +44,12 @@ class SectionLoss:
     inertia_m4: FloatArray
 
 
-def contact_length_loss(pits: Iterable[Pit | Spall], face_width_m: float, height_m: ArrayLike) -> FloatArray:
+def contact_length_loss(pits: Iterable[ToothDamage], face_width_m: float, height_m: ArrayLike) -> FloatArray:
     """Return the face length that the pits of one flank cover at heights x (k,) [m].
 
     Parameters
     ----------
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         Face width; pits are clipped to it [m].
@@ -58,13 +60,13 @@ def contact_length_loss(pits: Iterable[Pit | Spall], face_width_m: float, height
     return lengths_covered(height, pit_rows(pits), height, np.empty((0, COLUMNS)), face_width_m)
 
 
-def section_loss(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, height_m: ArrayLike) -> SectionLoss:
+def section_loss(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float, height_m: ArrayLike) -> SectionLoss:
     """Return what the pits of one tooth take from its sections at heights x (k,).
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         [m].
@@ -103,13 +105,13 @@ def _losses_at(height: FloatArray, thickness: FloatArray, pits: FloatArray, face
     return out
 
 
-def union_area_m2(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float, measure: str = "arc") -> float:
+def union_area_m2(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float, measure: str = "arc") -> float:
     """Return the area of the union of the pits of one flank, clipped to face and rack-cut involute [m2].
 
     Parameters
     ----------
     gear : SpurGear
-    pits : iterable of Pit or Spall
+    pits : iterable of ToothDamage
         Pits of one tooth; their `gear` and `tooth` are not read.
     face_width_m : float
         [m].
@@ -134,7 +136,7 @@ def union_area_m2(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: flo
     return float(area)
 
 
-def largest_contact_length_loss(gear: SpurGear, pits: Iterable[Pit | Spall], face_width_m: float) -> float:
+def largest_contact_length_loss(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float) -> float:
     """Return the largest face length that the pits of one flank cover at any height of the involute [m].
 
     Derived: between kinks the covered length is a constant plus ends of merged intervals, straight or +a sqrt(1 -

@@ -10,8 +10,9 @@ from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, sta
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table
-from siggen.gears.damage.flank_damage import Damage, Spall
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import mesh_tables

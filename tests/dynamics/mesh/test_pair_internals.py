@@ -26,7 +26,7 @@ from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, slice_law, slice_tables
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PITCH_POINT, RANGE, mesh

@@ -20,7 +20,8 @@ from siggen.dynamics.mesh.static_stiffness import (
     static_approaches_m,
 )
 from siggen.dynamics.time.equations import no_inputs
-from siggen.gears.damage.flank_damage import Damage, Pit
+from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.gears.stiffness.mesh_tables import mesh_tables

@@ -23,7 +23,7 @@ from siggen.dynamics.mesh.slice_law import (
     slice_tables,
 )
 from siggen.dynamics.time.response import response_of
-from siggen.gears.damage.flank_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions

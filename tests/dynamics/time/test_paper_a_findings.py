@@ -8,7 +8,8 @@ import pytest
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.response import simulate_response
-from siggen.gears.damage.flank_damage import Damage, Pit
+from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.compliance import StiffnessOptions

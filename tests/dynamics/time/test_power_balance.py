@@ -12,8 +12,8 @@ from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, SLIDING
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.gears.contact.contact_table import TableOptions, contact_table
-from siggen.gears.damage.flank_damage import Spall
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions

@@ -18,8 +18,9 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.contact.contact_table import TableOptions, contact_table, face_slices
-from siggen.gears.damage.flank_damage import Damage, Spall
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import whole_face

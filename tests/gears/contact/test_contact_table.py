@@ -28,8 +28,9 @@ from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
 from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.flank_damage import Damage, Spall
 from siggen.gears.damage.outlines import Polygon, rectangle
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at

@@ -9,8 +9,8 @@ from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
 from siggen.gears.damage.flank_chords import contact_chords, flank_chords
-from siggen.gears.damage.flank_damage import Spall
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
 from tests.gears.builders import pair_18_47, pit
 
 PAIR = pair_18_47(module_m=3e-3)

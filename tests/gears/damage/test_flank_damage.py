@@ -8,7 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.damage.flank_damage import Pit, damage_problems, damaged_teeth, flank_heights, pits_of
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.tooth_damage import damaged_teeth, pits_of
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, pair_stiffness
 from tests.gears.builders import layers, pair_18_47, pit
 from tests.gears.stiffness.test_sections import pits

@@ -10,16 +10,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.damage.flank_damage import (
-    Spall,
-    damage_problems,
-    hides_damage,
-    length_squared_depth_m,
-    pit_rows,
-    profile_arc_m,
-)
+from siggen.gears.damage.flank_damage import damage_problems, pit_rows
+from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.outlines import Ellipse, Polygon, rectangle, v_outline
+from siggen.gears.damage.spall import Spall, length_squared_depth_m
 from siggen.gears.stiffness.compliance import section_breaks, tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
 from siggen.gears.stiffness.pitted_beams import pit_integrals
@@ -244,8 +239,8 @@ def test_spalls_are_clipped_to_face_and_flank():
 
 def test_what_a_deeper_damage_hides_changes_no_bit():
     inside = [box(1.6, 2.4, 7.0, 9.0, 0.1), v(1.6, 2.4, 8.0, 0.5, 1.0, 0.2), pit(2.0, 8.0, 0.5, 0.3, 0.2, "dish")]
-    assert all(hides_damage(box(), p) for p in inside)
-    assert not any(hides_damage(p, box()) for p in inside)
+    assert all(box().hides(p) for p in inside)
+    assert not any(p.hides(box()) for p in inside)
     assert np.array_equal(pair_stiffness(PAIR, S, OPTIONS, [box(), *inside]), pair_stiffness(PAIR, S, OPTIONS, [box()]))
 
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
-from siggen.gears.damage.outlines import COLUMNS
+from siggen.gears.damage.row_columns import COLUMNS
 from siggen.gears.damage.union import lengths_covered
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from tests.gears.builders import pair_18_47, pit

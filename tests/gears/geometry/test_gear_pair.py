@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.damage.flank_damage import axial_height
+from siggen.gears.damage.heights import axial_height
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear, geometry_problems
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.stiffness.foundation import outside_foundation_fit, root_half_angle

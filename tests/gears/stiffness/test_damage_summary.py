@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from siggen.gears.damage.flank_damage import Spall
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
 from siggen.gears.stiffness.damage_summary import DamageSummary, damage_summary, flank_arc_m
 from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
 from siggen.gears.stiffness.sections import union_area_m2

@@ -12,7 +12,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from siggen.gears.damage.flank_damage import flank_heights, pit_rows
+from siggen.gears.damage.flank_damage import pit_rows
+from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.kinks import roots_between, section_kinks
 from siggen.gears.stiffness.sections import (
     contact_length_loss,

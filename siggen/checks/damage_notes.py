@@ -1,0 +1,23 @@
+"""Sentences about the damage of a set that is idealised."""
+
+from __future__ import annotations
+
+from siggen.config import Config, bounds
+
+
+def damage_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know about the shapes of damage in a set.
+
+    A spall through the face whose edges are exactly parallel to the axis takes the whole contact line at once; with
+    edges skewed by 0.1 to 1 mm over the face the line crosses them bit by bit.
+    """
+    width_mm = bounds(config.gears.face_width_mm)[0]
+    damages = [state.damage for state in config.states if state.damage is not None and state.damage.has_spalls]
+    found = [damage.parallel_edges(width_mm) for damage in damages]
+    if not all(parallel for parallel, _ in found) or not any(through for _, through in found):
+        return ()
+    return (
+        "all spalls are idealised: their edges are exactly parallel to the axis, so those through the face take the "
+        "whole contact line at once; edges of real spalls are skewed and wavy (damage kind: irregular, "
+        "docs/irregular_spalls.md)",
+    )

@@ -1,0 +1,65 @@
+"""Columns of the table of damage."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from siggen.columns.column import MILLIMETRE, Column, list_of
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+DAMAGE_COLUMNS = (
+    Column("record_id", pa.int64(), "", "record that shows the damage"),
+    Column("gear", pa.string(), "", "pinion or gear"),
+    Column("tooth", pa.int32(), "", "index of the tooth"),
+    Column("kind", pa.string(), "", "pit or spall"),
+    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v or polygon"),
+    Column(
+        "height_mm",
+        pa.float64(),
+        MILLIMETRE,
+        "centre above the base circle along the tooth's axis; of a polygon the middle of its range",
+    ),
+    Column("face_mm", pa.float64(), MILLIMETRE, "centre across the face, from the face's edge"),
+    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face; of a polygon half its range"),
+    Column(
+        "semi_axis_profile_mm",
+        pa.float64(),
+        MILLIMETRE,
+        "semi-axis along the tooth's axis; of a polygon half its range",
+    ),
+    Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
+    Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
+    Column(
+        "polygon_face_mm",
+        list_of(pa.float64()),
+        MILLIMETRE,
+        "corners (rectangle, v, polygon) across the face; else empty",
+    ),
+    Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
+)
+"""Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
+EDGE_COLUMNS = (
+    Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
+    Column(
+        "strip_depth_mm",
+        list_of(pa.float64()),
+        MILLIMETRE,
+        "depth between neighbouring corners of the lower edge, which come first and ascend across the face; "
+        "empty: depth_mm everywhere",
+    ),
+)
+"""More columns of `damage/<split>.parquet` in sets whose damage has edges of its own."""
+
+
+def damage_columns(config: Config) -> tuple[Column, ...]:
+    """Return the columns of `damage/*.parquet` of a set."""
+    return (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()))
+
+
+def has_drawn_edges(config: Config) -> bool:
+    """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
+    return any(state.damage is not None and state.damage.drawn_edges for state in config.states)

@@ -1,0 +1,45 @@
+"""Engines by name: the one place that knows which there are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from siggen.engines.processes import ProcessEngine, default_workers
+from siggen.engines.protocol import Engine
+from siggen.engines.serial import SerialEngine
+from siggen.errors import UsageError
+
+ENGINES: dict[str, Callable[[int], Engine]] = {
+    "serial": lambda _: SerialEngine(),
+    "processes": ProcessEngine,
+}
+"""Name -> number of workers -> engine. Results do not depend on which one is chosen."""
+
+
+def engine_of(engine: Engine | str | None, workers: int | None) -> Engine:
+    """Return an engine by its name, or the object that was given.
+
+    Parameters
+    ----------
+    engine : Engine, str or None
+        An object is returned as it is. None: 'serial' for no workers, else 'processes'.
+    workers : int or None
+        For an engine by name, by default one per core; 'serial' has one whatever is asked for.
+
+    Raises
+    ------
+    UsageError
+        If there is no engine of that name, or an object comes with a number of workers of its own.
+    """
+    if engine is None:
+        # one worker is a process too: its libraries run one thread, as everywhere, and threads change how sums round
+        engine = "serial" if workers == 0 else "processes"
+    if not isinstance(engine, str):
+        if workers is not None and workers != engine.workers:
+            raise UsageError(
+                f"received workers {workers} and an engine of {engine.workers} workers; allowed: one of the two"
+            )
+        return engine
+    if engine not in ENGINES:
+        raise UsageError(f"received the engine '{engine}'; allowed: {', '.join(ENGINES)}, or an Engine object")
+    return ENGINES[engine](default_workers() if workers is None else workers)

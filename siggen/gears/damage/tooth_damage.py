@@ -1,0 +1,117 @@
+"""What every kind of damage answers about itself: the protocol through which all others see damage.
+
+A kind is a file beside this one with a frozen class. Most kinds lie on a flank inside an outline and take their answers
+from `siggen.gears.damage.on_flank`; a kind without outline, such as a crack in the root, answers for itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, TypeAlias
+
+from siggen.arrays import FloatArray
+from siggen.gears.damage.outlines import Outline
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+
+
+class Refusal(NamedTuple):
+    """Why a damage cannot be: the attribute to blame, what came, what is allowed."""
+
+    name: str
+    received: str
+    allowed: str
+
+
+class ToothDamage(Protocol):
+    """One damage of one tooth; immutable, and equal to another one that answers the same.
+
+    Attributes
+    ----------
+    gear : str
+        'pinion' or 'gear'.
+    tooth : int
+        Index, from 0.
+    kind : str
+        What it is, as in the table of damage: 'pit', 'spall'.
+    outline : Ellipse, Polygon or None
+        On the plane of height and face, to draw and to measure it; None for a damage that shows on no flank.
+    depth_m : float
+        Largest depth normal to the tooth's centre plane [m].
+    """
+
+    @property
+    def gear(self) -> str: ...  # noqa: D102 - see the class
+
+    @property
+    def tooth(self) -> int: ...  # noqa: D102
+
+    @property
+    def kind(self) -> str: ...  # noqa: D102
+
+    @property
+    def outline(self) -> Outline | None: ...  # noqa: D102
+
+    @property
+    def depth_m(self) -> float: ...  # noqa: D102
+
+    def rows(self) -> list[tuple[float, ...]]:
+        """Return what it takes from contact and sections, as rows of `siggen.gears.damage.row_columns`; may be none."""
+
+    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> FloatArray | float:
+        """Return what it adds to the compliance of its tooth beside the material of its rows, (k,) or a number."""
+
+    def profile_arc_m(self, gear: SpurGear) -> float:
+        """Return the longest arc along the involute that a line along the profile crosses [m]; 0 without outline."""
+
+    def hides(self, other: ToothDamage) -> bool:
+        """Return whether it takes the place of a milder damage, which then is no damage of its own any more."""
+
+    def own_problems(self) -> Iterator[Refusal]:
+        """Yield what is impossible whatever gear it is on."""
+
+    def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
+        """Yield what is impossible on a pair; asked only where it has no problem of its own."""
+
+    def table_row(self) -> dict[str, object]:
+        """Return its row of the table of damage by column, lengths in mm, but for the record's number."""
+
+
+Damage: TypeAlias = tuple[ToothDamage, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DamageProblem:
+    """One reason why a damage cannot be: which one of the damage, what came, what is allowed.
+
+    `name` is the attribute to blame, or 'contact' for a contact length that is wholly lost.
+    """
+
+    index: int
+    received: str
+    allowed: str
+    kind: str = "pit"
+    name: str = ""
+
+    def __str__(self) -> str:
+        """One line: pit or spall, what was received, what is allowed."""
+        return f"{self.kind} {self.index}: received {self.received}; allowed: {self.allowed}"
+
+
+def pits_of(damage: Iterable[ToothDamage], which: str, tooth: int) -> Damage:
+    """Return the damage on one tooth of 'pinion' or 'gear'."""
+    return tuple(one for one in damage if one.gear == which and one.tooth == tooth)
+
+
+def damaged_teeth(damage: Iterable[ToothDamage], which: str) -> tuple[int, ...]:
+    """Return the damaged teeth of 'pinion' or 'gear', ascending."""
+    return tuple(sorted({one.tooth for one in damage if one.gear == which}))
+
+
+def has_extent(damage: ToothDamage) -> bool:
+    """Whether a damage has depth, height and width; an outline without one is no damage (a limit case of the tests)."""
+    if damage.outline is None:
+        return True
+    (low, high), (left, right) = damage.outline.height_range_m, damage.outline.face_range_m
+    return damage.depth_m != 0.0 and low != high and left != right

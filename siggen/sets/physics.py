@@ -1,0 +1,46 @@
+"""What makes the content of a set: records, rows of damage, internal quantities; loaded when a set is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from siggen.columns.column import Column
+from siggen.dataset.chunk import Simulate
+from siggen.dataset.label_tables import DamageRows
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+
+@dataclass(frozen=True, slots=True)
+class Physics:
+    """Functions of (configuration, record): pure, and importable by name, since workers receive them.
+
+    Attributes
+    ----------
+    simulate
+        (config, ids of one specimen's records) -> records or failures.
+    damage_rows
+        (config, record_id) -> rows of `damage/`.
+    quantities
+        config -> columns of `internals/`; asked only where a set stores some.
+    """
+
+    simulate: Simulate
+    damage_rows: DamageRows
+    quantities: Callable[[Config], Sequence[Column]]
+
+    def stored(self, config: Config) -> tuple[Column, ...]:
+        """Return the columns of `internals/` of a set; none where it stores none."""
+        return () if config.internals is None else tuple(self.quantities(config))
+
+
+def physics() -> Physics:
+    """Return the physics of this version; compiled code is imported here and not before."""
+    from siggen.record.damage_rows import damage_rows
+    from siggen.record.internals import stored_quantities
+    from siggen.record.simulation import simulate_specimen
+
+    return Physics(simulate_specimen, damage_rows, stored_quantities)

@@ -1,0 +1,222 @@
+"""Irregular spalls of a state: from the configuration to the flank of a drawn gear, and what cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import sqrt
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Number, bounds, constant, draw
+from siggen.config.irregular import IrregularSpalls
+from siggen.errors import Problem
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.heights import flank_heights, initiation_height_m
+from siggen.gears.damage.irregular import (
+    STRIPS,
+    WAVE_LIMIT,
+    IrregularSpall,
+    drawn_waves,
+    grown_spall,
+    stations_across,
+)
+from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
+from siggen.specimen.gears import pit_height_m
+from siggen.specimen.growth import MM, Growth
+from siggen.specimen.spalls import axial_m, read_m
+
+PER_10MM = 0.1
+"""mm of arc per 10 mm of face as a slope."""
+WAVE_SHARE = 0.1
+"""Correlation length of the waves over the face width, where none is given; assumed."""
+STRIPS_PER_WAVE = 4
+"""Strips in a correlation length, at least: straight pieces then follow a wave."""
+
+
+def _irregular(model: IrregularSpalls, growth: Growth) -> Damage:
+    """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
+    return tuple(_on_tooth(model, growth, tooth) for tooth in growth.teeth(model))
+
+
+def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSpall:
+    pair, name = growth.pair, f"irregular.{model.gear}.{tooth}"
+    size = draw(model, growth.place(model.gear, IrregularSpalls), name)
+    gear, width = pair.member(model.gear), pair.face_width_m
+    length, across = MM * constant(size.profile_length_mm), _face_length_m(size, width)
+    middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
+    milder = _milder(growth, model.gear, tooth)
+    face = stations_across(width, middle - 0.5 * across, middle + 0.5 * across, milder)
+    along = read_m(gear, _middle_height_m(pair, size), size.height_reading)
+    arcs = tuple(
+        along + side * (0.5 * length) + _bend_m(size, growth, name, edge, face, middle)
+        for side, edge in zip((-1.0, 1.0), _edges(model.gear), strict=True)
+    )
+    return grown_spall(
+        model.gear,
+        tooth,
+        face,
+        lambda low, high: (axial_m(gear, low, size.height_reading), axial_m(gear, high, size.height_reading)),
+        (arcs[0], arcs[1]),
+        _depth_m(size, length, across) * _rough(size, growth, name, face, width),
+        MM * constant(size.edge_radius_mm),
+        size.floor,
+        milder,
+    )
+
+
+def _milder(growth: Growth, gear: str, tooth: int) -> IrregularSpall | None:
+    found = [one for one in growth.before if isinstance(one, IrregularSpall) and (one.gear, one.tooth) == (gear, tooth)]
+    return found[-1] if found else None
+
+
+def _edges(gear: str) -> tuple[str, str]:
+    """Return which edge is the lower and which the upper one: contact climbs the driving pinion's flank."""
+    return ("leading", "trailing") if gear == "pinion" else ("trailing", "leading")
+
+
+def _face_length_m(size: IrregularSpalls, face_width_m: float) -> float:
+    if size.face_length_mm is not None:
+        return MM * constant(size.face_length_mm)
+    return face_width_m * constant(size.face_share or 0.0)
+
+
+def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
+    centre = size.centre_height_mm
+    if centre == "below_pitch":
+        return initiation_height_m(pair, size.gear)
+    return pit_height_m(pair, size.gear, centre if isinstance(centre, str) else constant(centre), size.height_reading)
+
+
+def _bend_m(
+    size: IrregularSpalls, growth: Growth, name: str, edge: str, face_m: FloatArray, middle_m: float
+) -> FloatArray:
+    """Return how far an edge lies above its straight line, at stations (k,) [m]."""
+    skew = constant(size.leading_skew_mm_per_10mm if edge == "leading" else size.trailing_skew_mm_per_10mm)
+    waves = drawn_waves(growth.shape(size.gear, IrregularSpalls, f"{name}.{edge}"))
+    rms = constant(size.waviness) * MM * constant(size.profile_length_mm)
+    wave_m = MM * constant(_wave_length_mm(size, growth.pair.face_width_m / MM))
+    return PER_10MM * skew * (face_m - middle_m) + rms * waves(face_m, wave_m)
+
+
+def _wave_length_mm(size: IrregularSpalls, face_width_mm: float) -> Number:
+    return WAVE_SHARE * face_width_mm if size.waviness_length_mm is None else size.waviness_length_mm
+
+
+def _depth_m(size: IrregularSpalls, length_m: float, across_m: float) -> float:
+    if size.depth_mm is not None:
+        return MM * constant(size.depth_mm)
+    return constant(size.depth_share) * sqrt(length_m * across_m)
+
+
+def _rough(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray, width_m: float) -> FloatArray:
+    """Return the depth of the strips between stations over the mean one (k - 1,): uniform, of the rms asked for."""
+    draws = growth.shape(size.gear, IrregularSpalls, f"{name}.floor").random(STRIPS)
+    strip = np.clip((0.5 * (face_m[1:] + face_m[:-1]) / width_m * STRIPS).astype(int), 0, STRIPS - 1)
+    return np.asarray(1.0 + constant(size.floor_roughness) * sqrt(3.0) * (2.0 * draws[strip] - 1.0))
+
+
+def _problems(pair: GearPair, size: IrregularSpalls) -> Iterator[Problem]:
+    """Yield what is wrong at the bounds, whatever the waves turn out to be: they never go beyond `WAVE_LIMIT`."""
+    width_mm = pair.face_width_m / MM
+    yield from _face_problems(size, width_mm)
+    shortest_mm, least_mm = bounds(_wave_length_mm(size, width_mm))[0], STRIPS_PER_WAVE * width_mm / STRIPS
+    if shortest_mm < least_mm and bounds(size.waviness)[1] > 0.0:
+        allowed = f"allowed: at least {least_mm:.6g} mm, {STRIPS_PER_WAVE} strips of the face"
+        yield Problem("waviness_length_mm", f"{shortest_mm:.6g} mm", allowed)
+    yield from _edge_problems(pair, size, width_mm)
+
+
+def _face_lengths_mm(size: IrregularSpalls, width_mm: float) -> tuple[str, float]:
+    """Return the key of the length across the face and its largest value [mm]."""
+    if size.face_length_mm is not None:
+        return "face_length_mm", bounds(size.face_length_mm)[1]
+    return "face_share", width_mm * bounds(size.face_share or 0.0)[1]
+
+
+def _face_problems(size: IrregularSpalls, width_mm: float) -> Iterator[Problem]:
+    key, length_mm = _face_lengths_mm(size, width_mm)
+    for centre_mm in (0.5 * width_mm,) if size.face_centre_mm is None else bounds(size.face_centre_mm):
+        low, high = centre_mm - 0.5 * length_mm, centre_mm + 0.5 * length_mm
+        if low < -1e-9 * width_mm or high > width_mm * (1.0 + 1e-9):
+            received = f"{length_mm:.6g} mm about {centre_mm:.6g} mm, from {low:.6g} to {high:.6g} mm across the face"
+            yield Problem(key, received, f"allowed: on the face, 0 to {width_mm:.6g} mm")
+            return
+
+
+def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> Iterator[Problem]:
+    across_mm = _face_lengths_mm(size, width_mm)[1]
+    shortest, longest = bounds(size.profile_length_mm)
+    waves = WAVE_LIMIT * bounds(size.waviness)[1]
+    skews = bounds(size.leading_skew_mm_per_10mm), bounds(size.trailing_skew_mm_per_10mm)
+    apart = max(abs(one - two) for one in skews[0] for two in skews[1])
+    room = 2.0 * shortest * (1.0 - 2.0 * waves) / (PER_10MM * across_mm)
+    if apart >= room:
+        received = f"{_said(size.leading_skew_mm_per_10mm)}, with trailing_skew_mm_per_10mm "
+        received += f"{_said(size.trailing_skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
+        allowed = f"allowed: skews less than {room:.6g} mm per 10 mm apart, at {across_mm:.6g} mm across the face"
+        yield Problem("leading_skew_mm_per_10mm", received, allowed)
+        return
+    reach = 0.5 * PER_10MM * across_mm * max(abs(skew) for pair_of in skews for skew in pair_of) + waves * longest
+    yield from _height_problems(pair, size, MM * (0.5 * longest + reach))
+
+
+def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> Iterator[Problem]:
+    """Yield a middle or an edge off the flank, else a floor deeper than the tooth allows."""
+    gear, reading = pair.member(size.gear), size.height_reading
+    foot, tip = flank_heights(gear)
+    ends = [MM * value for value in (read_m(gear, foot, reading) / MM, read_m(gear, tip, reading) / MM)]
+    for height in _heights_m(pair, size):
+        if not foot <= height <= tip:
+            received = f"a middle {height / MM:.6g} mm above the base circle, along the tooth's axis"
+            yield Problem("centre_height_mm", received, f"allowed: {foot / MM:.6g} to {tip / MM:.6g} mm, the flank")
+            return
+        along = read_m(gear, height, reading)
+        if along - reach_m < ends[0] or along + reach_m > ends[1]:
+            received = f"{_said(size.profile_length_mm)} mm: with skew and waves the edges reach from "
+            received += f"{(along - reach_m) / MM:.4g} to {(along + reach_m) / MM:.4g} mm above the base circle"
+            yield Problem(
+                "profile_length_mm", received, f"allowed: {ends[0] / MM:.4g} to {ends[1] / MM:.4g} mm, the flank"
+            )
+            return
+        heights = axial_m(gear, along - reach_m, reading), axial_m(gear, along + reach_m, reading)
+        spall = Spall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
+        for problem in damage_problems(pair, (spall,)):
+            if problem.name == "depth_m":
+                key = "depth_share" if size.depth_mm is None else "depth_mm"
+                yield Problem(key, in_mm(problem.received), allowed_text(problem.allowed))
+
+
+def _heights_m(pair: GearPair, size: IrregularSpalls) -> list[float]:
+    centre = size.centre_height_mm
+    values = (centre,) if isinstance(centre, str) else dict.fromkeys(bounds(centre))
+    return [_middle_height_m(pair, size.model_copy(update={"centre_height_mm": value})) for value in values]
+
+
+def _deepest_m(pair: GearPair, size: IrregularSpalls) -> float:
+    rough = 1.0 + sqrt(3.0) * bounds(size.floor_roughness)[1]
+    if size.depth_mm is not None:
+        return MM * bounds(size.depth_mm)[1] * rough
+    area = bounds(size.profile_length_mm)[1] * _face_lengths_mm(size, pair.face_width_m / MM)[1]
+    return MM * bounds(size.depth_share)[1] * sqrt(area) * rough
+
+
+def _widest(pair: GearPair, size: IrregularSpalls) -> Damage:
+    """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
+    gear, across = pair.member(size.gear), MM * _face_lengths_mm(size, pair.face_width_m / MM)[1]
+    middle = 0.5 * pair.face_width_m if size.face_centre_mm is None else MM * bounds(size.face_centre_mm)[0]
+    along = read_m(gear, _heights_m(pair, size)[0], size.height_reading)
+    half = 0.5 * MM * bounds(size.profile_length_mm)[1]
+    heights = axial_m(gear, along - half, size.height_reading), axial_m(gear, along + half, size.height_reading)
+    return (Spall(size.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
+
+
+def _said(number: Number) -> str:
+    return f"{number:g}" if isinstance(number, float) else str(number)
+
+
+IRREGULAR = DamageKind(_irregular, _problems, _widest)

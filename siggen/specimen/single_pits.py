@@ -1,0 +1,87 @@
+"""Single pits: drawn at a place, checked at a place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from siggen.config import ClusteredPits, LayeredPits, ListedPit, Number, at, bounds
+from siggen.config.damage import PitSize
+from siggen.errors import Problem
+from siggen.gears.damage.heights import flank_heights
+from siggen.gears.damage.pit import Pit
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.damage_kind import PROBE_M, found_problems
+from siggen.specimen.gears import pit_height_m
+from siggen.specimen.growth import MM
+
+
+@dataclass(frozen=True, slots=True)
+class PitPlace:
+    """A place where pits of a state may come to lie, and the keys of the configuration that put them there."""
+
+    gear: str
+    height_m: float
+    face_m: float
+    size: PitSize
+    height_key: str
+    face_key: str
+    depth_key: str
+    remark: str = ""
+
+
+def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, which: str, u: float) -> float:
+    """Return the axial height [m] of a height as the configuration states it, drawn by the uniform `u`."""
+    return pit_height_m(pair, which, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
+
+
+def drawn_pit(
+    size: LayeredPits | ClusteredPits | ListedPit,
+    pair: GearPair,
+    tooth: int,
+    height_m: float,
+    face_m: float,
+    rng: np.random.Generator,
+) -> Pit:
+    """Return a pit with its own sizes; a centre that a random shift took off the flank is put on its edge."""
+    low, high = flank_heights(pair.member(size.gear))
+    semi_face, semi_profile, depth = (
+        MM * at(n, rng.random()) for n in (size.semi_axis_face_mm, size.semi_axis_profile_mm, size.depth_mm)
+    )
+    return Pit(
+        gear=size.gear,
+        tooth=tooth,
+        height_m=min(max(height_m, low), high),
+        face_m=min(max(face_m, 0.0), pair.face_width_m),
+        semi_axis_face_m=semi_face,
+        semi_axis_profile_m=semi_profile,
+        depth_m=depth,
+        floor=size.floor,
+    )
+
+
+def pit_place_problems(pair: GearPair, place: PitPlace) -> list[Problem]:
+    """Return what is wrong with one place: its height and its place on the face first, then the depth there."""
+    middle_m = pair.face_width_m / 2
+    at_height = found_problems(pair, (_probe(place, place.height_m, middle_m),), place.height_key, place.remark)
+    pitch_m = pit_height_m(pair, place.gear, "pitch", "axial")
+    at_face = found_problems(pair, (_probe(place, pitch_m, place.face_m),), place.face_key, place.remark)
+    if at_height or at_face:
+        return [*at_height, *at_face]
+    deepest = replace(
+        _probe(place, place.height_m, middle_m),
+        semi_axis_profile_m=bounds(place.size.semi_axis_profile_mm)[1] / 1e3,
+        depth_m=bounds(place.size.depth_mm)[1] / 1e3,
+    )
+    return found_problems(pair, (deepest,), place.depth_key, place.remark)
+
+
+def _probe(place: PitPlace, height_m: float, face_m: float) -> Pit:
+    return Pit(place.gear, 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
+
+
+def largest_pit(gear: str, tooth: int, height_m: float, face_m: float, size: PitSize) -> Pit:
+    """Return a pit with its sizes at their upper bounds, without depth to speak of."""
+    across_m, along_m = bounds(size.semi_axis_face_mm)[1] / 1e3, bounds(size.semi_axis_profile_mm)[1] / 1e3
+    return Pit(gear, tooth, height_m, face_m, across_m, along_m, PROBE_M, size.floor)

@@ -1,0 +1,189 @@
+"""Irregular spalls of a state: growth, draws, the limit case, messages, and rows of the damage table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from siggen.dynamics.mesh.slice_law import SliceLaw
+from siggen.errors import ConfigError
+from siggen.gears.damage.heights import clipped_arc_m
+from siggen.gears.damage.irregular import IrregularSpall
+from siggen.planning.specimen import draw_specimen
+from siggen.record.damage_rows import damage_rows
+from siggen.record.simulation import specimen_state
+from siggen.specimen.gears import gear_pair
+from tests.specimen.test_damage import PIT, config_with, damage_of
+
+SPALL: dict[str, Any] = {"kind": "irregular", "profile_length_mm": 0.6, "face_length_mm": 5.0}
+GROWN = [
+    SPALL,
+    {**SPALL, "profile_length_mm": 1.0, "face_length_mm": 12.0},
+    {**SPALL, "profile_length_mm": 1.6, "face_length_mm": 20.0},
+]
+STRAIGHT = {"waviness": 0.0, "leading_skew_mm_per_10mm": 0.0, "trailing_skew_mm_per_10mm": 0.0, "floor_roughness": 0.0}
+
+
+def holds(severe: IrregularSpall, mild: IrregularSpall) -> bool:
+    """Whether the outline of one lies within the other, at all stations and between."""
+    (face, low, high), (wide, lowest, highest) = np.array(mild.stations_m).T, np.array(severe.stations_m).T
+    places = np.union1d(
+        np.union1d(face, wide[(wide >= face[0]) & (wide <= face[-1])]), np.linspace(face[0], face[-1], 401)
+    )
+    below = np.interp(places, wide, lowest) <= np.interp(places, face, low) + 1e-15
+    above = np.interp(places, wide, highest) >= np.interp(places, face, high) - 1e-15
+    return bool(wide[0] <= face[0] and wide[-1] >= face[-1] and np.all(below & above))
+
+
+@given(
+    seed=st.integers(0, 2**31),
+    lengths=st.lists(st.floats(0.5, 1.6), min_size=3, max_size=3).map(sorted),
+    shares=st.lists(st.floats(0.1, 1.0), min_size=3, max_size=3),
+    waviness=st.lists(st.floats(0.0, 0.12), min_size=3, max_size=3),
+    gear=st.sampled_from(["pinion", "gear"]),
+)
+@settings(max_examples=40, deadline=None)
+def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
+    seed: int, lengths: list[float], shares: list[float], waviness: list[float], gear: str
+) -> None:
+    drawn = {"leading_skew_mm_per_10mm": {"kind": "uniform", "low": -0.1, "high": 0.1}}
+    damages = [
+        {"kind": "irregular", "gear": gear, "profile_length_mm": a, "face_share": b, "waviness": c, **drawn}
+        for a, b, c in zip(lengths, shares, waviness, strict=True)
+    ]
+    config = config_with(*damages, seed=seed)
+    for specimen_id in range(2):
+        found = [damage_of(config, state, specimen_id) for state in (3, 1, 2)]
+        severe, slight, moderate = (one for (one,) in found)
+        assert isinstance(severe, IrregularSpall)
+        assert isinstance(moderate, IrregularSpall)
+        assert isinstance(slight, IrregularSpall)
+        assert holds(severe, moderate)
+        assert holds(moderate, slight)
+        assert severe.depth_m >= moderate.depth_m >= slight.depth_m
+
+
+def test_a_state_is_the_same_alone_and_after_any_others() -> None:
+    config = config_with(*GROWN)
+    alone = damage_of(config_with(*GROWN), 3)
+    for state in (2, 1, 3, 1):
+        damage_of(config, state)
+    assert damage_of(config, 3) == alone
+
+
+def test_teeth_and_gearboxes_have_outlines_of_their_own() -> None:
+    config = config_with({**SPALL, "teeth": 2, "face_length_mm": 20.0})
+    shapes = {one.outline for specimen in range(3) for one in damage_of(config, 1, specimen)}
+    assert len(shapes) == 6
+
+
+def test_the_edge_that_the_contact_reaches_first_is_the_lower_one_on_the_pinion_and_the_upper_one_on_the_gear() -> None:
+    for gear, column in (("pinion", 1), ("gear", 2)):
+        damage = {**SPALL, **STRAIGHT, "gear": gear, "face_length_mm": 20.0, "leading_skew_mm_per_10mm": 0.1}
+        (one,) = damage_of(config_with(damage), 1)
+        stations = np.array(one.stations_m)
+        rise = stations[-1] - stations[0]
+        assert rise[column] > 0.0
+        assert rise[3 - column] == 0.0
+
+
+def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
+    damage = {**SPALL, **STRAIGHT, "face_length_mm": 20.0, "leading_skew_mm_per_10mm": 0.2}
+    config = config_with(damage)
+    (one,) = damage_of(config, 1)
+    pair = gear_pair(draw_specimen(config, 0).gears)
+    first, last = one.stations_m[0], one.stations_m[-1]
+    assert clipped_arc_m(pair.pinion, (first[1], last[1])) == pytest.approx(0.4e-3, rel=1e-9)
+    # The longest chord along the profile, at the end where the edges are furthest apart.
+    assert one.profile_arc_m(pair.pinion) == pytest.approx(0.8e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("floor", ["flat", "dish"])
+def test_without_skew_waves_and_roughness_it_is_the_rectangle_in_labels_and_in_every_bit_of_the_law(floor: str) -> None:
+    same = {"profile_length_mm": 1.0, "face_length_mm": 20.0, "depth_mm": 0.2, "centre_height_mm": "pitch"}
+    straight = {**same, **STRAIGHT, "kind": "irregular", "floor": floor, "edge_radius_mm": 0.1}
+    states = []
+    for damage in (straight, {**same, "kind": "spall", "depth_law": floor}):
+        config = config_with(damage)
+        states.append(specimen_state(config, draw_specimen(config, 0), 1))
+    irregular, rectangle = states
+    assert irregular.labels == rectangle.labels
+    assert isinstance(irregular.mesh.slices, SliceLaw)
+    assert isinstance(rectangle.mesh.slices, SliceLaw)
+    for found, expected in zip(irregular.mesh.slices, rectangle.mesh.slices, strict=True):
+        assert np.asarray(found).tobytes() == np.asarray(expected).tobytes()
+
+
+def test_it_takes_the_place_of_the_milder_one_and_leaves_pits_beside_it() -> None:
+    cluster = {"kind": "clustered", "count": 4, "spread_profile_mm": 0.5, **PIT}
+    config = config_with(cluster, *GROWN[1:])
+    assert [one.kind for one in damage_of(config, 3)].count("spall") == 1
+    assert [state.fault for state in config.states] == ["healthy", "pitting", "spalling", "spalling"]
+
+
+def test_depth_grows_with_the_area() -> None:
+    smooth = [{**damage, "floor_roughness": 0.0, "floor": "flat"} for damage in GROWN]
+    depths = [damage_of(config_with(*smooth), state)[0].depth_m for state in (1, 2, 3)]
+    assert depths == pytest.approx([0.05e-3 * np.sqrt(a * b) for a, b in ((0.6, 5.0), (1.0, 12.0), (1.6, 20.0))])
+
+
+def test_rows_hold_the_outline_the_edges_and_the_depth_of_every_strip() -> None:
+    config = config_with({"kind": "clustered", "count": 2, "spread_profile_mm": 0.3, **PIT}, GROWN[1])
+    rows = [row for record in range(3) for row in damage_rows(config, record) if row["record_id"] == 2]
+    (spall,) = (row for row in rows if row["kind"] == "spall")
+    (one,) = (one for one in damage_of(config, 2) if one.kind == "spall")
+    assert isinstance(one, IrregularSpall)
+    assert np.array(spall["polygon_face_mm"])[: len(one.stations_m)] == pytest.approx(
+        1e3 * np.array(one.stations_m)[:, 0]
+    )
+    assert len(spall["polygon_face_mm"]) == 2 * len(one.stations_m)
+    assert spall["strip_depth_mm"] == pytest.approx(1e3 * np.array(one.strip_depths_m))
+    assert 0.02 <= spall["edge_radius_mm"] <= 0.2
+    for row in rows:
+        if row["kind"] == "pit":
+            assert (row["edge_radius_mm"], row["strip_depth_mm"]) == (0.1, [])
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "said"),
+    [
+        ({"profile_length_mm": 9.0}, "profile_length_mm", "with skew and waves the edges reach from"),
+        ({"profile_length_mm": 0.0}, "profile_length_mm", "allowed: a number above 0"),
+        (
+            {"face_length_mm": 21.0},
+            "face_length_mm",
+            "from -0.5 to 20.5 mm across the face; allowed: on the face, 0 to 20 mm",
+        ),
+        ({"face_centre_mm": 1.0}, "face_length_mm", "5 mm about 1 mm"),
+        ({"face_share": 0.5}, "face_share", "allowed: one of the two"),
+        ({"face_length_mm": None}, "face_length_mm", "needs face_length_mm or face_share"),
+        (
+            {"leading_skew_mm_per_10mm": 2.0},
+            "leading_skew_mm_per_10mm",
+            "the edges of 0.6 mm cross; allowed: skews less than",
+        ),
+        ({"waviness": 0.3}, "waviness", "allowed: a number from 0 to 0.2"),
+        ({"waviness_length_mm": 0.5}, "waviness_length_mm", "allowed: at least 1.25 mm"),
+        ({"depth_mm": 4.0}, "depth_mm", "allowed: below the half tooth thickness there"),
+        ({"depth_mm": 0.2, "depth_share": 0.1}, "depth_share", "allowed: nothing beside depth_mm"),
+        ({"depth_share": 0.5, "face_length_mm": 20.0, "profile_length_mm": 1.6}, "depth_share", "half tooth thickness"),
+        ({"centre_height_mm": 12.0}, "centre_height_mm", "a middle"),
+        ({"edge_radius_mm": -0.1}, "edge_radius_mm", "received -0.1"),
+        ({"teeth": [18]}, "teeth", "tooth 18"),
+        ({"kind": "iregular"}, "kind", "allowed: one of layered, clustered, spall, list, irregular"),
+    ],
+)
+def test_impossible_spalls_are_refused_by_key_value_and_range(changes: dict[str, Any], key: str, said: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        config_with({**SPALL, **changes})
+    assert f"states.1.damage.{key}: received" in str(refused.value)
+    assert said in str(refused.value)
+
+
+def test_through_the_face_needs_a_contact_that_can_lose_its_length() -> None:
+    with pytest.raises(ConfigError, match="spalls of pinion tooth 0 that take the whole contact length"):
+        config_with({**SPALL, "face_length_mm": 20.0, "profile_length_mm": 1.0}, law="linear")
