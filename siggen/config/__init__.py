@@ -1,5 +1,6 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
+from siggen.config.background import Background, Base, Bursts, Density, Floor, ForeignMesh, Rubbing, Shafts
 from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
@@ -28,8 +29,11 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 __all__ = [
     "BLOCK",
     "SCHEMA_VERSION",
+    "Background",
+    "Base",
     "BearingTones",
     "Bolts",
+    "Bursts",
     "Caps",
     "Casing",
     "Choice",
@@ -37,8 +41,11 @@ __all__ = [
     "Config",
     "Coupling",
     "DamageModel",
+    "Density",
     "Dynamics",
+    "Floor",
     "ForceNoise",
+    "ForeignMesh",
     "Friction",
     "Gears",
     "Housing",
@@ -63,7 +70,9 @@ __all__ = [
     "PinkNoise",
     "Resonance",
     "Rotor",
+    "Rubbing",
     "Sensor",
+    "Shafts",
     "SpallSize",
     "Spalls",
     "SpeedVariation",

@@ -27,11 +27,18 @@ class Draws:
     ----------
     specimen, shared : name -> uniform of the gearbox, or of the record
     record : name -> generator of this channel and record
+    levels : name -> uniform of a level that belongs to the gearbox; None: levels are the record's
     """
 
     specimen: Callable[[str], float]
     shared: Callable[[str], float]
     record: Callable[[str], np.random.Generator]
+    levels: Callable[[str], float] | None = None
+
+    def level(self, name: str, rng: np.random.Generator) -> float:
+        """Return the uniform of a level; the generator advances by one either way, so that its noise stays."""
+        own = float(rng.random())
+        return own if self.levels is None else self.levels(name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +78,8 @@ def _pink(
     section: PinkNoise, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
 ) -> tuple[ComplexArray, float]:
     rng = draws.record("pink_noise")
-    density = at(section.density_m_s2_per_sqrt_hz, rng.random())
-    corner_hz = at(section.corner_hz, rng.random())
+    density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
+    corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
     spectrum = noise_spectrum(density, length, fs_hz, rng, pink_corner_hz=corner_hz)
     return (spectrum if channel.high_pass is None else spectrum * channel.high_pass), density
 
@@ -89,7 +96,7 @@ def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
 
 def _mains(section: Mains, draws: Draws) -> Lines:
     rng = draws.record("mains")
-    amplitude = at(section.amplitude_m_s2, rng.random())
+    amplitude = at(section.amplitude_m_s2, draws.level("mains.amplitude_m_s2", rng))
     return harmonic_lines(
         at(section.frequency_hz, draws.specimen("mains.frequency_hz")), amplitude, section.harmonics, rng
     )
@@ -98,13 +105,14 @@ def _mains(section: Mains, draws: Draws) -> Lines:
 def _tones(section: Tones, draws: Draws) -> Lines:
     rng = draws.record("tones")
     uniforms = [draws.specimen(f"tones.{tone}.frequency_hz") for tone in range(section.count)]
-    amplitudes = [at(section.amplitude_m_s2, float(u)) for u in rng.random(section.count)]
+    own = [draws.level(f"tones.{tone}.amplitude_m_s2", rng) for tone in range(section.count)]
+    amplitudes = [at(section.amplitude_m_s2, u) for u in own]
     return single_lines(np.array([at(section.frequency_hz, u) for u in uniforms]), np.array(amplitudes), rng)
 
 
 def _inverter(section: Inverter, draws: Draws) -> Lines:
     rng = draws.record("inverter")
-    amplitude = at(section.amplitude_m_s2, rng.random())
+    amplitude = at(section.amplitude_m_s2, draws.level("inverter.amplitude_m_s2", rng))
     carrier_hz = at(section.carrier_hz, draws.specimen("inverter.carrier_hz"))
     # the electrical frequency belongs to the record: all sensors see the same motor
     modulation_hz = at(section.modulation_hz, draws.shared("inverter.modulation_hz"))
