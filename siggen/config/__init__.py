@@ -12,7 +12,7 @@ from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
-from siggen.config.manufacture import Manufacture
+from siggen.config.manufacture import FlankWaves, Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
@@ -43,6 +43,7 @@ __all__ = [
     "DamageModel",
     "Density",
     "Dynamics",
+    "FlankWaves",
     "Floor",
     "ForceNoise",
     "ForeignMesh",

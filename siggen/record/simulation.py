@@ -26,6 +26,7 @@ from siggen.specimen.contact import mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
 from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
@@ -72,8 +73,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
     with limits_of("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
+        waves = specimen_waves(config, pair, specimen.specimen_id, state_id)
+        missing = wavy_teeth(missing, config, pair, waves)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
-        labels |= error_labels(config, errors)
+        labels |= {**error_labels(config, errors), **wave_labels(waves)}
     return SpecimenState(
         pair,
         options,

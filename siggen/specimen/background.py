@@ -119,7 +119,7 @@ def _directions(assembled: Structure, section: Background, uniform: Callable[[st
     if section.rubbing is not None or section.floor is not None:
         found["mesh"] = assembled.mesh_vector
     if section.floor is not None:
-        found |= {name: bearing_direction(assembled, *name.split("/")) for name in INPUTS}
+        found |= {name: _on_seat(assembled, name) for name in INPUTS}
         found["drive"] = _turned(_ground(assembled), _angle(uniform, "floor.drive"))
     if section.shafts is not None:
         for shaft in SHAFTS:
@@ -130,6 +130,12 @@ def _directions(assembled: Structure, section: Background, uniform: Callable[[st
         if getattr(section, name) is not None:
             found[name] = _turned(_moved(assembled, ("x_c", "y_c")), _angle(uniform, name))
     return found
+
+
+def _on_seat(assembled: Structure, name: str) -> FloatArray:
+    """Return 1 N on the housing alone, at a bearing: what shafts bring in from outside, as `housing.force_noise`."""
+    rotor = [coordinate in {"x_1", "y_1", "x_2", "y_2"} for coordinate in assembled.coordinates]
+    return np.where(rotor, 0.0, -bearing_direction(assembled, *name.split("/")))
 
 
 def _angle(uniform: Callable[[str], float], name: str) -> float:
@@ -177,7 +183,7 @@ def _response(
         for name, row in zip(INPUTS, accelerance, strict=True):
             total += row * forced.bearing_force[name]
             if name in inputs:
-                total[inputs.index(name)] -= row  # the seat is pushed back by what pushes the shaft
+                total[inputs.index(name)] += row
     if entries is not None:
         for name, row in zip(ENTRIES, entries, strict=True):
             if name in inputs:
