@@ -1,9 +1,10 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
-from siggen.config.background import Background, Base, Bursts, Density, Floor, ForeignMesh, Rubbing, Shafts
+from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, Shafts
 from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, SCHEMA_VERSION, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
+from siggen.config.density import Density, SensorDensity
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
@@ -73,6 +74,7 @@ __all__ = [
     "Rotor",
     "Rubbing",
     "Sensor",
+    "SensorDensity",
     "Shafts",
     "SpallSize",
     "Spalls",

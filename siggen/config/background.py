@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from siggen.config.density import Density
 from siggen.config.distributions import LogUniform, Uniform
 from siggen.config.number import Number, Within
-from siggen.config.problems import refusal
-from siggen.config.section import Real, Section, Whole
-from siggen.errors import Problem
+from siggen.config.section import Section, Whole
 
 
 class Base(Section):
@@ -98,23 +97,6 @@ class Rubbing(Section):
         description="power that returns with every turn of pinion and gear, half each (measured)",
     )
     bursts: Bursts | None = Field(default=None, description="null: none")
-
-
-class Density(Section):
-    """A one-sided density over frequency, straight between its knots in log-log, constant beyond them."""
-
-    frequency_hz: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="knots, ascending, above 0")
-    density: Annotated[tuple[Real, ...], Field(min_length=2)] = Field(description="one above 0 for each knot")
-
-    @model_validator(mode="after")
-    def _knots(self) -> Density:
-        rising = all(a < b for a, b in zip(self.frequency_hz, self.frequency_hz[1:], strict=False))
-        if not (rising and self.frequency_hz[0] > 0.0 and min(self.density) > 0.0):
-            raise refusal([Problem("", "knots out of order or not above 0", "allowed: ascending, all above 0")])
-        if len(self.frequency_hz) != len(self.density):
-            received = f"{len(self.frequency_hz)} frequencies, {len(self.density)} densities"
-            raise refusal([Problem("density", received, "allowed: as many as frequencies")])
-        return self
 
 
 class Floor(Section):

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Inverter, Mains, PinkNoise, Sensor, Tones, at
+from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
+from siggen.sensing.force_density import noise_of, tabulated
 from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.spectral_filter import record_of
+from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
@@ -63,6 +64,10 @@ def channel_disturbance(
         pink, density = _pink(sensor.pink_noise, channel, draws, fs_hz, length)
         signal += record_of(pink, length, samples)
         labels[f"pink_noise_{name}_m_s2_per_sqrt_hz"] = density
+    if sensor.noise_spectrum is not None:
+        added = _of_spectrum(sensor.noise_spectrum, channel, draws, fs_hz, length)[length - samples :]
+        signal += added
+        labels[f"noise_spectrum_{name}_m_s2"] = float(added.std())
     for part, lines in _lines(sensor, draws):
         response = np.ones(lines.frequency_hz.size, dtype=complex)
         if part != "mains":
@@ -82,6 +87,15 @@ def _pink(
     corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
     spectrum = noise_spectrum(density, length, fs_hz, rng, pink_corner_hz=corner_hz)
     return (spectrum if channel.high_pass is None else spectrum * channel.high_pass), density
+
+
+def _of_spectrum(
+    section: SensorDensity, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
+) -> FloatArray:
+    rng = draws.record("noise_spectrum")
+    factor = at(section.factor, draws.level("noise_spectrum.factor", rng))
+    density = factor * tabulated(frequencies(length, fs_hz), section.frequency_hz, section.density)
+    return noise_of(density if channel.high_pass is None else density * np.abs(channel.high_pass), length, fs_hz, rng)
 
 
 def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
