@@ -13,21 +13,15 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, Density, Floor, ForeignMesh, Shafts, constant, draw
+from siggen.config import Background, Config, ForeignMesh, Shafts, constant, draw
 from siggen.dynamics.drive.comb import Comb, turns_of
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, record_course
+from siggen.record.force_floor import floor_spectra
 from siggen.record.rubbing import rubbing_force
-from siggen.sensing.force_density import noise_of, rising_floor, tabulated
-from siggen.sensing.modulation import shaft_course
-from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.background import AXES, SHAFTS, SpecimenBackground
+from siggen.specimen.background import AXES, SpecimenBackground
 from siggen.specimen.instrument import Instrument
-from siggen.specimen.measured_path import INPUTS
-
-PHASE_SPREAD = 0.1
-"""Noise of one shaft's sources rises at the same angle, within this share of a turn to either side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +40,13 @@ def record_background(
     if background is None or config.background is None:
         return None
     course = record_course(config, specimen, record, instrument.length)
-    forces, labels = _forces(_with_levels(config.background, background, course), course, background.inputs)
+    section = _with_levels(config.background, background, course)
+    forces, labels = _forces(section, course, background.inputs)
     spectra = {name: np.fft.rfft(force) for name, force in forces.items()}
+    if section.floor is not None:
+        for name, spectrum in floor_spectra(section.floor, course).items():
+            spectra[name] = spectra[name] + spectrum if name in spectra else spectrum
+        labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
     seen = {name: _sum(background, response, spectra) for name, response in background.responses.items()}
     return RecordBackground(seen, labels)
 
@@ -79,10 +78,6 @@ def _forces(
         if name in inputs:
             forces[name] = forces[name] + force if name in forces else force
 
-    if section.floor is not None:
-        for name, force in _floor(section.floor, course):
-            add(name, force)
-        labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
     if section.rubbing is not None:
         force, found = rubbing_force(section, course, section.rubbing)
         add("mesh", force)
@@ -101,30 +96,6 @@ def _forces(
             add(name, comb.force_n(turns_of(course.angle_rad, comb.order), beside, course.top_order))
             labels |= {f"{name}_order": comb.order, f"{name}_force_n": float(comb.amplitude_n[0])}
     return forces, labels
-
-
-def _floor(floor: Floor, course: Course) -> list[tuple[str, FloatArray]]:
-    """Return the noise of all sources: mesh, bearings with the modulation of their shafts, drive."""
-    grid = frequencies(course.length, course.fs_hz)
-    shape = rising_floor(grid, constant(floor.low_corner_hz), constant(floor.low_exponent)) * _factor(
-        floor.spectrum, grid
-    )
-    density = constant(floor.density_n_per_sqrt_hz)
-    share, depth = constant(floor.elsewhere), constant(floor.shaft_depth)
-    found = []
-    for name in ("mesh", *INPUTS, "drive"):
-        level = density if name == "mesh" else density * share
-        noise = noise_of(level * shape, course.length, course.fs_hz, course.of_record(f"background.floor.{name}"))
-        shaft = name.partition("_")[0]
-        if shaft in SHAFTS and depth > 0.0:
-            turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.floor.{name}.turn") - 1.0)
-            noise *= np.sqrt(shaft_course([course.shaft_lines(shaft, depth, turn)]))
-        found.append((name, noise))
-    return found
-
-
-def _factor(spectrum: Density | None, grid: FloatArray) -> FloatArray | float:
-    return 1.0 if spectrum is None else tabulated(grid, spectrum.frequency_hz, spectrum.density)
 
 
 def _coupling_force_n(drawn: Shafts) -> float:
