@@ -1,6 +1,6 @@
 """Table of docs/design/background.md: healthy channels of bench and background beside what real machines show.
 
-`python docs/scripts/background.py [gearboxes]`; 8 gearboxes take six minutes. Signals are resampled in angle and seen in
+`python docs/scripts/background.py [gearboxes]`; 8 gearboxes take a minute. Signals are resampled in angle and seen in
 Hann windows of 40 turns; the floor is the median over 0.693, the residual what the averages of both shafts leave.
 """
 

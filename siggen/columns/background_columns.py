@@ -17,7 +17,10 @@ RUBBING = (
     ("rubbing_pinion_depth", "", "modulation of the rubbing by the pinion's shaft"),
     ("rubbing_gear_depth", "", "modulation of the rubbing by the gear's shaft"),
 )
-FLOOR = (("floor_force_n_per_sqrt_hz", "N/sqrt(Hz)", "noise of the force in the mesh, above its low corner"),)
+FLOOR = (
+    ("floor_force_n_per_sqrt_hz", "N/sqrt(Hz)", "noise of the force in the mesh, above its low corner"),
+    ("machine_force_n_per_sqrt_hz", "N/sqrt(Hz)", "noise of the force of each machine beside, above its low corner"),
+)
 SHAFTS = tuple(
     (f"coupling_force_{shaft}_n", "N", f"once per turn, of the misaligned coupling on the {shaft}'s shaft")
     for shaft in ("pinion", "gear")

@@ -47,6 +47,7 @@ def record_background(
         for name, spectrum in floor_spectra(section.floor, course).items():
             spectra[name] = spectra[name] + spectrum if name in spectra else spectrum
         labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
+        labels["machine_force_n_per_sqrt_hz"] = constant(section.floor.machines_n_per_sqrt_hz)
     seen = {name: _sum(background, response, spectra) for name, response in background.responses.items()}
     return RecordBackground(seen, labels)
 

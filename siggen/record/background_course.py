@@ -11,6 +11,7 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
@@ -71,7 +72,9 @@ def record_course(config: Config, specimen: Specimen, record: PlannedRecord, len
     pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)
     rotation = record_rotation(config, point, record, start_angle_rad(config, pair, record))
     history, owner = length - config.samples, record_owner(record)
-    angle_rad = rotation.angle_rad((np.arange(length) - history) / config.fs_hz)
+    # a fast length may reach further back than any force is followed; there the shaft stands still
+    time_s = np.maximum((np.arange(length) - history) / config.fs_hz, -TRANSIENT_CAP_S)
+    angle_rad = rotation.angle_rad(time_s)
     orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
     return Course(
         angle_rad,

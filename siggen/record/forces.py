@@ -37,7 +37,7 @@ def record_forces(
     """Return the forces of one record; all sensors see the same ones."""
     owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
     noise = None if config.housing is None else config.housing.force_noise
-    level = noise_levels(config, record) or named_uniforms(config.seed, Stage.FORCE_NOISE, *owner)
+    level = _levels(config, record, owner)
     density = 0.0 if noise is None else _density(config, noise, specimen, owner, level)
     labels: dict[str, object] = {} if noise is None else {"force_noise_n_per_sqrt_hz": density}
     if not instrument.has_path:
@@ -53,6 +53,14 @@ def record_forces(
             spectrum += rolled_off * noise_spectrum(density, instrument.length, config.fs_hz, rng)
         spectra.append(spectrum)
     return RecordForces(tuple(spectra), labels)
+
+
+def _levels(config: Config, record: PlannedRecord, owner: tuple[int, ...]) -> Callable[[str], float]:
+    """Return key -> uniform of the noise's level: of the gearbox with `background`, else of the record."""
+    of_gearbox = noise_levels(config, record)
+    if of_gearbox is None:
+        return named_uniforms(config.seed, Stage.FORCE_NOISE, *owner)
+    return lambda key: of_gearbox(f"housing.force_noise.{key}")
 
 
 def _roll_off(

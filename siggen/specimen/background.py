@@ -35,6 +35,8 @@ ENTRIES = ("second_stage", "auxiliary_drive")
 """Sources that press on the housing at a place of their own."""
 AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
+MACHINES = {"motor": "pinion", "load": "gear"}
+"""What stands beside the gearbox, and the shaft that leads there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +122,8 @@ def _directions(assembled: Structure, section: Background, uniform: Callable[[st
         found["mesh"] = assembled.mesh_vector
     if section.floor is not None:
         found |= {name: _on_seat(assembled, name) for name in INPUTS}
-        found["drive"] = _turned(_ground(assembled), _angle(uniform, "floor.drive"))
+        for name, shaft in MACHINES.items():
+            found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"floor.{name}"))
     if section.shafts is not None:
         for shaft in SHAFTS:
             rows = _on_rotor(assembled, shaft) - _on_base(assembled)
@@ -163,9 +166,9 @@ def _on_base(assembled: Structure) -> FloatArray:
     return _moved(assembled, ("x_b", "y_b"))
 
 
-def _ground(assembled: Structure) -> FloatArray:
-    """Return where the drive presses: on the base, or on the pinion's shaft of a gearbox without one."""
-    return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, "pinion")
+def _stand(assembled: Structure, shaft: str) -> FloatArray:
+    """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
+    return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
 
 
 def _response(

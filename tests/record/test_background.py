@@ -16,7 +16,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.background import record_background
 from siggen.record.background_course import record_course
 from siggen.record.rubbing import force_size_n, rubbing_force
-from siggen.record.simulation import simulate
+from siggen.record.simulation import simulate, simulate_specimen
 from siggen.sensing.spectral_filter import record_of
 from siggen.specimen.background import drawn_background
 from siggen.specimen.instrument import specimen_instrument
@@ -113,6 +113,14 @@ def test_adding_a_sensor_leaves_the_bytes_of_the_others() -> None:
     alone = record(loaded(MODAL, background=ALL)).channels["lid_vertical"]
     both = record(loaded(PLAIN, {**MODAL, "name": "other"}, MODAL, background=ALL)).channels["lid_vertical"]
     assert alone.tobytes() == both.tobytes()
+
+
+def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
+    config = loaded(background=ALL)
+    for record_id, found in zip([0, 1], simulate_specimen(config, [0, 1]), strict=True):
+        assert isinstance(found, Record)
+        for name, signal in record(config, record_id).channels.items():
+            assert signal.tobytes() == found.channels[name].tobytes()
 
 
 def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass() -> None:
