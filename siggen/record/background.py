@@ -40,8 +40,8 @@ def record_background(
     if background is None or config.background is None:
         return None
     course = record_course(config, specimen, record, instrument.length)
-    section = _with_levels(config.background, background, course)
-    forces, labels = _forces(section, course, background.inputs)
+    section = _with_levels(config.background, background.section, course)
+    forces, labels = _forces(section, course, background)
     spectra = {name: np.fft.rfft(force) for name, force in forces.items()}
     if section.floor is not None:
         for name, spectrum in floor_spectra(section.floor, course).items():
@@ -60,35 +60,33 @@ def _sum(background: SpecimenBackground, response: ComplexArray, spectra: Mappin
     return total
 
 
-def _with_levels(section: Background, background: SpecimenBackground, course: Course) -> Background:
-    """Return the drawn section, its noise drawn for what levels belong to."""
+def _with_levels(section: Background, drawn: Background, course: Course) -> Background:
+    """Return what was drawn for the gearbox, its noise drawn anew if levels belong to the record."""
+    if section.redraw == "gearbox":
+        return drawn
     levels = draw(section, course.level, "background")
-    # shafts stay as they were written: each of them draws its own
-    changed = {"rubbing": levels.rubbing, "floor": levels.floor, "shafts": section.shafts}
-    return background.section.model_copy(update=changed)
+    return drawn.model_copy(update={"rubbing": levels.rubbing, "floor": levels.floor})
 
 
 def _forces(
-    section: Background, course: Course, inputs: tuple[str, ...]
+    section: Background, course: Course, background: SpecimenBackground
 ) -> tuple[dict[str, FloatArray], dict[str, object]]:
     """Return input -> force (length,), and labels."""
     forces: dict[str, FloatArray] = {}
     labels: dict[str, object] = {}
 
     def add(name: str, force: FloatArray) -> None:
-        if name in inputs:
+        if name in background.inputs:
             forces[name] = forces[name] + force if name in forces else force
 
     if section.rubbing is not None:
         force, found = rubbing_force(section, course, section.rubbing)
         add("mesh", force)
         labels |= found
-    if section.shafts is not None:
-        for shaft, order in course.orders.items():
-            drawn = draw(section.shafts, course.uniform, f"background.shafts.{shaft}")
-            for name, force in _shaft(drawn, course, shaft, order):
-                add(name, force)
-            labels[f"coupling_force_{shaft}_n"] = _coupling_force_n(drawn)
+    for shaft, drawn in background.shafts.items():
+        for name, force in _shaft(drawn, course, shaft):
+            add(name, force)
+        labels[f"coupling_force_{shaft}_n"] = _coupling_force_n(drawn)
     for name, mesh in (("second_stage", section.second_stage), ("auxiliary_drive", section.auxiliary_drive)):
         if mesh is not None:
             comb = _foreign(mesh, course, name)
@@ -103,8 +101,9 @@ def _coupling_force_n(drawn: Shafts) -> float:
     return constant(drawn.coupling_stiffness_n_per_um) * constant(drawn.offset_um)
 
 
-def _shaft(drawn: Shafts, course: Course, shaft: str, order: float) -> list[tuple[str, FloatArray]]:
+def _shaft(drawn: Shafts, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
     """Return the forces of one coupling along both axes, and of the rotor on its shaft on the base."""
+    order = course.orders[shaft]
     decibels = [0.0, *(constant(level) for level in (drawn.second_db, drawn.third_db, drawn.fourth_db))]
     amplitude = _coupling_force_n(drawn) * 10.0 ** (np.array(decibels) / 20.0)
     found = []

@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, Dynamics, constant, draw
+from siggen.config import Background, Config, Dynamics, Shafts, constant, draw
 from siggen.config import Base as BaseSection
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
 from siggen.dynamics.structure.casing_structure import bolt_elements
@@ -41,9 +41,13 @@ MACHINES = {"motor": "pinion", "load": "gear"}
 
 @dataclass(frozen=True, slots=True)
 class SpecimenBackground:
-    """A drawn section, the names of its inputs, and channel -> response (inputs, k) in m/s² per N before the sensor."""
+    """A drawn section, `shafts` once for each of them, and channel -> response (inputs, k) in m/s² per N, by `inputs`.
+
+    Responses end before the sensor.
+    """
 
     section: Background
+    shafts: Mapping[str, Shafts]
     inputs: tuple[str, ...]
     responses: Mapping[str, ComplexArray]
 
@@ -88,14 +92,22 @@ def specimen_background(
         assembled = on_base(assembled, bolts, _base(section.base))
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
     directions = _directions(assembled, section, uniform)
+    shafts = _shafts(config.background, uniform)
     if not directions:
-        return SpecimenBackground(section, (), {})
+        return SpecimenBackground(section, shafts, (), {})
     seen = tuple(dict.fromkeys(motion for motions, _, _ in channels.values() for motion in motions))
     mesh = mean_mesh(section, specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
     forced = forced_motion(assembled, mesh, np.array(list(directions.values())), seen, frequency_hz)
     names = tuple(directions)
     responses = {name: _response(names, forced, *channel) for name, channel in channels.items()}
-    return SpecimenBackground(section, names, responses)
+    return SpecimenBackground(section, shafts, names, responses)
+
+
+def _shafts(section: Background | None, uniform: Callable[[str], float]) -> dict[str, Shafts]:
+    """Return the section of each shaft, each with its own draws."""
+    if section is None or section.shafts is None:
+        return {}
+    return {shaft: draw(section.shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
 
 
 def mean_mesh(section: Background, dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:

@@ -78,6 +78,7 @@ def test_states_share_levels_and_lines_but_not_the_course_of_the_noise() -> None
         k: v for k, v in damaged[1].items() if k != "burst_count"
     }
     assert not np.allclose(healthy[0]["lid_vertical"], damaged[0]["lid_vertical"])
+    assert healthy[1]["coupling_force_pinion_n"] != healthy[1]["coupling_force_gear_n"]
     other = added(config, 2)[1]
     assert all(
         other[name] != healthy[1][name] for name in healthy[1] if name not in {"burst_count", "second_stage_order"}
