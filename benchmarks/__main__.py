@@ -16,8 +16,8 @@ from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
 TOPICS = (
-    *("startup", "stiffness", "integration", "record", "sensing", "storage", "loader", "indicators", "workers"),
-    *("quickstart", "contact", "house"),
+    *("startup", "stiffness", "integration", "record", "sensing", "background", "storage", "loader", "indicators"),
+    *("workers", "quickstart", "contact", "house"),
 )
 
 

@@ -26,6 +26,8 @@ class Stage(IntEnum):
     BEARING_TONES = 14
     PATH = 11
     FORCE_NOISE = 13
+    BACKGROUND = 15
+    BACKGROUND_NOISE = 16
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -43,6 +45,8 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.BEARING_TONES: 1,
     Stage.PATH: 1,
     Stage.FORCE_NOISE: 4,
+    Stage.BACKGROUND: 1,
+    Stage.BACKGROUND_NOISE: 4,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -69,6 +69,8 @@ def test_integers_of_stages_are_part_of_every_identity():
         "BEARING_TONES": 14,
         "PATH": 11,
         "FORCE_NOISE": 13,
+        "BACKGROUND": 15,
+        "BACKGROUND_NOISE": 16,
     }
 
 

@@ -23,6 +23,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         If anything is wrong with the configuration; names every problem of form and physics at once.
     """
     # compile nothing, but load the physics
+    from siggen.checks.density_files import with_density_files
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
     from siggen.specimen.measured_path import response_problems, with_measured_responses
@@ -32,9 +33,10 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     else:
         file = config_file(source)
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
-    filled, unread = with_measured_responses(apply_overrides(raw, overrides), folder)
+    with_densities, unusable = with_density_files(apply_overrides(raw, overrides), folder)
+    filled, unread = with_measured_responses(with_densities, folder)
     parsed = parse(filled)
-    problems = [*parsed.problems, *physical_problems(parsed), *unread, *response_problems(parsed.sections)]
+    problems = [*parsed.problems, *physical_problems(parsed), *unread, *unusable, *response_problems(parsed.sections)]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:

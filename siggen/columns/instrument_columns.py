@@ -37,6 +37,15 @@ def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
                 f"pink_noise_{channel}_m_s2_per_sqrt_hz", pa.float64(), "m/s^2/sqrt(Hz)", f"at the corner, in {channel}"
             ),
         ),
+        "spectrum": (
+            sensor.noise_spectrum,
+            Column(
+                f"noise_spectrum_{channel}_m_s2",
+                pa.float64(),
+                "m/s^2",
+                f"RMS of the noise of given density in {channel}",
+            ),
+        ),
         **{
             part: (section, Column(f"{part}_{channel}_m_s2", pa.float64(), "m/s^2", f"RMS of {what} {channel}"))
             for part, section, what in (

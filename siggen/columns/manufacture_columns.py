@@ -33,9 +33,24 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
         for which in ("pinion", "gear")
         for name, kind, unit, meaning in GEAR_ERROR_COLUMNS
     )
+    waves = _wave_columns() if config.manufacture.flank_waves is not None else ()
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
     return (
         Column("manufacture_draw", pa.string(), "", "whether states share the specimen's gears: specimen or state"),
         *of_gears,
         Column("lead_misalignment_um", pa.float64(), MICROMETRE, lead),
+        *waves,
+    )
+
+
+def _wave_columns() -> tuple[Column, ...]:
+    number, length = (pa.list_(pa.field("element", kind, nullable=False)) for kind in (pa.int32(), pa.float64()))
+    amplitude = "amplitudes of these waves on the flanks, averaged over the face"
+    return tuple(
+        column
+        for which in ("pinion", "gear")
+        for column in (
+            Column(f"ghost_orders_{which}", number, "", f"waves over all teeth of the {which}, per turn of its shaft"),
+            Column(f"ghost_amplitudes_{which}_um", length, MICROMETRE, amplitude),
+        )
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
+from siggen.columns.background_columns import background_columns
 from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
 from siggen.columns.damage_columns import damage_columns
 from siggen.columns.instrument_columns import instrument_columns
@@ -166,7 +167,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
     varying = VARIATION_COLUMNS if config.variation.active else ()
     common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *varying, *manufacture_columns(config))
-    return (*common, *per_channel, *instrument_columns(config))
+    return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 
 def label_names(config: Config) -> tuple[str, ...]:

@@ -1,8 +1,10 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
+from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
 from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
+from siggen.config.density import Density, SensorDensity
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
@@ -11,7 +13,7 @@ from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
-from siggen.config.manufacture import Manufacture
+from siggen.config.manufacture import FlankWaves, Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
@@ -29,8 +31,11 @@ from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
+    "Background",
+    "Base",
     "BearingTones",
     "Bolts",
+    "Bursts",
     "Caps",
     "Casing",
     "Choice",
@@ -38,8 +43,12 @@ __all__ = [
     "Config",
     "Coupling",
     "DamageModel",
+    "Density",
     "Dynamics",
+    "FlankWaves",
+    "Floor",
     "ForceNoise",
+    "ForeignMesh",
     "Friction",
     "Gears",
     "Housing",
@@ -64,8 +73,11 @@ __all__ = [
     "PinkNoise",
     "Resonance",
     "Rotor",
+    "Rubbing",
     "Sensor",
+    "SensorDensity",
     "Shaft",
+    "ShaftLines",
     "Shafts",
     "SpallSize",
     "Spalls",

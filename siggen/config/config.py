@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from siggen.config.background import Background
 from siggen.config.dynamics import Dynamics
 from siggen.config.first_default import uncounted
 from siggen.config.gears import Gears
@@ -76,6 +77,7 @@ class Config(Section):
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
     housing: Housing | None = Field(default=None, description="what lies between the bearings and sensors with a path")
+    background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
 
     @property
     def samples(self) -> int:

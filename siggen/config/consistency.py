@@ -33,6 +33,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _manufacture,
         _forces_at_bearings,
         _paths,
+        _background,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -109,6 +110,21 @@ def _paths(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[P
         if housing.settle_s * decay_per_s < SETTLED_DECAYS:
             allowed = f"allowed: at least {SETTLED_DECAYS / decay_per_s:.3g} s for the lowest, least damped mode"
             yield Problem("housing.settle_s", repr(housing.settle_s), allowed)
+
+
+def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield forces without a bearing to act at, and a base without a casing on it."""
+    section = sections.get("background")
+    if section is None or "dynamics" not in sections:
+        return
+    model = sections["dynamics"].model
+    parts = ("rubbing", "floor", "shafts", "second_stage", "auxiliary_drive")
+    for part in parts if model == "torsional" else ():
+        if getattr(section, part) is not None:
+            allowed = "allowed: null, or a model with bearings: 6dof, 8dof, casing (dynamics.model: torsional)"
+            yield Problem(f"background.{part}", "a section", allowed)
+    if section.base is not None and model != "casing":
+        yield Problem("background.base", "a section", f"allowed: null, or dynamics.model: casing (it is {model})")
 
 
 def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

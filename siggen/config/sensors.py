@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from siggen.config.density import SensorDensity
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
@@ -96,6 +97,9 @@ class Sensor(Section):
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
     pink_noise: PinkNoise | None = Field(default=None, description="of the electronics; null: none")
+    noise_spectrum: SensorDensity | None = Field(
+        default=None, description="noise of any density beside the white and the pink one; null: none"
+    )
     mains: Mains | None = Field(default=None, description="null: none")
     tones: Tones | None = Field(default=None, description="null: none")
     inverter: Inverter | None = Field(default=None, description="null: none")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
@@ -12,6 +12,8 @@ from siggen.config import Config, NoiseFloor, NoiseRatio, at
 from siggen.dynamics.time.response import Response
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
+from siggen.record.background import record_background
+from siggen.record.background_course import noise_levels
 from siggen.record.disturbance import Draws, channel_disturbance
 from siggen.record.forces import RecordForces, record_forces
 from siggen.seeding import Stage, named_generator, named_uniforms
@@ -36,6 +38,7 @@ def measured_channels(
     owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
     forces = record_forces(config, specimen, record, response, instrument)
     motions = _motion_spectra(instrument, response)
+    background, levels = record_background(config, specimen, record, instrument), noise_levels(config, record)
     signals: dict[str, np.ndarray] = {}
     labels: dict[str, object] = {}
     for channel in instrument.channels:
@@ -44,20 +47,26 @@ def measured_channels(
             named_uniforms(config.seed, Stage.PATH, record.specimen_id),
             named_uniforms(config.seed, Stage.NOISE, *owner),
             named,
+            None if levels is None else partial(_level, levels, channel.name),
         )
         disturbance = channel_disturbance(
             channel, draws, fs_hz=config.fs_hz, length=instrument.length, samples=config.samples
         )
         rng = named_generator(config.seed, Stage.NOISE, *owner, name=channel.name)
-        clean = _sensed(channel, response, motions, forces, instrument.length)
-        measured = _measured(channel, clean, disturbance.signal_m_s2, rng)
+        added = None if background is None else background.spectra.get(channel.name)
+        clean = _sensed(channel, response, motions, forces, instrument.length, added)
+        measured = _measured(channel, clean, disturbance.signal_m_s2, rng, draws)
         signals[channel.name] = measured.accel_m_s2
         labels |= {**_labels(channel, measured), **disturbance.labels}
-    return signals, {**labels, **forces.labels}
+    return signals, {**labels, **forces.labels, **(background.labels if background else {})}
 
 
 def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.random.Generator:
     return named_generator(seed, Stage.NOISE, *owner, name=f"{channel} {part}")
+
+
+def _level(levels: Callable[[str], float], channel: str, name: str) -> float:
+    return levels(f"sensors.{channel}.{name}")
 
 
 def _motion_spectra(instrument: Instrument, response: Response) -> dict[str, ComplexArray]:
@@ -73,11 +82,13 @@ def _sensed(
     motions: Mapping[str, ComplexArray],
     forces: RecordForces,
     length: int,
+    added: ComplexArray | None = None,
 ) -> FloatArray:
-    """Return the acceleration (n,) that the sensor shows, before its gain."""
+    """Return the acceleration (n,) that the sensor shows, before its gain; `added` is the background's spectrum."""
     if channel.is_plain:
-        return response.acceleration_m_s2[next(iter(channel.motions))]
-    spectrum = np.zeros(length // 2 + 1, dtype=np.complex128)
+        plain = response.acceleration_m_s2[next(iter(channel.motions))]
+        return plain if added is None else plain + record_of(added, length, plain.size)
+    spectrum = np.zeros(length // 2 + 1, dtype=np.complex128) if added is None else added.copy()
     for motion, weight in channel.motions.items():
         spectrum += weight * motions[motion]
     if channel.accelerance is not None:
@@ -89,9 +100,13 @@ def _sensed(
 
 
 def _measured(
-    channel: ChannelInstrument, clean: FloatArray, disturbance: FloatArray | None, rng: np.random.Generator
+    channel: ChannelInstrument,
+    clean: FloatArray,
+    disturbance: FloatArray | None,
+    rng: np.random.Generator,
+    draws: Draws,
 ) -> Measurement:
-    noise, u = channel.sensor.noise, rng.random()
+    noise, u = channel.sensor.noise, draws.level("noise", rng)
     return measure(
         clean,
         gain=channel.gain,

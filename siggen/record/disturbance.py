@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Inverter, Mains, PinkNoise, Sensor, Tones, at
+from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
+from siggen.sensing.force_density import noise_of, tabulated
 from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.spectral_filter import record_of
+from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
@@ -27,11 +28,18 @@ class Draws:
     ----------
     specimen, shared : name -> uniform of the gearbox, or of the record
     record : name -> generator of this channel and record
+    levels : name -> uniform of a level that belongs to the gearbox; None: levels are the record's
     """
 
     specimen: Callable[[str], float]
     shared: Callable[[str], float]
     record: Callable[[str], np.random.Generator]
+    levels: Callable[[str], float] | None = None
+
+    def level(self, name: str, rng: np.random.Generator) -> float:
+        """Return the uniform of a level; the generator advances by one either way, so that its noise stays."""
+        own = float(rng.random())
+        return own if self.levels is None else self.levels(name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +64,10 @@ def channel_disturbance(
         pink, density = _pink(sensor.pink_noise, channel, draws, fs_hz, length)
         signal += record_of(pink, length, samples)
         labels[f"pink_noise_{name}_m_s2_per_sqrt_hz"] = density
+    if sensor.noise_spectrum is not None:
+        added = _of_spectrum(sensor.noise_spectrum, channel, draws, fs_hz, length)[length - samples :]
+        signal += added
+        labels[f"noise_spectrum_{name}_m_s2"] = float(added.std())
     for part, lines in _lines(sensor, draws):
         response = np.ones(lines.frequency_hz.size, dtype=complex)
         if part != "mains":
@@ -71,10 +83,19 @@ def _pink(
     section: PinkNoise, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
 ) -> tuple[ComplexArray, float]:
     rng = draws.record("pink_noise")
-    density = at(section.density_m_s2_per_sqrt_hz, rng.random())
-    corner_hz = at(section.corner_hz, rng.random())
+    density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
+    corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
     spectrum = noise_spectrum(density, length, fs_hz, rng, pink_corner_hz=corner_hz)
     return (spectrum if channel.high_pass is None else spectrum * channel.high_pass), density
+
+
+def _of_spectrum(
+    section: SensorDensity, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
+) -> FloatArray:
+    rng = draws.record("noise_spectrum")
+    factor = at(section.factor, draws.level("noise_spectrum.factor", rng))
+    density = factor * tabulated(frequencies(length, fs_hz), section.frequency_hz, section.density)
+    return noise_of(density if channel.high_pass is None else density * np.abs(channel.high_pass), length, fs_hz, rng)
 
 
 def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
@@ -89,7 +110,7 @@ def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
 
 def _mains(section: Mains, draws: Draws) -> Lines:
     rng = draws.record("mains")
-    amplitude = at(section.amplitude_m_s2, rng.random())
+    amplitude = at(section.amplitude_m_s2, draws.level("mains.amplitude_m_s2", rng))
     return harmonic_lines(
         at(section.frequency_hz, draws.specimen("mains.frequency_hz")), amplitude, section.harmonics, rng
     )
@@ -98,13 +119,14 @@ def _mains(section: Mains, draws: Draws) -> Lines:
 def _tones(section: Tones, draws: Draws) -> Lines:
     rng = draws.record("tones")
     uniforms = [draws.specimen(f"tones.{tone}.frequency_hz") for tone in range(section.count)]
-    amplitudes = [at(section.amplitude_m_s2, float(u)) for u in rng.random(section.count)]
+    own = [draws.level(f"tones.{tone}.amplitude_m_s2", rng) for tone in range(section.count)]
+    amplitudes = [at(section.amplitude_m_s2, u) for u in own]
     return single_lines(np.array([at(section.frequency_hz, u) for u in uniforms]), np.array(amplitudes), rng)
 
 
 def _inverter(section: Inverter, draws: Draws) -> Lines:
     rng = draws.record("inverter")
-    amplitude = at(section.amplitude_m_s2, rng.random())
+    amplitude = at(section.amplitude_m_s2, draws.level("inverter.amplitude_m_s2", rng))
     carrier_hz = at(section.carrier_hz, draws.specimen("inverter.carrier_hz"))
     # the electrical frequency belongs to the record: all sensors see the same motor
     modulation_hz = at(section.modulation_hz, draws.shared("inverter.modulation_hz"))

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
-from math import gcd, pi
 
 import numpy as np
 
@@ -23,11 +22,11 @@ from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, operating_labels
 from siggen.record.quantities import internal_quantities
-from siggen.seeding import Stage, generator
 from siggen.specimen.contact import largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
-from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
+from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
 from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
@@ -79,8 +78,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
     with refused_as("outside_model"):
         missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
         missing = erroneous_teeth(missing, pair, errors)
+        waves = specimen_waves(config, pair, specimen.specimen_id, state_id)
+        missing = wavy_teeth(missing, config, pair, waves)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
-        labels |= error_labels(config, errors)
+        labels |= {**error_labels(config, errors), **wave_labels(waves)}
         static = static_mesh(specimen.dynamics, pair, teeth, specimen.stiffness.table_points)
     return SpecimenState(
         pair,
@@ -99,13 +100,6 @@ def refused_as(status: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise SolverFailure(status, str(error)) from error
-
-
-def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
-    """Return the pinion angle at the first sample [rad], uniform over the hunting period of the two gears."""
-    owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
-    revolutions = pair.gear.teeth // gcd(pair.pinion.teeth, pair.gear.teeth)
-    return float(generator(config.seed, Stage.START, *owner).random() * 2 * pi * revolutions)
 
 
 def record_response(

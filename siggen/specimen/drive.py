@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import gcd, pi
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
-from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -57,14 +57,32 @@ def record_drive(
         If the speed might reach zero, or a force has no bearing to act at.
     """
     forces = force_sources(config, specimen, pair, structure, point, record)
+    rotation = record_rotation(config, point, record, start_angle_rad)
     if not config.variation.active:
-        excitation = Excitation(forces) if forces else None
-        return RecordDrive(Drive(point.speed_hz, start_angle_rad), excitation, None, -1)
+        return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)
     variation = drawn_variation(config, record)
-    rotation = _rotation(config, variation.speed, point, record, start_angle_rad)
     torque = TorqueVariation(structure, point.torque_nm, _torque_settings(config, variation.torque, record))
     sources: tuple[Source, ...] = (SpeedDeviation(structure.coordinates, 2.0 * pi * point.speed_hz), torque, *forces)
     return RecordDrive(rotation, Excitation(sources), torque, 0)
+
+
+def start_angle_rad(config: Config, pair: GearPair, record: PlannedRecord) -> float:
+    """Return the pinion angle at the first sample [rad], uniform over the hunting period of the two gears."""
+    revolutions = pair.gear.teeth // gcd(pair.pinion.teeth, pair.gear.teeth)
+    return float(generator(config.seed, Stage.START, *record_owner(record)).random() * 2 * pi * revolutions)
+
+
+def record_rotation(config: Config, point: OperatingPoint, record: PlannedRecord, start_angle_rad: float) -> Rotation:
+    """Return the prescribed rotation of a record's pinion.
+
+    Raises
+    ------
+    ValueError
+        If the speed might reach zero.
+    """
+    if not config.variation.active:
+        return Drive(point.speed_hz, start_angle_rad)
+    return _rotation(config, drawn_variation(config, record).speed, point, record, start_angle_rad)
 
 
 def drawn_variation(config: Config, record: PlannedRecord) -> Variation:

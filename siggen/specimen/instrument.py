@@ -16,6 +16,13 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.modal_path import modal_accelerance
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensing.spectral_filter import filter_length, frequencies
+from siggen.specimen.background import (
+    ENTRIES,
+    SpecimenBackground,
+    background_history_s,
+    drawn_background,
+    specimen_background,
+)
 from siggen.specimen.housing import DIRECTIONS, SpecimenHousing, specimen_housing
 from siggen.specimen.measured_path import INPUTS, decoded_response
 
@@ -61,6 +68,7 @@ class Instrument:
     length: int
     fs_hz: float
     channels: tuple[ChannelInstrument, ...]
+    background: SpecimenBackground | None = None
 
     @property
     def has_path(self) -> bool:
@@ -86,7 +94,9 @@ def needs_forces(config: Config) -> bool:
 
 def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
-    length = filter_length(round(history_s(config) * config.fs_hz), config.samples)
+    section = drawn_background(config, specimen.specimen_id)
+    history = max(history_s(config), background_history_s(section))
+    length = filter_length(round(history * config.fs_hz), config.samples)
     housing = specimen_housing(config, specimen.specimen_id)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     grid = frequencies(length, config.fs_hz)
@@ -96,7 +106,11 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
         for axis, gain in zip(sensor.axes, gains, strict=True):
             draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
             channels.append(_channel(sensor, axis, constant(gain), draw, housing, grid))
-    return Instrument(length, config.fs_hz, tuple(channels))
+    if section is None:
+        return Instrument(length, config.fs_hz, tuple(channels))
+    ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, housing, grid)) for c in channels}
+    background = specimen_background(config, specimen, section, ways, grid)
+    return Instrument(length, config.fs_hz, tuple(channels), background)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,17 +158,36 @@ def _weights(sensor: Sensor, axis: str, draw: _Draw) -> dict[str, float]:
 
 
 def _accelerance(
-    sensor: Sensor, direction: str, draw: _Draw, housing: SpecimenHousing | None, grid: FloatArray
+    sensor: Sensor,
+    direction: str,
+    draw: _Draw,
+    housing: SpecimenHousing | None,
+    grid: FloatArray,
+    inputs: tuple[str, ...] = INPUTS,
 ) -> ComplexArray:
-    """Return the accelerance (inputs, k) from the bearing forces to one direction at a sensor."""
+    """Return the accelerance (inputs, k) from forces on the housing to one direction at a sensor."""
     match sensor.path:
         case ModalPath() as path if housing is not None:
             shape = housing.at_sensor(sensor, direction)
-            found = modal_accelerance(housing.modes, housing.at_bearings(INPUTS), shape, grid)
+            found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid)
             return np.asarray(found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us")))
         case MeasuredPath(response=str() as text):
-            return decoded_response(text).accelerance(direction, INPUTS, grid)
+            return decoded_response(text).accelerance(direction, inputs, grid)
     raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")
+
+
+def _entries(
+    channel: ChannelInstrument, uniform: Callable[[str], float], housing: SpecimenHousing | None, grid: FloatArray
+) -> ComplexArray | None:
+    """Return the accelerance (entries, k) from what presses on the housing beside the bearings; None without modes."""
+    sensor, axis = channel.sensor, channel.name.removeprefix(f"{channel.sensor.name}_")
+    if not isinstance(sensor.path, ModalPath):
+        return None
+    draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
+    weights = _weights(sensor, axis, draw)
+    return np.asarray(
+        np.sum([w * _accelerance(sensor, d, draw, housing, grid, ENTRIES) for d, w in weights.items()], axis=0)
+    )
 
 
 def _sensor_response(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray | None:

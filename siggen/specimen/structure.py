@@ -42,7 +42,7 @@ def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()
         output_coupling=_coupling(dynamics.output_coupling),
     )
     if dynamics.model == "casing":
-        return casing_structure(stage, _casing(dynamics.casing, pair, sensors), _shafts(dynamics, stage, pair))
+        return casing_structure(stage, casing_numbers(dynamics.casing, pair, sensors), _shafts(dynamics, stage, pair))
     return ASSEMBLIES[dynamics.model](stage)
 
 
@@ -95,7 +95,8 @@ def _coupling(section: CouplingSection) -> Coupling:
     return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))
 
 
-def _casing(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
+def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
+    """Return a drawn casing in SI."""
     bolts, pinion = section.bolts, section.pinion_position_mm
     return Casing(
         mass_kg=constant(section.mass_kg),

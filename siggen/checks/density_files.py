@@ -1,0 +1,59 @@
+"""Densities of noise from files into the configuration, so that a set stays a function of it alone."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from siggen.errors import Problem
+
+COLUMNS = ("frequency_hz", "density")
+MOST_KNOTS = 10_000
+
+
+def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[str, Any], list[Problem]]:
+    """Return a configuration's mapping with the numbers of the density files it names, and what is wrong with them.
+
+    Parameters
+    ----------
+    raw : mapping, left as it is
+    folder : Path from which the paths of the files count
+    """
+    problems: list[Problem] = []
+
+    def filled(parent: Any, key: str, path: str) -> Any:
+        table = parent.get(key) if isinstance(parent, Mapping) else None
+        if not isinstance(table, Mapping) or "file" not in table:
+            return parent
+        numbers, problem = _read(folder / str(table["file"]), f"{path}.file")
+        problems.extend(problem)
+        return {**parent, key: {**{k: v for k, v in table.items() if k != "file"}, **numbers}}
+
+    found = dict(raw)
+    if isinstance(raw.get("sensors"), (list, tuple)):
+        places = enumerate(raw["sensors"])
+        found["sensors"] = [filled(one, "noise_spectrum", f"sensors.{i}.noise_spectrum") for i, one in places]
+    background = raw.get("background")
+    if isinstance(background, Mapping) and "floor" in background:
+        floor = filled(background["floor"], "spectrum", "background.floor.spectrum")
+        found["background"] = {**background, "floor": floor}
+    return found, problems
+
+
+def _read(file: Path, where: str) -> tuple[dict[str, list[float]], list[Problem]]:
+    """Return the two lists of a file; two harmless ones with a problem if it cannot be used."""
+    harmless = {"frequency_hz": [1.0, 2.0], "density": [1.0, 1.0]}
+    allowed = f"allowed: a CSV file with the columns {', '.join(COLUMNS)}, 2 to {MOST_KNOTS} rows of numbers"
+    try:
+        with file.open(newline="") as lines:
+            rows = list(csv.DictReader(lines))
+        numbers = {column: [float(row[column]) for row in rows] for column in COLUMNS}
+    except OSError as error:
+        return harmless, [Problem(where, f"{file}: {error.strerror}", allowed)]
+    except (KeyError, TypeError, ValueError, csv.Error):
+        return harmless, [Problem(where, f"{file}: columns are missing, or not numbers", allowed)]
+    if not 2 <= len(rows) <= MOST_KNOTS:
+        return harmless, [Problem(where, f"{file}: {len(rows)} rows", allowed)]
+    return numbers, []

@@ -1,0 +1,59 @@
+"""Comb: harmonics of something that turns with the pinion, with sidebands of another shaft.
+
+F(Θ) = Σ_h a_h cos(h o Θ + φ_h) (1 + 2 b cos(o_s Θ + φ_s)): two sidebands of b a_h beside every line (derived). Shafts
+are given by their turn z = exp(i o Θ), taken once for all that follows them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import ComplexArray, FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Comb:
+    """Amplitudes [N] and phases (h,) of harmonics of `order` per turn of the pinion; `sideband` is b."""
+
+    order: float
+    amplitude_n: FloatArray
+    phase_rad: FloatArray
+    sideband: float = 0.0
+    sideband_order: float = 1.0
+    sideband_phase_rad: float = 0.0
+
+    def force_n(self, turns: ComplexArray, beside: ComplexArray | None = None, top_order: float = np.inf) -> FloatArray:
+        """Return the force (k,) from the turns (k,) of its own order and of the sidebands' shaft.
+
+        Harmonics whose sidebands would pass `top_order` are left out.
+        """
+        reach = self.sideband_order if self.sideband else 0.0
+        kept = int((np.arange(1, self.amplitude_n.size + 1) * self.order + reach < top_order).sum())
+        force = harmonic_sum(turns, self.amplitude_n[:kept] * np.exp(1j * self.phase_rad[:kept]))
+        if self.sideband and beside is not None:
+            force *= 1.0 + harmonic_sum(beside, np.array([2.0 * self.sideband * np.exp(1j * self.sideband_phase_rad)]))
+        return force
+
+
+@njit(cache=True)
+def turns_of(angle_rad: FloatArray, order: float) -> ComplexArray:
+    """Return exp(i order Θ) (k,)."""
+    result = np.empty(angle_rad.size, dtype=np.complex128)
+    for i in range(angle_rad.size):
+        result[i] = complex(np.cos(order * angle_rad[i]), np.sin(order * angle_rad[i]))
+    return result
+
+
+@njit(cache=True)
+def harmonic_sum(turns: ComplexArray, phasors: ComplexArray) -> FloatArray:
+    """Return Re Σ_h p_h z^h (k,), h from 1, by Horner's rule."""
+    result = np.empty(turns.size)
+    for i in range(turns.size):
+        total = 0.0j
+        for h in range(phasors.size - 1, -1, -1):
+            total = (total + phasors[h]) * turns[i]
+        result[i] = total.real
+    return result

@@ -1,0 +1,94 @@
+"""FlankWaves: waves of grinding and generating that run over all teeth of a gear, and the form of every single tooth.
+
+A wave of n periods per revolution at the roll angle ξ of tooth j is missing w cos(n (ξ ± 2πj/z) + φ): from pair to pair
+it goes on, and shows as a line at n times the shaft unless n is a multiple of z (derived; the sign is that in which
+teeth follow each other, + for the pinion, whose roll angle grows in mesh). A form of h cycles over the active flank has
+an amplitude and phase common to all teeth, which adds to mesh lines, and one of each tooth, which makes sidebands.
+
+The contact has a width 2b and does not follow short waves. A gap that varies by w cos(κx) over a plane Hertz contact
+changes the approach by the mean of the gap weighted with the pressure of a flat punch, 1/(π √(b² - x²)): w J_0(κb)
+(derived, by reciprocity; for waves that stay in full contact). On a flank of radius ρ, κ = n/ρ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
+
+ORDERS = np.arange(1, 31)
+"""Cycles of the form over the active flank: down to L/30, where the profile filter of ISO 1328-1 ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlankWaves:
+    """Waves of one gear: `waves` (k,) periods per revolution with amplitudes and phases (k,); the form of its teeth.
+
+    `common_m` (ORDERS,) complex amplitudes of what all teeth have, `own_m` (z, ORDERS) of what each one has besides.
+    """
+
+    waves: FloatArray
+    amplitude_m: FloatArray
+    phase_rad: FloatArray
+    common_m: ComplexArray
+    own_m: ComplexArray
+
+
+def missing_m(
+    pair: GearPair, which: str, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
+) -> FloatArray:
+    """Return what waves take from every tooth (z, k) at positions s (k,), seen by a contact of half-width b (k,)."""
+    from scipy.special import j0
+
+    gear = pair.member(which)
+    radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
+    roll, sense = radius / gear.base_radius_m, 1.0 if which == "pinion" else -1.0
+    tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
+    seen = half_width_m / radius  # b over ρ: κb per wave on the revolution
+    total = np.zeros((gear.teeth, position_m.size))
+    for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
+        total += amplitude * j0(n * seen) * np.cos(n * (roll + tooth[:, None]) + phase)
+    per_cycle = 2.0 * np.pi * gear.base_radius_m / (pair.contact_end_m - pair.contact_start_m)
+    together = waves.common_m + waves.own_m
+    for h, amplitudes in zip(ORDERS, together.T, strict=True):
+        n = h * per_cycle
+        total += j0(n * seen) * (amplitudes[:, None] * np.exp(1j * n * roll)).real
+    return total
+
+
+def with_waves(
+    missing: MissingMaterial, pair: GearPair, pinion: FlankWaves, gear: FlankWaves, line_load_n_per_m: float
+) -> MissingMaterial:
+    """Return the missing material of the same teeth with waves, as a contact under a line load [N/m] sees them.
+
+    Parameters
+    ----------
+    missing : MissingMaterial; tables of 2049 points have 70 for each of the shortest waves that gears show (15 z)
+    """
+    position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
+    width = half_width_m(pair, position, line_load_n_per_m)
+    return replace(
+        missing,
+        pinion=_added(missing.pinion, missing_m(pair, "pinion", pinion, position, width)),
+        gear=_added(missing.gear, missing_m(pair, "gear", gear, position, width)),
+    )
+
+
+def half_width_m(pair: GearPair, position_m: FloatArray, line_load_n_per_m: float) -> FloatArray:
+    """Return the half-width (k,) of the Hertz contact at positions (k,), √(4 F_l R_e / (π E*)), both of one steel."""
+    line = pair.line_of_action_m
+    radius = position_m * (line - position_m) / line
+    modulus = 0.5 * pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
+    return np.asarray(np.sqrt(4.0 * line_load_n_per_m * radius / (np.pi * modulus)))
+
+
+def _added(teeth: ToothTables, profile: FloatArray) -> ToothTables:
+    return ToothTables(
+        profile_m=teeth.profile_m[teeth.kind_of_tooth] + profile,
+        kind_of_tooth=np.arange(len(profile), dtype=np.int32),
+        offset_m=teeth.offset_m,
+    )

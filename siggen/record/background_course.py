@@ -1,0 +1,98 @@
+"""Course: what the background forces of one record follow, and where their numbers come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Config
+from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.plan import PlannedRecord
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
+from siggen.seeding import Stage, named_generator, named_uniforms
+from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
+from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
+from siggen.specimen.gears import gear_pair
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
+
+    `turns` are exp(i order Θ) (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives
+    uniforms of what noise levels belong to, `uniform` those of the gearbox, `of_gearbox` and `of_record` generators.
+    """
+
+    angle_rad: FloatArray
+    orders: Mapping[str, float]
+    turns: Mapping[str, ComplexArray]
+    fs_hz: float
+    history: int
+    pair: GearPair
+    point: OperatingPoint
+    uniform: Callable[[str], float]
+    level: Callable[[str], float]
+    of_gearbox: Callable[[str], np.random.Generator]
+    of_record: Callable[[str], np.random.Generator]
+
+    @property
+    def length(self) -> int:
+        """Samples of the record and of the history before it."""
+        return int(self.angle_rad.size)
+
+    @property
+    def mesh_force_n(self) -> float:
+        """Mean force of the teeth along the line of action."""
+        return self.point.torque_nm / self.pair.pinion.base_radius_m
+
+    @property
+    def top_order(self) -> float:
+        """Highest order that the band carries at the nominal speed, less 5 % for its variation."""
+        return 0.95 * 0.5 * self.fs_hz / self.point.speed_hz
+
+    def phases(self, name: str, count: int) -> FloatArray:
+        """Return phases (count,) of the gearbox."""
+        return 2.0 * pi * self.of_gearbox(f"background.{name}.phases").random(count)
+
+    def shaft_lines(self, shaft: str, depth: float, turn: float = 0.0) -> FloatArray:
+        """Return the modulation (length,) by a shaft, the same for all its sources but for a part of a turn."""
+        later = 2.0 * pi * turn * np.arange(1.0, SHAFT_LINES + 1.0)
+        phase_rad = self.phases(f"modulation.{shaft}", SHAFT_LINES) + later
+        return harmonic_sum(self.turns[shaft], shaft_phasors(depth, phase_rad))
+
+
+def record_course(config: Config, specimen: Specimen, record: PlannedRecord, length: int) -> Course:
+    """Return the course of one record over `length` samples, the last of which are the record's."""
+    pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    rotation = record_rotation(config, point, record, start_angle_rad(config, pair, record))
+    history, owner = length - config.samples, record_owner(record)
+    # a fast length may reach further back than any force is followed; there the shaft stands still
+    time_s = np.maximum((np.arange(length) - history) / config.fs_hz, -TRANSIENT_CAP_S)
+    angle_rad = rotation.angle_rad(time_s)
+    orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
+    return Course(
+        angle_rad,
+        orders,
+        {shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
+        config.fs_hz,
+        history,
+        pair,
+        point,
+        named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
+        noise_levels(config, record) or named_uniforms(config.seed, Stage.BACKGROUND_NOISE, *owner),
+        lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),
+        lambda name: named_generator(config.seed, Stage.BACKGROUND_NOISE, *owner, name=name),
+    )
+
+
+def noise_levels(config: Config, record: PlannedRecord) -> Callable[[str], float] | None:
+    """Return name -> uniform of a noise level that belongs to the gearbox; None where records have their own."""
+    if config.background is None or config.background.redraw == "record":
+        return None
+    return named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id)

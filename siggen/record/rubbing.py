@@ -1,0 +1,124 @@
+"""Force of rubbing roughness along the line of action: k r (n(t) √M(t) + bursts), part of n replayed by both gears.
+
+Model: k the mean stiffness of the mesh, r the roughness averaged over the face, n noise of variance 1 behind the filter
+of the contact's width, M of mean 1 by mesh, shafts and chance (`siggen.sensing.modulation`).
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt, tan
+
+import numpy as np
+from numba import njit
+
+from siggen.arrays import FloatArray
+from siggen.config import Background, Bursts, Rubbing, at, constant
+from siggen.dynamics.friction.rubbing_course import rubbing_course
+from siggen.record.background_course import Course
+from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter, noise_of
+from siggen.sensing.modulation import level_course, periodic_course, replayed, shaft_course
+from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.spectral_filter import frequencies
+
+REFERENCE_SPEED_M_S = 3.0
+REFERENCE_LINE_LOAD_N_PER_M = 5e4
+"""Rolling speed at the pitch point and line load at which the force is k r."""
+
+
+def rubbing_force(section: Background, course: Course, rubbing: Rubbing) -> tuple[FloatArray, dict[str, object]]:
+    """Return the force (length,) [N] of a drawn section, and its labels."""
+    size = force_size_n(section, rubbing, course)
+    noise = _noise(rubbing, course)
+    strength = np.sqrt(_modulation(rubbing, course))
+    labels: dict[str, object] = {
+        "rubbing_force_n": size,
+        "rubbing_level_std": constant(rubbing.level_std),
+        "rubbing_pinion_depth": constant(rubbing.pinion_depth),
+        "rubbing_gear_depth": constant(rubbing.gear_depth),
+    }
+    if rubbing.bursts is not None:
+        rise, count = _bursts(rubbing.bursts, course)
+        strength += rise
+        labels["burst_count"] = count
+    return size * noise * strength, labels
+
+
+def force_size_n(section: Background, rubbing: Rubbing, course: Course) -> float:
+    """Return the rms force [N] without bursts, over all frequencies."""
+    face_m = course.pair.face_width_m
+    stiffness = 1e9 * constant(section.mesh_stiffness_n_per_um_mm) * face_m
+    averaged = max(face_m / (1e-3 * constant(rubbing.correlation_mm)), 1.0)
+    roughness_m = 1e-6 * constant(rubbing.roughness_um) / sqrt(averaged)
+    # both flanks roll over the pitch point at R_b1 tan(α_w) Ω_1
+    pitch_m = course.pair.pinion.base_radius_m * tan(course.pair.working_pressure_angle_rad)
+    speed = 2.0 * pi * course.point.speed_hz * pitch_m / REFERENCE_SPEED_M_S
+    load = course.mesh_force_n / face_m / REFERENCE_LINE_LOAD_N_PER_M
+    return float(
+        stiffness * roughness_m * speed ** constant(rubbing.speed_exponent) * load ** constant(rubbing.load_exponent)
+    )
+
+
+def _noise(rubbing: Rubbing, course: Course) -> FloatArray:
+    """Return n (length,) of variance 1: new for every record but for what both gears replay."""
+    corner_hz, steepness = constant(rubbing.corner_hz), constant(rubbing.steepness)
+    unit = 1.0 / sqrt(contact_bandwidth_hz(corner_hz, steepness))
+    share = constant(rubbing.replayed_share)
+    shape = unit * contact_filter(frequencies(course.length, course.fs_hz), corner_hz, steepness)
+    noise = sqrt(1.0 - share) * noise_of(shape, course.length, course.fs_hz, course.of_record("background.rubbing"))
+    for shaft, order in course.orders.items():
+        if share > 0.0:
+            pattern = shaft_pattern(corner_hz, steepness, course, shaft, order)
+            noise += sqrt(0.5 * share) * replayed(course.angle_rad, order, pattern)
+    return noise
+
+
+def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str, order: float) -> FloatArray:
+    """Return what one gear replays over its revolution (points,), of the same density as n at the nominal speed.
+
+    Four points per sample: read linearly between them, it is damped by 10 % at half the sampling rate at most.
+    """
+    shaft_hz = course.point.speed_hz * order
+    top = int(0.5 * course.fs_hz / shaft_hz)
+    points = 8 * (top + 1)
+    rate_hz = points * shaft_hz
+    density = contact_filter(frequencies(points, rate_hz), corner_hz, steepness)
+    density /= sqrt(contact_bandwidth_hz(corner_hz, steepness))
+    spectrum = np.zeros(points // 2 + 1, dtype=np.complex128)
+    spectrum[: top + 1] = noise_spectrum(
+        1.0, 2 * top + 1, rate_hz, course.of_gearbox(f"background.rubbing.{shaft}.pattern")
+    ) * sqrt(points / (2 * top + 1))
+    return np.asarray(np.fft.irfft(spectrum * density, points))
+
+
+def _modulation(rubbing: Rubbing, course: Course) -> FloatArray:
+    """Return M (length,)."""
+    table = rubbing_course(course.pair, constant(rubbing.sliding_exponent))
+    mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
+    depths = {"pinion": constant(rubbing.pinion_depth), "gear": constant(rubbing.gear_depth)}
+    shafts = [course.shaft_lines(shaft, depth) for shaft, depth in depths.items()]
+    memory = 1e-3 * constant(rubbing.level_time_ms) * course.fs_hz
+    level = level_course(
+        course.length, constant(rubbing.level_std), memory, course.of_record("background.rubbing.level")
+    )
+    return np.asarray(mesh * shaft_course(shafts) * level)
+
+
+def _bursts(bursts: Bursts, course: Course) -> tuple[FloatArray, int]:
+    """Return the rise (length,) by all bursts, and how many begin within the record."""
+    rng = course.of_record("background.rubbing.bursts")
+    count = int(rng.poisson(constant(bursts.rate_hz) * course.length / course.fs_hz))
+    begin = np.floor(rng.random(count) * course.length).astype(np.int64)
+    peak = np.array([at(bursts.peak, float(u)) for u in rng.random(count)])
+    decay = np.array([1e-3 * at(bursts.decay_ms, float(u)) * course.fs_hz for u in rng.random(count)])
+    rise = np.zeros(course.length)
+    for first, high, memory in zip(begin, peak, decay, strict=True):
+        _add_burst(rise, first, high, memory)
+    return rise, int((begin >= course.history).sum())
+
+
+@njit(cache=True)
+def _add_burst(rise: FloatArray, first: int, peak: float, memory: float) -> None:
+    """Add peak e^(-i/memory) from sample `first` on, as long as it matters."""
+    last = min(rise.size, first + int(memory * 12.0))
+    for i in range(first, last):
+        rise[i] += peak * np.exp(-(i - first) / memory)

@@ -1,0 +1,206 @@
+"""The background of one specimen: what is drawn for its machine, and how its forces reach every channel.
+
+Forces act on the model linearised about its mean mesh, base included: along the line of action, between shafts and
+seats, on shafts, base and housing. What they do to bearing forces passes the flexible modes like the model's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Background, Config, Dynamics, ShaftLines, constant, draw
+from siggen.config import Base as BaseSection
+from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
+from siggen.dynamics.structure.casing_structure import bolt_elements
+from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
+from siggen.dynamics.structure.foundation import Base, on_base
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.specimen import Specimen
+from siggen.seeding import Stage, named_uniforms
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.structure import casing_numbers, structure
+
+DECAYS = 7.0
+"""Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
+ENTRIES = ("second_stage", "auxiliary_drive")
+"""Sources that press on the housing at a place of their own."""
+AXES = ("horizontal", "vertical")
+SHAFTS = ("pinion", "gear")
+MACHINES = {"motor": "pinion", "load": "gear"}
+"""What stands beside the gearbox, and the shaft that leads there."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenBackground:
+    """A drawn section, `shafts` once for each of them, and channel -> response (inputs, k) in m/s² per N, by `inputs`.
+
+    Responses end before the sensor.
+    """
+
+    section: Background
+    shafts: Mapping[str, ShaftLines]
+    inputs: tuple[str, ...]
+    responses: Mapping[str, ComplexArray]
+
+
+def drawn_background(config: Config, specimen_id: int) -> Background | None:
+    """Return the section with what belongs to the gearbox; None without one."""
+    if config.background is None:
+        return None
+    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
+    return draw(config.background, uniform, "background")
+
+
+def background_history_s(section: Background | None) -> float:
+    """Return the time before the first sample over which forces on the base must be followed [s]."""
+    if section is None or section.base is None:
+        return 0.0
+    base = section.base
+    slowest = 2.0 * pi * min(constant(f) for f in (base.horizontal_hz, base.vertical_hz, base.rocking_hz))
+    return min(TRANSIENT_CAP_S, DECAYS / (slowest * constant(base.damping_ratio)))
+
+
+def specimen_background(
+    config: Config,
+    specimen: Specimen,
+    section: Background,
+    channels: Mapping[str, tuple[Mapping[str, float], ComplexArray | None, ComplexArray | None]],
+    frequency_hz: FloatArray,
+) -> SpecimenBackground:
+    """Return the background of a specimen; the same for all of its states, operating points and repeats.
+
+    Parameters
+    ----------
+    section : drawn
+    channels : name -> motions it sees with their weights, accelerances (bearing forces, k) and (ENTRIES, k), or None
+    frequency_hz : (k,)
+    """
+    pair = gear_pair(specimen.gears)
+    assembled = locked_load(structure(specimen.dynamics, pair, specimen.sensors))
+    if section.base is not None:
+        casing = casing_numbers(specimen.dynamics.casing, pair, specimen.sensors)
+        bolts = bolt_elements(casing, pair.working_pressure_angle_rad)
+        assembled = on_base(assembled, bolts, _base(section.base))
+    uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
+    directions = _directions(assembled, section, uniform)
+    shafts = _shafts(config.background, uniform)
+    if not directions:
+        return SpecimenBackground(section, shafts, (), {})
+    seen = tuple(dict.fromkeys(motion for motions, _, _ in channels.values() for motion in motions))
+    mesh = mean_mesh(section, specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
+    forced = forced_motion(assembled, mesh, np.array(list(directions.values())), seen, frequency_hz)
+    names = tuple(directions)
+    responses = {name: _response(names, forced, *channel) for name, channel in channels.items()}
+    return SpecimenBackground(section, shafts, names, responses)
+
+
+def _shafts(section: Background | None, uniform: Callable[[str], float]) -> dict[str, ShaftLines]:
+    """Return the section of each shaft, each with its own draws."""
+    if section is None or section.shafts is None:
+        return {}
+    return {shaft: draw(section.shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
+
+
+def mean_mesh(section: Background, dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
+    """Return the mesh as a constant spring and damper; no state may show in it, so it knows no damage."""
+    stiffness = 1e9 * constant(section.mesh_stiffness_n_per_um_mm) * pair.face_width_m
+    ratio = constant(dynamics.mesh_damping_ratio)
+    return MeanMesh(stiffness, 2.0 * ratio * sqrt(stiffness * equivalent_mass_kg))
+
+
+def _base(section: BaseSection) -> Base:
+    mass = constant(section.mass_kg)
+    return Base(
+        mass,
+        mass * constant(section.gyration_m) ** 2,
+        (constant(section.horizontal_hz), constant(section.vertical_hz), constant(section.rocking_hz)),
+        constant(section.damping_ratio),
+    )
+
+
+def _directions(assembled: Structure, section: Background, uniform: Callable[[str], float]) -> dict[str, FloatArray]:
+    """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
+    found: dict[str, FloatArray] = {}
+    if section.rubbing is not None or section.floor is not None:
+        found["mesh"] = assembled.mesh_vector
+    if section.floor is not None:
+        found |= {name: _on_seat(assembled, name) for name in INPUTS}
+        for name, shaft in MACHINES.items():
+            found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"floor.{name}"))
+    if section.shafts is not None:
+        for shaft in SHAFTS:
+            rows = _on_rotor(assembled, shaft) - _on_base(assembled)
+            found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
+        found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
+    for name in ENTRIES:
+        if getattr(section, name) is not None:
+            found[name] = _turned(_moved(assembled, ("x_c", "y_c")), _angle(uniform, name))
+    return found
+
+
+def _on_seat(assembled: Structure, name: str) -> FloatArray:
+    """Return 1 N on the housing alone, at a bearing: what shafts bring in from outside, as `housing.force_noise`."""
+    rotor = [coordinate in {"x_1", "y_1", "x_2", "y_2"} for coordinate in assembled.coordinates]
+    return np.where(rotor, 0.0, -bearing_direction(assembled, *name.split("/")))
+
+
+def _angle(uniform: Callable[[str], float], name: str) -> float:
+    return 2.0 * pi * uniform(f"background.{name}.angle")
+
+
+def _turned(rows: FloatArray, angle: float) -> FloatArray:
+    return np.asarray(cos(angle) * rows[0] + sin(angle) * rows[1])
+
+
+def _on_rotor(assembled: Structure, shaft: str) -> FloatArray:
+    return shaft_directions(assembled, f"{shaft}_bearing")
+
+
+def _moved(assembled: Structure, names: tuple[str, str]) -> FloatArray:
+    """Return unit forces (2, n), horizontal and vertical, on a body with these translations; 0 if there is none."""
+    pinion = [assembled.coordinates.index(name) for name in ("x_1", "y_1")]
+    rows = np.zeros((2, len(assembled.coordinates)))
+    if set(names) <= set(assembled.coordinates):
+        rows[:, [assembled.coordinates.index(name) for name in names]] = _on_rotor(assembled, "pinion")[:, pinion]
+    return rows
+
+
+def _on_base(assembled: Structure) -> FloatArray:
+    return _moved(assembled, ("x_b", "y_b"))
+
+
+def _stand(assembled: Structure, shaft: str) -> FloatArray:
+    """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
+    return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
+
+
+def _response(
+    inputs: tuple[str, ...],
+    forced: ForcedMotion,
+    motions: Mapping[str, float],
+    accelerance: ComplexArray | None,
+    entries: ComplexArray | None,
+) -> ComplexArray:
+    """Return the response (inputs, k) of one channel."""
+    total = np.zeros_like(next(iter(forced.bearing_force.values())))
+    for motion, weight in motions.items():
+        total += weight * forced.acceleration[motion]
+    if accelerance is not None:
+        for name, row in zip(INPUTS, accelerance, strict=True):
+            total += row * forced.bearing_force[name]
+            if name in inputs:
+                total[inputs.index(name)] += row
+    if entries is not None:
+        for name, row in zip(ENTRIES, entries, strict=True):
+            if name in inputs:
+                total[inputs.index(name)] += row
+    return total

@@ -1,0 +1,94 @@
+"""Flank waves of one specimen: what is drawn for its two gears, and its labels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.config import Config, FlankWaves, at
+from siggen.gears.errors.error_shapes import Draws
+from siggen.gears.errors.flank_waves import ORDERS, with_waves
+from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.seeding import Stage, named_generator
+from siggen.specimen.contact import mean_line_load_n_per_m
+
+CLAMPING = (2, 3, 4)
+"""Waves per revolution that the jaws of a chuck leave."""
+MOST_GHOSTS = 8
+REFERENCE_OVER_TEETH = 2.3
+"""Waves over teeth at which a ghost has the amplitude that is drawn; with more, it is smaller in proportion."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpecimenWaves:
+    """Waves of both gears; the first `ghosts` of each are ghosts, those behind them come from the chuck."""
+
+    pinion: DrawnWaves
+    gear: DrawnWaves
+    ghosts: dict[str, int]
+
+
+def specimen_waves(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenWaves | None:
+    """Return the waves of a specimen in a state; None without them. Every draw has a name."""
+    section = None if config.manufacture is None else config.manufacture.flank_waves
+    if section is None or config.manufacture is None:
+        return None
+    owner = (specimen_id, state_id if config.manufacture.draw == "state" else 0)
+
+    def draws(name: str) -> np.random.Generator:
+        return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
+
+    pinion, gear = (_drawn(section, pair.member(which).teeth, which, draws) for which in ("pinion", "gear"))
+    counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in (("pinion", pinion), ("gear", gear))}
+    return SpecimenWaves(pinion, gear, counts)
+
+
+def wavy_teeth(
+    missing: MissingMaterial, config: Config, pair: GearPair, waves: SpecimenWaves | None
+) -> MissingMaterial:
+    """Return the missing material of the same teeth with their waves, in contact under the set's mean load."""
+    if waves is None:
+        return missing
+    load = mean_line_load_n_per_m(config.operating_points, pair)
+    return with_waves(missing, pair, waves.pinion, waves.gear, load)
+
+
+def wave_labels(waves: SpecimenWaves | None) -> dict[str, object]:
+    """Return the orders of the ghosts, per turn of their shaft, and their amplitudes before the contact's width."""
+    if waves is None:
+        return {}
+    labels: dict[str, object] = {}
+    for which, drawn in (("pinion", waves.pinion), ("gear", waves.gear)):
+        count = waves.ghosts[which]
+        labels[f"ghost_orders_{which}"] = [int(n) for n in drawn.waves[:count]]
+        labels[f"ghost_amplitudes_{which}_um"] = [1e6 * float(a) for a in drawn.amplitude_m[:count]]
+    return labels
+
+
+def _drawn(section: FlankWaves, teeth: int, which: str, draws: Draws) -> DrawnWaves:
+    def uniform(name: str) -> float:
+        return float(draws(f"{which}.{name}").random())
+
+    count = min(int(draws(f"{which}.ghosts").poisson(at(section.ghosts, uniform("ghosts.mean")))), MOST_GHOSTS)
+    ghosts = [f"ghost.{k}" for k in range(count)]
+    orders = [round(teeth * at(section.order_over_teeth, uniform(f"{ghost}.order"))) for ghost in ghosts]
+    sizes = [
+        at(section.ghost_um, uniform(f"{ghost}.size"))
+        * min(REFERENCE_OVER_TEETH * teeth / order, 1.0)
+        * float(np.sinc(at(section.lag_over_face_rad, uniform(f"{ghost}.lag")) / (2.0 * np.pi)))
+        for ghost, order in zip(ghosts, orders, strict=True)
+    ]
+    clamping = [at(section.clamping_um, uniform(f"clamping.{n}")) for n in CLAMPING]
+    common = at(section.common_um, uniform("common")) * ORDERS ** -at(section.common_exponent, uniform("common.fall"))
+    own = at(section.own_um, uniform("own")) * ORDERS ** -at(section.own_exponent, uniform("own.fall"))
+    turn = 2.0j * np.pi
+    return DrawnWaves(
+        waves=np.array([*orders, *CLAMPING], dtype=float),
+        amplitude_m=1e-6 * np.array([*sizes, *clamping]),
+        phase_rad=2.0 * np.pi * np.array([uniform(f"{name}.phase") for name in (*ghosts, *map(str, CLAMPING))]),
+        common_m=1e-6 * common * np.exp(turn * draws(f"{which}.common.phases").random(ORDERS.size)),
+        own_m=1e-6 * own * np.exp(turn * draws(f"{which}.own.phases").random((teeth, ORDERS.size))),
+    )

@@ -1,0 +1,65 @@
+"""Responses of the linearised stage against a library's solver, and against the time integration of the same forces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.drive.drive import Drive
+from siggen.dynamics.drive.excitation import Excitation
+from siggen.dynamics.drive.external_forces import Harmonic, HarmonicForce, bearing_direction
+from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
+from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.response import response_of
+from siggen.gears.stiffness.mesh_tables import MeshTables
+from tests.dynamics.casing_stage import make_structure
+
+FS = 51200.0
+MOTIONS = ("pinion_bearing/vertical", "casing_lid/vertical", "gear_bearing/horizontal")
+
+
+def test_responses_solve_the_equations_of_motion() -> None:
+    structure, mesh = locked_load(make_structure()), MeanMesh(3e8, 800.0)
+    rng = np.random.default_rng(3)
+    directions, frequencies = rng.standard_normal((3, len(structure.coordinates))), np.array([0.0, 7.0, 540.0, 9000.0])
+    found = forced_motion(structure, mesh, directions, MOTIONS, frequencies)
+    p = structure.mesh_vector
+    for k, omega in enumerate(2.0 * np.pi * frequencies[1:], start=1):
+        dynamic = structure.stiffness + 3e8 * np.outer(p, p) - omega**2 * structure.mass
+        dynamic = dynamic + 1j * omega * (structure.damping + 800.0 * np.outer(p, p))
+        q = np.linalg.solve(dynamic, directions.T)
+        for name in MOTIONS:
+            np.testing.assert_allclose(found.acceleration[name][:, k], -(omega**2) * structure.motions[name] @ q, 1e-7)
+        for name, (stiff, damped) in structure.bearing_forces.items():
+            expected = (stiff + 1j * omega * damped) @ q
+            np.testing.assert_allclose(found.bearing_force[name][:, k], expected, rtol=1e-7, atol=1e-9)
+    assert all((response[:, 0] == 0.0).all() for response in found.acceleration.values())
+
+
+@pytest.mark.parametrize("name", ["mesh", "gear_bearing/vertical"])
+def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
+    constant_tables: MeshTables, name: str
+) -> None:
+    structure = locked_load(make_structure())
+    direction = structure.mesh_vector if name == "mesh" else bearing_direction(structure, *name.split("/"))
+    order, speed_hz, samples = 9.0, 32.0, 25600
+    source = HarmonicForce(direction, (Harmonic(40.0, order, 0.3),))
+    excitation = Excitation((source,))
+    motion = LinearMotion(
+        structure, constant_tables, torque_nm=60.0, mesh_damping_ratio=0.07, backlash_m=80e-6, step_s=1.0 / (4 * FS),
+        input_vectors=excitation.vectors,
+    )  # fmt: skip
+    response = response_of(
+        motion, Drive(speed_hz, 0.0), fs_hz=FS, samples=samples, steps_per_sample=4, excitation=excitation, settle_s=3.0
+    )
+    stiffness = mean_mesh_stiffness(constant_tables)
+    damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.equivalent_mesh_mass_kg)
+    frequency = np.array([order * speed_hz])
+    expected = forced_motion(structure, MeanMesh(stiffness, damping), direction[None, :], MOTIONS, frequency)
+    turn = np.exp(-2j * np.pi * frequency * np.arange(samples) / FS)
+    for place in MOTIONS:
+        line = 2.0 * (response.acceleration_m_s2[place] * turn).mean()
+        # inputs linear over 5 µs, and a low-pass that is flat to 1e-6 here
+        assert line == pytest.approx(expected.acceleration[place][0, 0] * 40.0 * np.exp(0.3j), rel=1e-4)

@@ -1,0 +1,57 @@
+"""A base under the bolts: its limit cases are the ground, a free mass, and the mass of all that stands on it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.structure.casing_structure import bolt_elements
+from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
+from siggen.dynamics.structure.foundation import Base, on_base
+from siggen.dynamics.structure.load_lock import locked_load
+from tests.dynamics.casing_stage import PRESSURE_ANGLE, make_casing, make_structure
+
+LID = "casing_lid/vertical"
+MESH = MeanMesh(3e8, 800.0)
+FREQUENCIES = np.array([20.0, 300.0, 2000.0])
+
+
+def standing_on(base: Base):
+    return on_base(locked_load(make_structure()), bolt_elements(make_casing(), float(PRESSURE_ANGLE)), base)
+
+
+def test_a_heavy_base_on_stiff_mounts_is_the_ground() -> None:
+    ground, base = locked_load(make_structure()), standing_on(Base(2e9, 2e8, (900.0, 900.0, 900.0), 0.1))
+    for structure in (ground, base):
+        assert np.array_equal(structure.stiffness, structure.stiffness.T)
+    direction = ground.mesh_vector[None, :]
+    fixed = forced_motion(ground, MESH, direction, (LID,), FREQUENCIES).acceleration[LID]
+    found = forced_motion(base, MESH, base.mesh_vector[None, :], (LID,), FREQUENCIES).acceleration[LID]
+    np.testing.assert_allclose(found, fixed, rtol=1e-5)  # masses are 1e8 apart, mounts and bolts 1e7
+
+
+def test_above_its_mounts_and_below_the_bolts_everything_moves_as_one_mass() -> None:
+    base = standing_on(Base(100.0, 9.0, (2.0, 2.0, 2.0), 0.02))
+    push = np.zeros((1, len(base.coordinates)))
+    vertical = (np.sin(PRESSURE_ANGLE), np.cos(PRESSURE_ANGLE))
+    push[0, [base.coordinates.index(name) for name in ("x_b", "y_b")]] = vertical
+    found = forced_motion(base, MESH, push, ("pinion_bearing/vertical", "gear_bearing/vertical"), np.array([20.0]))
+    at_centre = sum(
+        row[0, 0] * share
+        for row, share in zip(found.acceleration.values(), (1.0 - 0.04875 / 0.0975, 0.04875 / 0.0975), strict=True)
+    )
+    # 124 kg; 1 % below resonance correction of the mounts (2/20)², 1 % of the bolts
+    assert abs(at_centre) == pytest.approx(1.0 / (100.0 + 20.0 + 4.0), rel=0.03)
+
+
+def test_a_rigid_motion_of_gearbox_and_base_stretches_the_mounts_alone() -> None:
+    base = standing_on(Base(100.0, 9.0, (10.0, 20.0, 30.0), 0.1))
+    for first, together in ((("x_1", "x_2", "x_c"), "x_b"), (("y_1", "y_2", "y_c"), "y_b")):
+        moved = np.array([1.0 if name in (*first, together) else 0.0 for name in base.coordinates])
+        mount = 100.0 * (2.0 * np.pi * (10.0 if together == "x_b" else 20.0)) ** 2
+        assert moved @ base.stiffness @ moved == pytest.approx(mount, rel=1e-6)
+
+
+def test_a_stage_without_a_casing_has_nothing_to_stand_on(structure) -> None:
+    with pytest.raises(ValueError, match="one with a casing"):
+        on_base(structure, (), Base(100.0, 9.0, (10.0, 10.0, 10.0), 0.1))

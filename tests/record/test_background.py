@@ -1,0 +1,201 @@
+"""Records of a machine with a background: what states share, what is new, and how much of it arrives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, label_names
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.record.background import record_background
+from siggen.record.background_course import record_course
+from siggen.record.rubbing import force_size_n, rubbing_force
+from siggen.record.simulation import simulate, simulate_specimen
+from siggen.sensing.spectral_filter import record_of
+from siggen.specimen.background import drawn_background
+from siggen.specimen.instrument import specimen_instrument
+from tests.config.minimal import minimal
+
+LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
+MODAL = {**LID, "path": {"kind": "modal"}, "position_mm": [60.0, 50.0]}
+PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
+ALL: dict[str, Any] = {
+    "base": {"damping_ratio": 0.15, "horizontal_hz": 40.0, "vertical_hz": 40.0, "rocking_hz": 40.0},
+    "rubbing": {"bursts": {}},
+    "floor": {},
+    "shafts": {},
+    "second_stage": {"order": 4.13},
+    "auxiliary_drive": {"order": {"kind": "uniform", "low": 12, "high": 60}, "shaft_order": 0.7},
+}
+ONE_LINE = {"second_db": -200.0, "third_db": -200.0, "fourth_db": -200.0, "rotor_mass_kg": 0.0}
+
+
+def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "specimens": 2, "housing": {}, **changes}
+    return load_config(minimal(sensors=list(sensors or (MODAL, PLAIN)), **changes))
+
+
+def record(config: Config, record_id: int = 0) -> Record:
+    result = simulate(config, [record_id])[0]
+    assert isinstance(result, Record), result
+    return result
+
+
+def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], dict[str, object]]:
+    """Return what the background adds to every channel, and its labels."""
+    planned = planned_record(config, record_id)
+    specimen = draw_specimen(config, planned.specimen_id)
+    instrument = specimen_instrument(config, specimen)
+    found = record_background(config, specimen, planned, instrument)
+    assert found is not None
+    signals = {n: record_of(s, instrument.length, config.samples) for n, s in found.spectra.items()}
+    return signals, dict(found.labels)
+
+
+def test_a_record_holds_the_gears_and_the_background_and_its_labels() -> None:
+    config, without = loaded(background=ALL), loaded()
+    found, clean = record(config), record(without)
+    assert set(found.labels) == set(label_names(config))
+    signals, labels = added(config)
+    for name, signal in signals.items():
+        expected = clean.channels[name].astype(float) + signal
+        np.testing.assert_allclose(found.channels[name], expected, atol=1e-5 * np.abs(expected).max())
+        assert signal.std() > 0.01
+    assert {name: found.labels[name] for name in labels} == labels
+    assert config.identity != without.identity
+
+
+def test_states_share_levels_and_lines_but_not_the_course_of_the_noise() -> None:
+    config = loaded(background=ALL)
+    healthy, damaged = added(config, 0), added(config, 1)
+    assert {k: v for k, v in healthy[1].items() if k != "burst_count"} == {
+        k: v for k, v in damaged[1].items() if k != "burst_count"
+    }
+    assert not np.allclose(healthy[0]["lid_vertical"], damaged[0]["lid_vertical"])
+    assert healthy[1]["coupling_force_pinion_n"] != healthy[1]["coupling_force_gear_n"]
+    other = added(config, 2)[1]
+    assert all(
+        other[name] != healthy[1][name] for name in healthy[1] if name not in {"burst_count", "second_stage_order"}
+    )
+
+
+def test_levels_of_sensors_and_bearing_forces_belong_to_the_gearbox_unless_redrawn() -> None:
+    drawn = {"kind": "uniform", "low": 0.1, "high": 0.2}
+    noisy = {**MODAL, "noise": {"floor_m_s2": drawn}, "mains": {"amplitude_m_s2": drawn}}
+    noisy |= {"pink_noise": {"density_m_s2_per_sqrt_hz": drawn}}
+    housing = {
+        "force_noise": {"density_n_per_sqrt_hz": drawn, "corner_hz": {"kind": "uniform", "low": 900, "high": 999}}
+    }
+    names = ["noise_floor_lid_vertical_m_s2", "pink_noise_lid_vertical_m_s2_per_sqrt_hz", "mains_lid_vertical_m_s2"]
+    names.append("force_noise_n_per_sqrt_hz")
+    for background, shared in (({}, True), ({"redraw": "record"}, False), (None, False)):
+        config = loaded(noisy, housing=housing, background=background)
+        first, second = record(config, 0), record(config, 1)
+        assert [first.labels[n] == second.labels[n] for n in names] == [shared] * 4
+        assert not np.allclose(first.channels["lid_vertical"], second.channels["lid_vertical"])
+    levels = [added(loaded(background={**ALL, "redraw": "record"}), i)[1]["rubbing_force_n"] for i in (0, 1)]
+    assert levels[0] != levels[1]
+
+
+def test_redrawing_for_every_record_keeps_the_records_of_before() -> None:
+    drawn = {"kind": "uniform", "low": 0.1, "high": 0.2}
+    noisy = {**MODAL, "noise": {"floor_m_s2": drawn}, "pink_noise": {"density_m_s2_per_sqrt_hz": drawn}}
+    before, after = loaded(noisy), loaded(noisy, background={"redraw": "record"})
+    assert record(before).channels["lid_vertical"].tobytes() == record(after).channels["lid_vertical"].tobytes()
+
+
+def test_adding_a_sensor_leaves_the_bytes_of_the_others() -> None:
+    alone = record(loaded(MODAL, background=ALL)).channels["lid_vertical"]
+    both = record(loaded(PLAIN, {**MODAL, "name": "other"}, MODAL, background=ALL)).channels["lid_vertical"]
+    assert alone.tobytes() == both.tobytes()
+
+
+def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
+    config = loaded(background=ALL)
+    for record_id, found in zip([0, 1], simulate_specimen(config, [0, 1]), strict=True):
+        assert isinstance(found, Record)
+        for name, signal in record(config, record_id).channels.items():
+            assert signal.tobytes() == found.channels[name].tobytes()
+
+
+def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass() -> None:
+    shafts = {**ONE_LINE, "coupling_stiffness_n_per_um": 0.0, "offset_um": 0.0, "rotor_mass_kg": 10.0}
+    shafts |= {"rotor_grade_mm_s": 6.3, "rated_speed_hz": 30.0}
+    base = {"mass_kg": 1000.0, "gyration_m": 10.0, "damping_ratio": 0.2}
+    base |= {"horizontal_hz": 3.0, "vertical_hz": 3.0, "rocking_hz": 3.0}
+    centre = {**LID, "position_mm": [0.0, 0.0]}
+    config = loaded(centre, background={"base": base, "shafts": shafts}, duration_s=1.0)
+    signal = added(config)[0]["lid_vertical"]
+    angle = 2.0 * np.pi * 30.0 * np.arange(signal.size) / config.fs_hz
+    # the machine on the gear's shaft has its line too
+    lines = np.stack([f(order * angle) for order in (1.0, 18 / 47) for f in (np.cos, np.sin)], axis=1)
+    found, *_ = np.linalg.lstsq(lines, signal, rcond=None)
+    force_n = 10.0 * 6.3e-3 * 2.0 * np.pi * 30.0
+    total_kg = 1000.0 + 20.0 + 4.0
+    # mounts at a tenth of the speed: 1 %; bolts carry 24 kg at 700 Hz: 0.2 %; gears weigh what their discs weigh
+    assert np.hypot(*found[:2]) == pytest.approx(force_n / total_kg, rel=0.03)
+    # nothing rings from the cut before the first sample
+    assert (signal - lines @ found).std() < 2e-3 * signal.std()
+
+
+def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
+    """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N, where neither speed nor load counts."""
+    rubbing = {
+        "roughness_um": 0.4,
+        "correlation_mm": 0.2,
+        "speed_exponent": 0.0,
+        "load_exponent": 0.0,
+        "level_std": 0.0,
+    }
+    rubbing |= {"pinion_depth": 0.0, "gear_depth": 0.0, "sliding_exponent": 0.0, "corner_hz": 1500.0, "steepness": 2.0}
+    config = loaded(background={"rubbing": rubbing}, duration_s=1.0)
+    drawn = drawn_background(config, 0)
+    assert drawn is not None
+    assert drawn.rubbing is not None
+    course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
+    assert force_size_n(drawn, drawn.rubbing, course) == pytest.approx(16.0)
+    force, _ = rubbing_force(drawn, course, drawn.rubbing)
+    # 1,500 Hz over 1 s: 1,500 independent values; the band holds all but (f_c/f)^3/4 of the power
+    assert force.std() == pytest.approx(16.0, rel=0.06)
+    load = {"load_exponent": 0.5, "speed_exponent": 1.0}
+    again = drawn.rubbing.model_copy(update=load)
+    pinion = course.pair.pinion
+    factor = (course.mesh_force_n / 0.02 / 5e4) ** 0.5
+    factor *= 2.0 * np.pi * 30.0 * pinion.base_radius_m * np.tan(course.pair.working_pressure_angle_rad) / 3.0
+    assert force_size_n(drawn, again, course) == pytest.approx(16.0 * factor)
+
+
+def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
+    rubbing = {"replayed_share": 0.5, "level_std": 0.0, "gear_depth": 0.0, "pinion_depth": 0.0, "sliding_exponent": 0.0}
+    config = loaded(background={"rubbing": rubbing}, duration_s=4.0)
+    drawn = drawn_background(config, 0)
+    assert drawn is not None
+    assert drawn.rubbing is not None
+    course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
+    force, _ = rubbing_force(drawn, course, drawn.rubbing)
+    turns, per_turn = 94, config.fs_hz / 30.0
+    # turns of the pinion do not fall on samples: read at equal angles
+    at_angles = np.interp(np.arange(turns * 1024) * per_turn / 1024, np.arange(force.size), force).reshape(turns, 1024)
+    share = at_angles.mean(axis=0).var() / at_angles.var()
+    # the pinion's half of the share; of the rest 1/94 is left. The gear's turns 2.6 times slower and averages out too.
+    assert share == pytest.approx(0.25, abs=0.04)
+
+
+def test_a_background_needs_bearings_and_a_base_needs_a_casing() -> None:
+    plain = {"sensors": [PLAIN], "housing": None}
+    for model, part, path in (("torsional", {"rubbing": {}}, "rubbing"), ("8dof", {"base": {}}, "base")):
+        with pytest.raises(ConfigError) as refused:
+            load_config(minimal(**{**plain, "dynamics__model": model, "background": part}))
+        assert f"background.{path}" in {problem.path for problem in refused.value.problems}
+
+
+def test_a_gearbox_without_casing_or_path_has_its_background_too() -> None:
+    parts = {name: part for name, part in ALL.items() if name != "base"}
+    config = loaded(PLAIN, dynamics__model="8dof", housing=None, background=parts)
+    assert added(config)[0]["bearing_vertical"].std() > 1e-3

@@ -1,0 +1,73 @@
+"""Flank waves drawn from a configuration, and the lines that they make in records."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, label_names
+from siggen.config import Config
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import simulate
+from siggen.specimen.flank_waves import CLAMPING, specimen_waves
+from siggen.specimen.gears import gear_pair
+
+SHORT = ["specimens=20", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
+
+
+def made(waves: str, *overrides: str) -> Config:
+    section = f"manufacture={{accuracy_class: 6, tolerance_share: 0, flank_waves: {waves}}}"
+    return load_config("configs/paper_b.yaml", [*SHORT, section, *overrides])
+
+
+def record(config: Config) -> Record:
+    found = simulate(config, [0])[0]
+    assert isinstance(found, Record), found
+    return found
+
+
+def test_all_states_share_their_waves_and_gearboxes_do_not() -> None:
+    config = made("{}")
+    pair = gear_pair(draw_specimen(config, 0).gears)
+    first, second, other = (specimen_waves(config, pair, *owner) for owner in ((0, 0), (0, 1), (1, 0)))
+    assert first is not None
+    assert second is not None
+    assert other is not None
+    np.testing.assert_array_equal(first.gear.own_m, second.gear.own_m)
+    np.testing.assert_array_equal(first.pinion.waves, second.pinion.waves)
+    assert not np.array_equal(first.pinion.common_m, other.pinion.common_m)
+    assert specimen_waves(made("null"), pair, 0, 0) is None
+
+
+def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number() -> None:
+    config = made("{ghosts: 2.0, ghost_um: 0.1, lag_over_face_rad: 0}")
+    pair = gear_pair(draw_specimen(config, 0).gears)
+    found = [specimen_waves(config, pair, specimen, 0) for specimen in range(150)]
+    counts = [drawn.ghosts["gear"] for drawn in found if drawn is not None]
+    # 150 of mean and variance 2: 0.12
+    assert abs(np.mean(counts) - 2.0) < 0.4
+    for drawn in found:
+        assert drawn is not None
+        count, waves = drawn.ghosts["gear"], drawn.gear
+        assert tuple(waves.waves[count:]) == CLAMPING
+        expected = 0.1e-6 * np.minimum(2.3 * pair.gear.teeth / waves.waves[:count], 1.0)
+        np.testing.assert_allclose(waves.amplitude_m[:count], expected)
+
+
+def test_a_ghost_is_a_line_of_the_record_at_its_order() -> None:
+    still = "clamping_um: 0, common_um: 0, own_um: 0"
+    overrides = ("duration_s=0.5", "fs_hz=51200.0")
+    silent, loud = (record(made(f"{{ghosts: {n}, ghost_um: 0.3, {still}}}", *overrides)) for n in (0, 4))
+    assert set(loud.labels) == set(label_names(made("{}")))
+    orders = loud.labels["ghost_orders_pinion"]
+    assert isinstance(orders, list)
+    assert orders
+    channel = next(iter(loud.channels))
+    turn = 2.0 * np.pi * 30.0 * np.arange(25600) / 51200.0
+
+    def line(found: Record, order: float) -> float:
+        return float(2.0 * np.abs((found.channels[channel] * np.exp(-1j * order * turn)).mean()))
+
+    for order in orders:
+        beside = max(line(loud, order - 0.4), line(loud, order + 0.6))
+        assert line(loud, order) > 3.0 * max(line(silent, order), beside)
