@@ -48,11 +48,11 @@ def _hardest_sentence(audit: Audit) -> list[str]:
         return []
     hardest, easiest = (chosen(judged, key=lambda state: judged[state].held_out) for chosen in (min, max))
     best = judged[hardest]
-    which = f"{hardest} is hardest to tell from healthy" if len(judged) > 1 else f"{hardest} is told from healthy"
+    which = "hardest to tell from healthy" if len(judged) > 1 else "told from healthy"
     text = (
-        f"{which[0].upper()}{which[1:]}: the best of {counted(best.tried, 'single indicator')}, {best.column}, reaches "
-        f"an AUC of {decimal(best.auc.value)} ({limits(best.auc)}) on the gearboxes that chose it, and the best that "
-        f"other gearboxes choose {decimal(best.held_out)}"
+        f"The state {hardest} is {which}: the best of {counted(best.tried, 'single indicator')}, {best.column}, "
+        f"reaches an AUC of {decimal(best.auc.value)} ({limits(best.auc)}) on the gearboxes that chose it, and the "
+        f"best that other gearboxes choose {decimal(best.held_out)}"
     )
     if hardest != easiest:
         text += f"; for {easiest} that is {decimal(judged[easiest].held_out)}"

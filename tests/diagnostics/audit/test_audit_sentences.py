@@ -53,7 +53,7 @@ def test_a_single_state_is_neither_hardest_nor_easiest(auc: float) -> None:
     best = {"severe": BestIndicator("rms__x", Interval(0.97, 0.92, 1.0), auc, 820)}
     found = audit_summary(replace(AUDIT, detections={"indicators": [detection("severe", 1.0, auc)]}, best=best))
     assert not any("hardest" in sentence for sentence in found)
-    assert any("Severe is told from healthy: the best of 820" in sentence for sentence in found) == (auc == 0.9)
+    assert any("state severe is told from healthy: the best of 820" in sentence for sentence in found) == (auc == 0.9)
     assert any("at most 1.00\xa0mm" in sentence for sentence in found) == (auc == 0.9)
     assert "nan" not in " ".join(found)
 
