@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import replace
-from multiprocessing import get_context
 
 import numpy as np
 
 from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.timing import Candidate, medians
-from diagnostics.indicators.cepstral_peak import shaft_log_spectrum
-from diagnostics.indicators.channel_indicators import CEPSTRUM_BAND, IndicatorSettings, shaft_indicators
-from diagnostics.indicators.indicator_table import CHUNK_RECORDS, RecordIndicators, chunk_indicators, record_indicators
+from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
+from diagnostics.indicators.channel_signals import ChannelSignals
+from diagnostics.indicators.record import record_result
+from diagnostics.indicators.registry import ALL
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.workers import CHUNK_RECORDS, mapped
 from diagnostics.records.record_problems import record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
-from diagnostics.signal.shaft_signals import record_shafts
+from diagnostics.signal.shaft_signals import Shaft, record_shafts
 from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
 from diagnostics.signal.synchronous_average import synchronous_average
 
@@ -66,44 +66,45 @@ def modulated_record() -> Recording:
 def _candidates(record: Recording) -> dict[str, Candidate]:
     settings = IndicatorSettings()
     signal = record.channels["casing"].astype(np.float64)
-    tooth = settings.order_domain.samples_per_tooth
+    tooth = settings.samples_per_tooth
     grid = angle_grid(record.tacho_s, TEETH[0] * tooth)
     steps = resample_to_angle(signal, FS_HZ, grid)
-    shafts = record_shafts(grid, TEETH, tooth, settings.order_domain.sidebands)
+    shafts = record_shafts(grid, TEETH, tooth, settings.sidebands)
     # an average is a record of one revolution: what it costs to average is then nothing
     averages = [synchronous_average(steps, shaft.teeth, tooth).signal for shaft in shafts]
     single = [replace(shaft, revolutions=1) for shaft in shafts]
-    highest = int(CEPSTRUM_BAND * 0.5 * min(FS_HZ / grid.slowest_hz, float(grid.samples_per_revolution)))
+    highest = int(BAND_SHARE * 0.5 * min(FS_HZ / grid.slowest_hz, float(grid.samples_per_revolution)))
     functions: dict[str, Callable[[], object]] = {
-        "raw": lambda: record_indicators(record, (), settings),
-        "average": lambda: [shaft_indicators(a, s, settings) for a, s in zip(averages, single, strict=True)],
+        "raw": lambda: record_result(record, settings),
+        "average": lambda: [_shaft_values(a, s, settings) for a, s in zip(averages, single, strict=True)],
         "checks of the record": lambda: record_problems(record, settings.frame_samples, needs_tacho=True),
         "times of the angle steps": lambda: angle_grid(record.tacho_s, TEETH[0] * tooth),
         "resampling to angle": lambda: resample_to_angle(signal, FS_HZ, grid),
-        "averages and indicators of both shafts": lambda: [shaft_indicators(steps, s, settings) for s in shafts],
+        "averages and indicators of both shafts": lambda: [_shaft_values(steps, s, settings) for s in shafts],
         "log spectrum over orders": lambda: shaft_log_spectrum(steps, grid.revolutions, TEETH[0], highest),
         "spectral kurtosis": lambda: spectral_kurtosis(signal, settings.frame_samples),
     }
     return {name: Candidate(lambda _, call=call: call()) for name, call in functions.items()}  # type: ignore[misc]
 
 
+def _shaft_values(steps: np.ndarray, shaft: Shaft, settings: IndicatorSettings) -> tuple[dict[str, float], ...]:
+    """Return values and moments of one shaft from a record over angle."""
+    other = Shaft("gear" if shaft.name == "pinion" else "pinion", shaft.teeth, 0, shaft.resolved, "")
+    signals = ChannelSignals(np.ones(1), FS_HZ, None, (shaft, other), settings)
+    signals.steps = steps
+    own = tuple(entry for entry in ALL if "shaft" in entry.fields)
+    return signals.values(own), signals.moments()
+
+
 def _set_row(record: Recording, count: int) -> Row:
     """Return the wall time of so many records by two workers, their start and the way of the records there included."""
     # copies: the same object eight times would cross to the worker once
-    chunk = [replace(record, channels={n: s.copy() for n, s in record.channels.items()}) for _ in range(CHUNK_RECORDS)]
-    chunks = [chunk] * (count // CHUNK_RECORDS)
+    done = count // CHUNK_RECORDS * CHUNK_RECORDS
+    records = (replace(record, channels={n: s.copy() for n, s in record.channels.items()}) for _ in range(done))
     begin = time.perf_counter()
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        waiting: deque[Future[list[RecordIndicators]]] = deque()
-        for part in chunks:
-            waiting.append(pool.submit(chunk_indicators, part, (), IndicatorSettings()))
-            # as `indicator_table` hands them out: two chunks per worker on the way
-            if len(waiting) >= 2 * WORKERS:
-                waiting.popleft().result()
-        while waiting:
-            waiting.popleft().result()
+    for _ in mapped(records, record_result, WORKERS):
+        pass
     wall = time.perf_counter() - begin
-    done = CHUNK_RECORDS * len(chunks)
     what = f"{done} such records, {WORKERS} workers, wall"
     if done < SET_RECORDS:  # mostly the start of the workers: says nothing about the goal
         return Row(what, duration_text(wall))

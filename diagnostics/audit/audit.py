@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
+from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.detectability import Detection
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
+
+SINGLE = "the best single indicator"
+"""Name of the probe that takes one indicator, chosen on other gearboxes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +36,8 @@ class Audit:
         How many were judged on.
     seed : int
         Of permutations, folds and bootstrap.
+    best : dict of str to BestIndicator
+        By state, the best single indicator.
     """
 
     findings: tuple[Finding, ...]
@@ -43,3 +50,17 @@ class Audit:
     specimens: int
     channels: int
     seed: int
+    best: dict[str, BestIndicator] = field(default_factory=dict)
+
+    def probes(self, state: str) -> dict[str, float]:
+        """Return the AUC on unseen gearboxes of everything that looked for a state, by its name."""
+        found = {SINGLE: self.best[state].held_out} if state in self.best else {}
+        for name, entries in self.detections.items():
+            found[name] = next((entry.auc.value for entry in entries if entry.state == state), math.nan)
+        return {name: auc for name, auc in found.items() if math.isfinite(auc)}
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The damaged states in the order of the tables."""
+        entries = next(iter(self.detections.values()), [])
+        return tuple(dict.fromkeys([*(entry.state for entry in entries), *self.best]))

@@ -1,10 +1,11 @@
-"""The audit of a set as files: `audit.html`, `audit.json`, figures, and the measured quantities it was made from."""
+"""The audit of a set as files: `audit.html`, `audit.json` and figures, from the one table of the set."""
 
 from __future__ import annotations
 
 import json
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,23 +15,25 @@ import numpy as np
 from diagnostics.audit import figures, page
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
+from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
 from siggen.dataset.reading import Dataset
 
-CACHE = "measured.parquet"
-UNPAIRED, PAIRED, CHANGE = "indicators", "indicators minus own healthy record", "change of the averaged waveform"
+UNPAIRED = "logistic regression on four indicators"
+PAIRED, CHANGE = "six indicators minus own healthy record", "change of the averaged waveform"
 
 
 def audit_set(
     dataset: Dataset,
-    folder: Path | None = None,
     seed: int = 0,
+    own: Sequence[OwnIndicator] = (),
     *,
     with_realism: bool = False,
     paired: bool = False,
@@ -43,10 +46,10 @@ def audit_set(
     ----------
     dataset : siggen Dataset
         What `siggen.open` returned.
-    folder : Path, optional
-        Where measured quantities are kept and looked for.
     seed : int
         Seed of permutations, folds and bootstrap.
+    own : sequence of OwnIndicator
+        The user's indicators, tried besides those of the package.
     with_realism, paired : bool
         Whether to compare with the ranges of healthy gearboxes, and to judge differences from own healthy records.
     speed : str
@@ -57,12 +60,13 @@ def audit_set(
     require_packages("the audit", "sklearn", "matplotlib")
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        measured = measured_set(dataset, folder / CACHE if folder else None, advance)
+        measured = measured_set(dataset, own, advance)
     seconds = (time.perf_counter() - started_s) / measured.checksums.shape[0]
     with stage("traps", 1):
         findings = separability_findings(measured, seed)
     with stage("detectability", 1):
         found = _detections(measured, seed, paired)
+        best = best_indicators(measured.matrix(), seed)
     compared = realism(measured, speed) if with_realism else None
     specimens = int(np.unique(measured.labels["specimen_id"]).size)
     return Audit(
@@ -76,6 +80,7 @@ def audit_set(
         specimens=specimens,
         channels=len(measured.channels),
         seed=seed,
+        best=best,
     )
 
 
@@ -159,6 +164,15 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
                 },
             }
             for name, entries in audit.detections.items()
+        },
+        "best_single_indicator": {
+            state: {
+                "indicator": found.column,
+                "tried": found.tried,
+                "auc_chosen_on_the_same_gearboxes": found.auc.numbers(),
+                "auc_chosen_on_other_gearboxes": _number(found.held_out),
+            }
+            for state, found in audit.best.items()
         },
         "notes": list(audit.notes),
         "seconds_per_record": audit.seconds_per_record,

@@ -15,8 +15,7 @@ def audit_summary(audit: Audit) -> list[str]:
     """Return the verdict, what it rests on, realism where asked for, the hardest state, the size that is found."""
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
-    name, entries = next(iter(audit.detections.items()), ("", []))
-    return [audit.verdict, *found, *_hardest_sentence(name, entries), *_size_sentence(audit.detections)]
+    return [audit.verdict, *found, *_hardest_sentence(audit), *_size_sentence(audit.detections)]
 
 
 def basis_sentence(audit: Audit) -> str:
@@ -42,25 +41,24 @@ def _realism_sentence(found: Realism) -> str:
     return f"{text}; fewest do for {worst.quantity.title}, with {percent(worst.inside)}."
 
 
-def _hardest_sentence(name: str, entries: list[Detection]) -> list[str]:
-    judged = [entry for entry in entries if math.isfinite(entry.auc.value)]
+def _hardest_sentence(audit: Audit) -> list[str]:
+    """Say how well the best shipped indicator finds the hardest state, of how many, and which probes fail."""
+    judged = {state: best for state, best in audit.best.items() if math.isfinite(best.held_out)}
     if not judged:
         return []
-    hardest, easiest = (chosen(judged, key=lambda entry: entry.auc.value) for chosen in (min, max))
-    if len(judged) == 1:
-        return [f"On unseen gearboxes {hardest.state} is told from healthy with an AUC of {_auc(hardest)} by {name}."]
-    lost = [entry.state for entry in judged if entry.auc.value < CHANCE_AUC]
-    verdict = (
-        f"; {joined(lost)} {'is' if len(lost) == 1 else 'are'} lost in the spread between gearboxes" if lost else ""
+    hardest, easiest = (chosen(judged, key=lambda state: judged[state].held_out) for chosen in (min, max))
+    best = judged[hardest]
+    which = "hardest to tell from healthy" if len(judged) > 1 else "told from healthy"
+    text = (
+        f"The state {hardest} is {which}: the best of {counted(best.tried, 'single indicator')}, {best.column}, "
+        f"reaches an AUC of {decimal(best.auc.value)} ({limits(best.auc)}) on the gearboxes that chose it, and the "
+        f"best that other gearboxes choose {decimal(best.held_out)}"
     )
-    return [
-        f"On unseen gearboxes the AUC against healthy by {name} goes from {_auc(hardest)} for {hardest.state} to "
-        f"{_auc(easiest)} for {easiest.state}{verdict}."
-    ]
-
-
-def _auc(entry: Detection) -> str:
-    return f"{decimal(entry.auc.value)} ({limits(entry.auc)})"
+    if hardest != easiest:
+        text += f"; for {easiest} that is {decimal(judged[easiest].held_out)}"
+    lost = [state for state in judged if max(audit.probes(state).values()) < CHANCE_AUC]
+    found = [f"No probe found {joined(lost)}: {joined(list(audit.probes(lost[0])))} failed."] if lost else []
+    return [f"{text}.", *found]
 
 
 def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:

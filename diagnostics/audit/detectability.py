@@ -21,8 +21,8 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.damage_kind import damage_kind
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
 
-LEVELS, PLAIN = ("rms", "sideband_index"), ("kurtosis", "fm4")
-ADDED = ("energy_ratio", "sideband_energy_ratio")
+LEVELS, PLAIN = ("rms", "sideband_index_pinion_h1"), ("kurtosis", "fm4_pinion")
+ADDED = ("energy_ratio_pinion", "sideband_ratio_pinion_h1_k3")
 REPEATS, FOLDS, RESAMPLES = 10, 5, 200
 FEWEST_SPECIMENS = 4
 SIZES = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm")

@@ -37,8 +37,8 @@ QUANTITIES = (
     Quantity("noise_density_db", "noise density at mesh 1 [dB/Hz]", ((-36.0, -20.0),)),
     Quantity("synchronous_ratio_db", "synchronous SNR [dB]", ((-4.0, 9.0),)),
     Quantity("kurtosis", "kurtosis, raw (loaded or light load)", ((2.0, 3.2), (4.0, 6.5))),
-    Quantity("fm4", "FM4", ((2.3, 4.3),)),
-    Quantity("energy_ratio", "energy ratio", ((0.09, 1.8),)),
+    Quantity("fm4_pinion", "FM4", ((2.3, 4.3),)),
+    Quantity("energy_ratio_pinion", "energy ratio", ((0.09, 1.8),)),
 )
 SPEED_RANGES = {BENCH: ((0.007, 0.05),), VARIABLE: ((0.3, 1.5),)}
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.training_options import OwnIndicators
+
 
 class Speed(StrEnum):
     """Kind of machine whose speed variation is compared with."""
@@ -32,6 +34,7 @@ def audit(
             "--out", "-o", metavar="DIR2", help="Folder for the report; default DIR_audit.", show_default=False
         ),
     ] = None,
+    indicator: OwnIndicators = None,
     speed: Annotated[Speed, typer.Option(help="Machine whose speed variation is compared with.")] = Speed.bench,
     seed: Annotated[int, typer.Option(min=0, help="Seed of permutations, folds and bootstrap.")] = 0,
 ) -> None:
@@ -45,16 +48,18 @@ def audit(
     from diagnostics.audit.audit_sentences import basis_sentence
     from diagnostics.audit.card_section import card_section
     from diagnostics.cli.progress import terminal_stage
+    from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
     from siggen.dataset.reading import open as open_set
     from siggen.errors import VerificationError
 
+    own = load_indicators(indicator)
     dataset = open_set(directory)
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_audit")
     found = audit_set(
         dataset,
-        folder,
         seed,
+        own,
         with_realism=realism or write_card,
         paired=paired,
         speed=speed.value,

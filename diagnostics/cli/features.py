@@ -7,28 +7,33 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.training_options import OwnIndicators
+
 
 def features(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="FILE", help="Table to write: .parquet or .csv.", show_default=False)
     ],
+    indicator: OwnIndicators = None,
 ) -> None:
     """Write the indicators of every record and channel.
 
     Example: siggen-diagnostics features data/quickstart --out features.parquet
     """
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.indicators.feature_table import check_suffix, feature_table, with_notes, write_table
-    from diagnostics.records.usable_records import check_records
+    from diagnostics.indicators.classifier_table import check_suffix, check_table, classifier_table, write_table
+    from diagnostics.indicators.own_indicator import load_indicators
+    from diagnostics.indicators.table import record_table
     from siggen.dataset.reading import open as open_set
 
     check_suffix(out)
+    own = load_indicators(indicator)
     dataset = open_set(directory)
-    notes = check_records(dataset)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
-        table = feature_table(dataset, advance=advance)
-    write_table(with_notes(table, notes), out)
+        table = record_table(dataset, own=own, advance=advance)
+    notes = check_table(table, dataset)
+    write_table(classifier_table(table, notes), out)
     for note in notes:
         typer.echo(f"note: {note}", err=True)
     typer.echo(str(out))

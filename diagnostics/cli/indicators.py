@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.training_options import OwnIndicators
+
 
 def indicators(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
@@ -16,14 +18,7 @@ def indicators(
             "--out", "-o", metavar="FOLDER", help="Folder to write; default DIR_indicators.", show_default=False
         ),
     ] = None,
-    indicator: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="MODULE:FUNCTION",
-            help="Your own indicator, function(signal, tacho, gears) -> float; may be given several times.",
-            show_default=False,
-        ),
-    ] = None,
+    indicator: OwnIndicators = None,
     workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
     false_alarms: Annotated[
         float, typer.Option(min=0.001, max=0.5, help="Share of healthy records above the threshold.")
@@ -54,9 +49,10 @@ def indicators(
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.indicators.channel_indicators import IndicatorSettings
-    from diagnostics.indicators.indicator_table import indicator_table
-    from diagnostics.indicators.own_indicator import load_indicator
+    from diagnostics.indicators.own_indicator import load_indicators
+    from diagnostics.indicators.ranking_table import ranking_table
+    from diagnostics.indicators.settings import IndicatorSettings
+    from diagnostics.indicators.table import record_table
     from diagnostics.records.chosen_states import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
@@ -67,16 +63,14 @@ def indicators(
     require_packages("the report of indicators", "matplotlib")
     if speed_range is not None:
         check_speed_range(speed_range)
-    own = [load_indicator(reference) for reference in indicator or ()]
+    own = load_indicators(indicator)
     dataset = open_set(directory)
     check_states(dataset)
+    chosen_states(dataset, state or ())
     settings = IndicatorSettings(speed_range_hz=speed_range)
-    states = chosen_states(dataset, state or ())
-    records = sum(name in states for name in dataset.labels(columns=["state"]).column("state").to_pylist())
-    with terminal_stage("indicators", records) as advance:
-        table = indicator_table(
-            dataset, own, settings, workers=workers, leave_out=leave_out, states=state or (), advance=advance
-        )
+    with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        everything = record_table(dataset, settings, own, workers=workers, advance=advance)
+    table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
     typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))

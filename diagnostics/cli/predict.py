@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from diagnostics.cli.training_options import OwnIndicators
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def predict(
     row: Annotated[
         int | None, typer.Option(help="Row of FILE, from 0, where it is Parquet with one record per row.")
     ] = None,
+    indicator: OwnIndicators = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
     ] = None,
@@ -58,6 +60,7 @@ def predict(
     Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
+    from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 
     require_packages("prediction", "sklearn", "skops")
@@ -65,7 +68,7 @@ def predict(
     from diagnostics.prediction.prediction_facts import MEANING, prediction_rows
     from diagnostics.prediction.released_model import load_model
 
-    loaded = load_model(model)
+    loaded = load_model(model, load_indicators(indicator))
     pair = _teeth(file, teeth, loaded.facts.teeth)
     columns = dict(_named(entry) for entry in channel or ())
     facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses, row)

@@ -7,7 +7,16 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.training_options import Augment, Channels, Device, Seed, TestSet, WithNetwork, WithStudies
+from diagnostics.cli.training_options import (
+    Augment,
+    Channels,
+    Device,
+    OwnIndicators,
+    Seed,
+    TestSet,
+    WithNetwork,
+    WithStudies,
+)
 
 
 def report(
@@ -20,6 +29,7 @@ def report(
     ] = None,
     test: TestSet = None,
     channel: Channels = None,
+    indicator: OwnIndicators = None,
     studies: WithStudies = False,
     cnn: WithNetwork = True,
     device: Device = "cpu",
@@ -32,16 +42,18 @@ def report(
     """
     from diagnostics.base.extras import missing_packages
     from diagnostics.cli.progress import terminal_stage
+    from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.report.report import write_report
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
     if cnn and not missing_packages("torch"):
         check_device(device)
+    own = load_indicators(indicator)
     dataset, second = open_sets(directory, test, channel or ())
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_report")
     options = NetworkOptions(cnn, device, augment, ablation=studies)
     path = write_report(
-        dataset, folder, seed, network=options, other=second, with_studies=studies, stage=terminal_stage
+        dataset, folder, seed, network=options, other=second, own=own, with_studies=studies, stage=terminal_stage
     )
     typer.echo(str(path))

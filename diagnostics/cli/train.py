@@ -8,7 +8,16 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.training_options import Augment, Channels, Device, Seed, TestSet, WithNetwork, WithStudies
+from diagnostics.cli.training_options import (
+    Augment,
+    Channels,
+    Device,
+    OwnIndicators,
+    Seed,
+    TestSet,
+    WithNetwork,
+    WithStudies,
+)
 
 
 def train(
@@ -18,6 +27,7 @@ def train(
     ],
     test: TestSet = None,
     channel: Channels = None,
+    indicator: OwnIndicators = None,
     studies: WithStudies = False,
     cnn: WithNetwork = True,
     device: Device = "cpu",
@@ -30,7 +40,8 @@ def train(
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.indicators.feature_table import feature_matrix
+    from diagnostics.indicators.classifier_table import feature_matrix
+    from diagnostics.indicators.own_indicator import load_indicators
 
     require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if cnn else ()))
     from diagnostics.release.saved_models import save_models
@@ -42,9 +53,10 @@ def train(
 
     if cnn:
         check_device(device)
+    own = load_indicators(indicator)
     dataset, second = open_sets(directory, test, channel or ())
-    table = set_table(dataset, terminal_stage)
-    other = other_table(second, terminal_stage) if second else None
+    table = set_table(dataset, terminal_stage, own=own)
+    other = other_table(second, terminal_stage, own) if second else None
     options = NetworkOptions(cnn, device, augment, ablation=studies)
     try:
         training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)

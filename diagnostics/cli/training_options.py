@@ -1,4 +1,4 @@
-"""Options that `train` and `report` share."""
+"""Options that several commands share."""
 
 from __future__ import annotations
 
@@ -32,3 +32,12 @@ Augment = Annotated[
     bool, typer.Option("--augment/--no-augment", help="Train the network with random transfer paths and noise.")
 ]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of bootstrap, permutations and network.")]
+OwnIndicators = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--indicator",
+        metavar="MODULE:FUNCTION",
+        help="Your own indicator, function(signal, tacho, gears) -> float; may be given several times.",
+        show_default=False,
+    ),
+]

@@ -7,15 +7,16 @@ import inspect
 import math
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.definition import base_name
-from diagnostics.indicators.definitions import BY_NAME
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.line_levels import LEVELS
+from diagnostics.indicators.registry import BY_NAME
 from siggen.errors import UsageError
 
 
@@ -117,6 +118,11 @@ def unregister(name: str) -> None:
     _REGISTERED.pop(name, None)
 
 
+def load_indicators(references: Sequence[str] | None) -> tuple[OwnIndicator, ...]:
+    """Return the indicators named as `package.module:function`; see `load_indicator`."""
+    return tuple(load_indicator(reference) for reference in references or ())
+
+
 def load_indicator(reference: str) -> OwnIndicator:
     """Return the indicator named as `package.module:function`; its columns carry the function's name.
 
@@ -173,5 +179,5 @@ def _check_name(name: str) -> None:
             f"indicator name: received {name!r}; allowed are lower case letters, digits and single underscores, "
             "without an ending such as _pinion, _h1 or _k1"
         )
-    if name in BY_NAME:
+    if name in BY_NAME or name in LEVELS:
         raise UsageError(f"indicator name: {name!r} is one of the package's own; choose another")

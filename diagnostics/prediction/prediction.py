@@ -158,7 +158,7 @@ def predict_recording(
     facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
-    pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings)
+    pieces = record_pieces(recording, pulses, teeth, facts.duration_s, model.settings, model.own)
     plain = _nearness(model.distance, log_values(pieces.columns(model.distance.features)), pulses.speed_hz)
     healthy = tuple(_reference(model, reference, teeth, speed_range_hz) for reference in references)
     if healthy:
@@ -218,7 +218,7 @@ def _reference(
 ) -> Reference:
     slow = at_rate(reference, model.facts.fs_hz)
     pulses = shaft_pulses(slow, teeth, speed_range_hz)
-    return reference, pulses, record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings)
+    return reference, pulses, record_pieces(slow, pulses, teeth, model.facts.duration_s, model.settings, model.own)
 
 
 def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
@@ -228,9 +228,7 @@ def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
 
 
 def _pipeline_vote(name: str, classifier: Any, values: np.ndarray) -> Vote:
-    probability = np.zeros((len(values), len(classifier.classes)))
-    probability[:, classifier.pipeline.classes_] = classifier.pipeline.predict_proba(values)
-    return _vote(name, probability, classifier.temperature)
+    return _vote(name, classifier.probability(values), classifier.temperature)
 
 
 def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:

@@ -6,15 +6,22 @@ length or rate are other numbers. Pieces of the trained length keep them compara
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from diagnostics.indicators.features import FeatureSettings, record_features
+from diagnostics.indicators.own_columns import own_values
+from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.record import record_values
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.records.recording import Recording
 from diagnostics.release.floor_roughness import floor_features
+from siggen.errors import UsageError
 
 LARGEST_DENOMINATOR = 1000
 
@@ -69,7 +76,8 @@ def record_pieces(
     pulses: ShaftPulses,
     teeth: tuple[int, int],
     duration_s: float,
-    settings: FeatureSettings,
+    settings: IndicatorSettings,
+    own: Sequence[OwnIndicator] = (),
 ) -> RecordPieces:
     """Return features of consecutive pieces, between lines too; a rest shorter than a piece counts if there is no more.
 
@@ -83,19 +91,37 @@ def record_pieces(
         Teeth of pinion and gear.
     duration_s : float
         Length of a piece.
-    settings : FeatureSettings
+    settings : IndicatorSettings
         How features are taken.
+    own : sequence of OwnIndicator
+        The user's indicators.
+
+    Raises
+    ------
+    UsageError
+        If one of these fails.
     """
     samples = next(iter(recording.channels.values())).size
     length = min(round(duration_s * recording.fs_hz), samples)
+    labels: dict[str, float] = {"record_id": 0, "teeth_pinion": teeth[0], "teeth_gear": teeth[1]}
+    labels |= {"speed_hz": pulses.speed_hz, "torque_nm": math.nan}
     found, values = [], []
     for start in range(0, samples - length + 1, length):
         begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
         times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
         piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
-        found.append(record_features(piece, times_s, recording.fs_hz, teeth, settings))
-        values.append(found[-1].values | floor_features(piece, recording.fs_hz))
+        found.append(record_values(piece, times_s, recording.fs_hz, teeth, settings))
+        mine = _own_values(own, Recording(labels, piece, times_s, recording.fs_hz))
+        values.append(found[-1].values | mine | floor_features(piece, recording.fs_hz))
     names = tuple(values[0])
     table = np.array([[piece[name] for name in names] for piece in values])
     notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))
-    return RecordPieces(table, names, min(piece.revolutions_pinion for piece in found), notes)
+    return RecordPieces(table, names, min(piece.revolutions[0] for piece in found), notes)
+
+
+def _own_values(own: Sequence[OwnIndicator], piece: Recording) -> dict[str, float]:
+    """Return the user's indicators of a piece; a recording says nothing about its torque, which is then undefined."""
+    values, failed = own_values(own, piece)
+    if failed:
+        raise UsageError(f"channel {failed[0].channel}: {failed[0].text}")
+    return values

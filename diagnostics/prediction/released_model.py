@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
-from diagnostics.indicators.features import FeatureSettings
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.own_columns import all_own
+from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
 from diagnostics.release.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
 from diagnostics.release.release import REFERENCED
@@ -40,7 +44,7 @@ class ReleasedModel:
     ----------
     folder : Path
     facts : ModelFacts
-    settings : FeatureSettings
+    settings : IndicatorSettings
         How the features were taken.
     classifier, distance
         On the features themselves.
@@ -52,11 +56,13 @@ class ReleasedModel:
         Accuracy on the test specimens by classifier.
     note : str
         What was left out, or empty.
+    own : tuple of OwnIndicator
+        The user's indicators that the classifiers take.
     """
 
     folder: Path
     facts: ModelFacts
-    settings: FeatureSettings
+    settings: IndicatorSettings
     classifier: FeatureClassifier
     distance: TrainingDistance
     referenced_classifier: FeatureClassifier | None
@@ -64,10 +70,18 @@ class ReleasedModel:
     network: tuple[WideKernelNetwork, NetworkFile] | None
     accuracy: Mapping[str, Interval]
     note: str
+    own: tuple[OwnIndicator, ...] = ()
 
 
-def load_model(folder: Path) -> ReleasedModel:
+def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     """Read the folder that `siggen-diagnostics train` wrote.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; nothing in it is executed.
+    own : sequence of OwnIndicator
+        The user's indicators; those that the model was trained with have to be among them.
 
     Raises
     ------
@@ -102,7 +116,29 @@ def load_model(folder: Path) -> ReleasedModel:
         network=network,
         accuracy=accuracy,
         note=note,
+        own=_own_of(folder, classifiers, own),
     )
+
+
+def _own_of(
+    folder: Path, classifiers: Mapping[str, FeatureClassifier], own: Sequence[OwnIndicator]
+) -> tuple[OwnIndicator, ...]:
+    """Return the user's indicators that the classifiers take.
+
+    Raises
+    ------
+    UsageError
+        If one was not given: a model holds the names of functions, never their code.
+    """
+    taken = {name.split("__")[0] for classifier in classifiers.values() for name in classifier.features}
+    wanted = sorted(name for name in taken if base_name(name) not in BY_NAME)
+    given = {indicator.name: indicator for indicator in all_own(own)}
+    if missing := [name for name in wanted if name not in given]:
+        raise UsageError(
+            f"{folder}: was trained with your own indicators {', '.join(missing)}, which are not part of a model; give "
+            f"{' '.join(f'--indicator MODULE:{name}' for name in missing)}"
+        )
+    return tuple(given[name] for name in wanted)
 
 
 def _check_folder(

@@ -125,6 +125,20 @@ def clipped_share(signal: np.ndarray) -> float:
     return share / signal.size
 
 
+def clipped_channels(record: Recording) -> list[str]:
+    """Return the channels that stand clipped in more than a thousandth of the samples."""
+    return [
+        name
+        for name, signal in record.channels.items()
+        if varies(signal) and clipped_share(signal) > LARGEST_CLIPPED_SHARE
+    ]
+
+
+def varies(signal: np.ndarray) -> bool:
+    """Return whether not all samples are equal."""
+    return bool((signal != signal[0]).any())
+
+
 def is_rate(fs_hz: object) -> bool:
     """Return whether what a set says of its sampling rate is one."""
     number = _number(fs_hz)

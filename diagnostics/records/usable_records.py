@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from diagnostics.records.record_problems import (
-    LARGEST_CLIPPED_SHARE,
-    PROBLEMS_SHOWN,
-    clipped_share,
-    whole_record_problem,
-)
-from diagnostics.records.recording import Recording, recordings
+from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, PROBLEMS_SHOWN, varies, whole_record_problem
+from diagnostics.records.recording import Recording
+from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
@@ -28,17 +26,16 @@ class RecordCheck:
         self._clipped: dict[str, list[int]] = {}
         self._count = 0
 
-    def usable(self, record: Recording) -> bool:
-        """Tell whether a record can be used, and remember why not; clipping alone is judged over the whole set."""
+    def add(self, number: int, refused: Iterable[tuple[str, str]], clipped: Iterable[str]) -> None:
+        """Remember what is wrong with a record: `refused_parts`, `clipped_channels`.
+
+        Clipping alone is judged over the whole set.
+        """
         self._count += 1
-        number = int(record.labels["record_id"])
-        problems = _problems(record)
-        for key in problems:
+        for key in refused:
             self._found.setdefault(key, []).append(number)
-        for name, signal in record.channels.items():
-            if _varies(signal) and clipped_share(signal) > LARGEST_CLIPPED_SHARE:
-                self._clipped.setdefault(name, []).append(number)
-        return not problems
+        for name in clipped:
+            self._clipped.setdefault(name, []).append(number)
 
     def finish(self, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
         """Return notes on single clipped records, which are used all the same.
@@ -57,32 +54,6 @@ class RecordCheck:
         return tuple(f"channel {name} {CLIPPED} in {_shown(records)}" for name, records in self._clipped.items())
 
 
-def check_records(dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
-    """Check that every record has known gears, a usable angle, and channels that are finite, vary and are not clipped.
-
-    Parameters
-    ----------
-    dataset : siggen Dataset
-        What `siggen.open` returned.
-    can_leave_channels : bool
-        Whether the command has `--channel`, which the message then offers.
-
-    Returns
-    -------
-    tuple of str
-        Notes on what is used all the same.
-
-    Raises
-    ------
-    DatasetError
-        As of `RecordCheck.finish`.
-    """
-    check = RecordCheck()
-    for record in recordings(dataset):
-        check.usable(record)
-    return check.finish(dataset, can_leave_channels=can_leave_channels)
-
-
 def check_states(dataset: Dataset) -> None:
     """Check that a set has healthy and damaged records to compare.
 
@@ -92,7 +63,7 @@ def check_states(dataset: Dataset) -> None:
         If one kind is missing.
     """
     labels = dataset.labels(columns=["fault", "state"])
-    healthy = [fault == "healthy" for fault in labels.column("fault").to_pylist()]
+    healthy = [fault == HEALTHY for fault in labels.column("fault").to_pylist()]
     if any(healthy) and not all(healthy):
         return
     states = ", ".join(sorted(set(labels.column("state").to_pylist()))) or "no records"
@@ -104,9 +75,9 @@ def check_states(dataset: Dataset) -> None:
     )
 
 
-def _problems(record: Recording) -> list[tuple[str, str]]:
-    """Return (channel, what is wrong); an empty channel means the whole record."""
-    whole = whole_record_problem(record, gear_turns=False)
+def refused_parts(record: Recording, *, needs_tacho: bool = True) -> list[tuple[str, str]]:
+    """Return (channel, what is wrong) of what cannot be used at all; an empty channel means the whole record."""
+    whole = whole_record_problem(record, needs_tacho=needs_tacho, gear_turns=False)
     if whole:
         return [("", whole)]
     return [(name, text) for name, signal in record.channels.items() if (text := _channel_problem(signal))]
@@ -115,11 +86,7 @@ def _problems(record: Recording) -> list[tuple[str, str]]:
 def _channel_problem(signal: np.ndarray) -> str:
     if not np.isfinite(signal).all():
         return "holds values that are not finite"
-    return "" if _varies(signal) else "is constant"
-
-
-def _varies(signal: np.ndarray) -> bool:
-    return bool((signal != signal[0]).any())
+    return "" if varies(signal) else "is constant"
 
 
 def _refusal(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:

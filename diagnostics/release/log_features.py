@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
 
 PLACE = ("specimen_id", "operating_point_id", "repeat")

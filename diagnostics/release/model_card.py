@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+
+from diagnostics.indicators.indicator import base_name
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import Judged
 from diagnostics.training.realism import meaning_of_scores
@@ -63,9 +67,10 @@ def class_text(split: SpecimenSplit) -> str:
 def _files(training: Training) -> str:
     lines = [
         "* `classifier.skops`: medians for undefined values, standardisation, logistic regression "
-        f"(C = {training.classifier.strength:g}, chosen on validation specimens) on "
-        f"{len(training.classifier.features)} "
-        "indicators; `feature_names.json` lists them in order, with the settings of their definitions",
+        f"with ridge penalty (C = {training.classifier.strength:g}, chosen by cross-validation over training and "
+        f"validation gearboxes) on {len(training.classifier.features)} columns, {len(training.classifier.logarithms)} "
+        "of them as logarithms; `feature_names.json` lists them in order, with the settings of their definitions. "
+        f"Columns: {columns_text(training.classifier.features)}",
     ]
     if training.network:
         facts = training.network.facts
@@ -79,6 +84,12 @@ def _files(training: Training) -> str:
             f"of a record, {windows.hop_revolutions} revolutions apart",
         ]
     return "\n".join(lines)
+
+
+def columns_text(columns: Sequence[str]) -> str:
+    """Return the indicators that columns are of, with how many columns each has."""
+    counts = Counter(base_name(name) for name in columns)
+    return ", ".join(f"{name} ({count})" for name, count in counts.items())
 
 
 def _scores(training: Training) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix
+from diagnostics.indicators.classifier_table import feature_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.recording import recordings
 from diagnostics.records.state_classes import CLASS
 from diagnostics.release.floor_roughness import floor_features
@@ -137,7 +138,7 @@ def _referenced(
             "no healthy-referenced variant: it needs a second healthy record of every specimen, in another state, "
             "repeat or operating point"
         )
-    classifier = calibrated_classifier(train_classifier(differences, part), differences, part)
+    classifier = calibrated_classifier(train_classifier(differences, part, take_logarithms=False), differences, part)
     judged = scores(classifier.predict(differences.rows(part.test)), seed)
     apart = healthy_referenced(whole)[0]
     distance, distances = _distance(apart.values, apart, part)
@@ -161,7 +162,7 @@ def release_scores(training: Training, found: Release) -> dict[str, Any]:
 
 def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
     """Write `model.json`, and the variant's classifier under names that begin with `referenced_`."""
-    from diagnostics.indicators.feature_table import feature_settings
+    from diagnostics.indicators.classifier_table import table_settings
     from diagnostics.training.classifier_file import save_classifier
 
     variant = found.referenced
@@ -169,4 +170,4 @@ def save_release(training: Training, found: Release, table: pa.Table, folder: Pa
         found.facts, found.distance, variant.distance if variant else None, release_scores(training, found), folder
     )
     if variant:
-        save_classifier(variant.classifier, feature_settings(table), found.facts.identity, folder, REFERENCED)
+        save_classifier(variant.classifier, table_settings(table), found.facts.identity, folder, REFERENCED)

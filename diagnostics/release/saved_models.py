@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from diagnostics.indicators.feature_table import feature_settings
+from diagnostics.indicators.classifier_table import table_settings
 from diagnostics.release.model_card import model_card
 from diagnostics.release.release import release, save_release
 from diagnostics.release.release_card import release_card
@@ -38,7 +38,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
         (folder / name).unlink(missing_ok=True)
     identity, notes = set_identity(dataset), []
-    save_classifier(training.classifier, feature_settings(table), identity, folder)
+    save_classifier(training.classifier, table_settings(table), identity, folder)
     if training.network:
         from diagnostics.training.cnn_files import export_onnx, save_network
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import state_colours
 from diagnostics.records.state_classes import HEALTHY

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import fault_colours, new_figure, state_ticks
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.statistics.assessment import SIZES, Records
+from diagnostics.statistics.assessment import SIZES
 from diagnostics.statistics.detectable_size import detection_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.judged_records import JudgedRecords
 from diagnostics.statistics.noise_curve import NoiseCurve
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, 
 
 
 def detection_figure(
-    matrix: FeatureMatrix, records: Records, shown: Sequence[IndicatorResult], false_alarms: float
+    matrix: FeatureMatrix, records: JudgedRecords, shown: Sequence[IndicatorResult], false_alarms: float
 ) -> Figure | None:
     """Return the share of alarms over the damaged area, between other specimens, with intervals; None without data."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter

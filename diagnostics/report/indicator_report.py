@@ -12,21 +12,22 @@ import numpy as np
 
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.indicators.definition import base_name
-from diagnostics.indicators.feature_table import write_table
-from diagnostics.indicators.indicator_table import IndicatorTable
+from diagnostics.indicators.classifier_table import write_table
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.page import html
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import set_table
 from diagnostics.page.wording import percent
 from diagnostics.records.damage_kind import damage_kinds
-from diagnostics.records.state_classes import HEALTHY
+from diagnostics.records.state_classes import HEALTHY, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
-from diagnostics.report.report import clipping_notes, states
-from diagnostics.statistics.assessment import AssessmentSettings, Records, assessment, result_table, shared_records
+from diagnostics.report.report import clipping_notes
+from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
 from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.judged_records import JudgedRecords, judged_records
 from diagnostics.statistics.noise_curve import NoiseCurve, noise_curve
 from diagnostics.training.realism import meaning_of_scores
 from siggen.dataset.reading import Dataset
@@ -54,7 +55,7 @@ class Evaluated:
 
     table: IndicatorTable
     settings: AssessmentSettings
-    records: Records
+    records: JudgedRecords
     found: list[IndicatorResult]
     noise: dict[str, dict[str, NoiseCurve]]
 
@@ -101,7 +102,7 @@ def write_indicator_report(
     write_table(table.arrow(), folder / "indicators.parquet")
     with stage("evaluation", len(table.matrix.names)) as advance:
         found = assessment(table, chosen, advance)
-    evaluated = Evaluated(table, chosen, shared_records(table, chosen), found, {})
+    evaluated = Evaluated(table, chosen, judged_records(table.matrix.labels, chosen.seed, chosen.resamples), found, {})
     evaluated = Evaluated(table, chosen, evaluated.records, found, _noise_curves(evaluated))
     results = result_table(found)
     write_table(results, folder / "evaluation.parquet")
@@ -153,7 +154,7 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     if not names or not evaluated.shown:
         return {}
     matrix = evaluated.table.matrix
-    intact = tuple(state for state in states(matrix) if state not in names)
+    intact = tuple(state for state in ordered_states(matrix.labels) if state not in names)
     drawn: dict[str, tuple[Figure | None, str]] = {
         "separation": (
             indicator_figures.separation_figure(found, names),
@@ -229,7 +230,7 @@ def _write_page(
     parts = [
         html.heading(title, 1),
         *html.summary(sentences),
-        set_table(table.matrix.labels, states(table.matrix)),
+        set_table(table.matrix.labels, ordered_states(table.matrix.labels)),
         html.heading("Ranking"),
         html.paragraph(HOW_TO_READ),
         indicator_tables.best_html(best_by_state(found, names)),
@@ -284,7 +285,7 @@ def _size_text(evaluated: Evaluated) -> str:
 def _notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     table = evaluated.table
     angle = table.settings.speed_range_hz
-    settings = json.dumps(asdict(table.settings.order_domain))
+    settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
     return [
         *(f"Left out: {problem}" for problem in table.problems),
         *_note_counts(table),
@@ -292,8 +293,7 @@ def _notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
         *clipping_notes(dataset),
         f"Revolutions averaged: pinion {_range(table.revolutions[:, 0])}, gear {_range(table.revolutions[:, 1])}. "
         "Values of averages depend on their number where noise matters (see noise_share).",
-        f"Settings: {settings}; {table.settings.modulation_harmonics} harmonics demodulated, spectral kurtosis over "
-        f"{table.settings.frame_samples} samples; bootstrap seed {evaluated.settings.seed}, "
+        f"Settings: {settings}; bootstrap seed {evaluated.settings.seed}, "
         f"{evaluated.records.weights.shape[0] - 1} resamples.",
         f"Shaft angles come from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}.",
         provenance(dataset, evaluated.settings.seed),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from diagnostics.indicators.definition import base_name
-from diagnostics.indicators.definitions import BY_NAME, DEFINITIONS
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.registry import ALL, BY_NAME
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.report.indicator_figures import CAUSES
@@ -183,7 +183,6 @@ def definition_html() -> str:
         "Source",
     ]
     rows = [
-        [Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)]
-        for d in DEFINITIONS
+        [Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)] for d in ALL
     ]
     return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,11 +14,14 @@ import pyarrow as pa
 
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_settings, write_table
+from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page import html, tables
 from diagnostics.page.provenance import provenance, without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted
+from diagnostics.records.state_classes import ordered_states
 from diagnostics.release.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.detection_tables import detection_blocks
@@ -46,7 +50,8 @@ def write_report(
     seed: int,
     *,
     network: NetworkOptions | None = None,
-    other: Dataset | None = None,
+    other: Any = None,
+    own: Sequence[OwnIndicator] = (),
     with_studies: bool = False,
     stage: Stage = silent_stage,
 ) -> Path:
@@ -64,6 +69,8 @@ def write_report(
         Whether and how to train the network; without torch it is left out with a note.
     other : siggen Dataset, optional
         Another set to judge on.
+    own : sequence of OwnIndicator
+        The user's indicators.
     with_studies : bool
         Whether to run what takes minutes: splits and learning curve.
     stage : Stage
@@ -75,8 +82,8 @@ def write_report(
         If matplotlib or scikit-learn are missing.
     """
     require_packages("the report", "matplotlib", "sklearn", "skops")
-    table = set_table(dataset, stage)
-    second = other_table(other, stage) if other is not None else None
+    table = set_table(dataset, stage, own=own)
+    second = other_table(other, stage, own) if other is not None else None
     folder.mkdir(parents=True, exist_ok=True)
     matrix = feature_matrix(table)
     with stage("separability", 1) as advance:
@@ -85,7 +92,7 @@ def write_report(
     training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
     studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, states(matrix), training, found, studies)
+        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
     _write_tables(table, found, folder)
@@ -94,12 +101,6 @@ def write_report(
     metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return _write_page(dataset, folder, seed, matrix, training, studies, found, drawing, sentences)
-
-
-def states(matrix: FeatureMatrix) -> tuple[str, ...]:
-    """Return the states in the order of the configuration."""
-    order = dict(zip(matrix.labels["state"].tolist(), matrix.labels["state_id"].tolist(), strict=True))
-    return tuple(sorted(order, key=lambda state: order[state]))
 
 
 def _trained(
@@ -177,7 +178,7 @@ def report_metrics(
     notes: list[str],
 ) -> dict[str, Any]:
     """Return the content of `metrics.json`; undefined numbers are null."""
-    settings = feature_settings(table)
+    settings = table_settings(table)
     return {
         "set": dataset.path.name,
         "identity": dataset.manifest["identity"],
@@ -220,7 +221,7 @@ def _write_page(
     parts = [
         html.heading(f"Diagnostics of {dataset.path.name}", 1),
         *html.summary(sentences),
-        tables.set_table(matrix.labels, states(matrix)),
+        tables.set_table(matrix.labels, ordered_states(matrix.labels)),
     ]
     for section, title in SECTIONS:
         blocks = [html.figure_block(*pictures[name]) for name in getattr(drawing, section)]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import new_figure, state_ticks
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability

@@ -11,7 +11,7 @@ from diagnostics.page.wording import counted, decimal, joined, limits, percent, 
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval, error_share_limit
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
-from diagnostics.statistics.separability import Separability
+from diagnostics.statistics.separability import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.training import Training
 
@@ -189,8 +189,8 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     area = entry.auc[state]
     if math.isnan(area.low):
         return ["With a single specimen the indicators below describe that specimen; they say nothing about others."]
-    falls = area.value < 0.5
-    turned = Interval(1.0 - area.value, 1.0 - area.high, 1.0 - area.low) if falls else area
+    turned = entry.turned(state)
+    falls = turned is not area
     states = {name for other in found for name in other.auc}
     which = f"The state hardest to tell from healthy is {state}" if len(states) > 1 else f"The damaged state is {state}"
     return [
@@ -214,13 +214,8 @@ def area_sentence(found: list[Separability]) -> list[str]:
 
 def hardest_state(found: list[Separability]) -> tuple[str, Separability] | None:
     """Return the state whose best single indicator is weakest, and that indicator."""
-    best: dict[str, tuple[float, Separability]] = {}
-    for entry in found:
-        for state, area in entry.auc.items():
-            distance = abs(area.value - 0.5)
-            if math.isfinite(distance) and (state not in best or distance > best[state][0]):
-                best[state] = (distance, entry)
+    best = best_by_state(found)
     if not best:
         return None
-    state = min(best, key=lambda name: best[name][0])
-    return state, best[state][1]
+    state = min(best, key=lambda name: best[name].turned(name).value)
+    return state, best[state]

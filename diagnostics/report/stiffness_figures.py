@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from diagnostics.page.style import SLANTED, new_figure, state_ticks
+from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,7 +44,7 @@ def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colour
     return figure
 
 
-def loss_of_specimens(dataset: Any) -> tuple[dict[str, np.ndarray], str]:
+def loss_of_specimens(dataset: Dataset) -> tuple[dict[str, np.ndarray], str]:
     """Return state -> largest loss of each of its specimens, and what this loss is, from the labels of a set.
 
     Sets of schema version 1 have the loss by potential energy alone. The loss as simulated depends on the torque: of

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.signal.analytic_signal import analytic_signal
 from diagnostics.signal.mesh_band import mesh_band
 
 
@@ -32,7 +31,10 @@ def demodulated(average: np.ndarray, teeth: int, harmonic: int, half_width: int)
     teeth, harmonic, half_width : int
         As of `mesh_band`.
     """
+    from scipy.signal import hilbert
+
+    # exact for one revolution, which is periodic
     carrier = np.exp(-2j * np.pi * harmonic * teeth * np.arange(average.size) / average.size)
-    baseband = analytic_signal(mesh_band(average, teeth, harmonic, half_width)) * carrier
+    baseband = hilbert(mesh_band(average, teeth, harmonic, half_width)) * carrier
     phase = np.unwrap(np.angle(baseband))
     return Modulation(np.abs(baseband), phase - phase.mean())

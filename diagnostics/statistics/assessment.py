@@ -13,18 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.indicators.indicator_table import IndicatorTable
-from diagnostics.indicators.state_history import histories
+from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.detectable_size import detection_curve, size_at
 from diagnostics.statistics.effect_size import cohens_d, paired_d
-from diagnostics.statistics.evaluation import LEVEL, Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.statistics.evaluation import LEVEL, Interval
 from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
-from diagnostics.statistics.monotonicity import ladder_steps, monotonicity
-from diagnostics.statistics.multiple_tests import benjamini_hochberg, holm, paired_p, specimen_means, two_sample_p
-from diagnostics.statistics.paired_differences import PairedRecords, paired_records, shares_above
+from diagnostics.statistics.judged_records import RESAMPLES, JudgedRecords, judged_records
+from diagnostics.statistics.monotonicity import monotonicity
+from diagnostics.statistics.multiple_tests import false_discovery, holm, paired_p, specimen_means, two_sample_p
 from diagnostics.statistics.sensitivity import explained_share
-from diagnostics.statistics.separability import LARGEST_BLOCK, RESAMPLES, weighted_spearman
+from diagnostics.statistics.separability import Separability, separability_of, weighted_spearman
 
 DETECTION_SHARES = {"a50": 0.5, "a90": 0.9}
 SIZES = {"area_mm2": "damaged_area_mm2", "profile_mm": "damage_profile_length_mm"}
@@ -37,21 +36,6 @@ class AssessmentSettings:
     seed: int = 0
     resamples: int = RESAMPLES
     false_alarms: float = 0.05
-
-
-@dataclass(frozen=True, slots=True)
-class Records:
-    """What all indicators share: labels, states, bootstrap weights, pairs, steps of the ladders."""
-
-    labels: dict[str, np.ndarray]
-    states: tuple[str, ...]
-    weights: np.ndarray
-    pairs: PairedRecords
-    steps: tuple[np.ndarray, np.ndarray]
-
-    def interval(self, samples: np.ndarray, rows: np.ndarray) -> Interval:
-        """Return the interval of a statistic over these rows."""
-        return interval(samples, int(np.unique(self.labels["specimen_id"][rows]).size))
 
 
 def assessment(
@@ -69,7 +53,7 @@ def assessment(
         Called after every indicator.
     """
     chosen = settings or AssessmentSettings()
-    records = shared_records(table, chosen)
+    records = judged_records(table.matrix.labels, chosen.seed, chosen.resamples)
     found = []
     for column, name in enumerate(table.matrix.names):
         found.append(_one(records, name, table.matrix.values[:, column], chosen))
@@ -80,80 +64,58 @@ def assessment(
     return sorted(found, key=lambda result: (_last_if_nan(result.score_others.value), result.column))
 
 
-def shared_records(table: IndicatorTable, settings: AssessmentSettings) -> Records:
-    """Return what all indicators share."""
-    labels = table.matrix.labels
-    count = labels["specimen_id"].size
-    resamples = min(settings.resamples, max(50, LARGEST_BLOCK // count))
-    weights = bootstrap_weights(labels["specimen_id"], settings.seed, resamples)
-    order = dict(zip(labels["state"].tolist(), labels["state_id"].tolist(), strict=True))
-    damaged = set(labels["state"][labels["fault"] != HEALTHY].tolist())
-    states = tuple(sorted(damaged, key=lambda state: order[state]))
-    return Records(labels, states, weights, paired_records(labels), ladder_steps(histories(labels)))
-
-
-def _one(records: Records, name: str, values: np.ndarray, settings: AssessmentSettings) -> IndicatorResult:
+def _one(records: JudgedRecords, name: str, values: np.ndarray, settings: AssessmentSettings) -> IndicatorResult:
     indicator, channel = name.split("__", 1)
-    others, other_samples = _other_specimens(records, values)
-    same, same_samples = _same_specimen(records, values)
-    direction = _direction(same) or _direction(others) or 1
+    judged = separability_of(records, name, values)
+    direction = judged.direction or 1
     rows = np.flatnonzero(np.isfinite(values))
-    area, stiffness = (
-        records.interval(weighted_spearman(values[rows], records.labels[label][rows], records.weights[:, rows]), rows)
-        for label in ("damaged_area_mm2", "mesh_stiffness_loss")
-    )
+    loss = records.labels["mesh_stiffness_loss"][rows]
+    stiffness = records.interval(weighted_spearman(values[rows], loss, records.weights[:, rows]), rows)
     before, after = records.steps
     rise = values[after] - values[before]
     kept = np.isfinite(rise)
     steps = monotonicity(rise[kept], records.weights[:, after[kept]])
     result = IndicatorResult(
-        name, indicator, channel, direction, others, same,
-        _score(records, other_samples, direction), _score(records, same_samples, direction),
-        area, stiffness, records.interval(steps, after[kept]), float(np.mean(np.isfinite(values))),
+        name, indicator, channel, direction,
+        _other_specimens(records, values, judged), _same_specimen(records, values, judged),
+        _score(records, list(judged.samples.values()), direction),
+        _score(records, list(judged.same.values()), direction),
+        judged.spearman, stiffness, records.interval(steps, after[kept]), judged.defined_share,
     )  # fmt: skip
     result.sensitivity = _sensitivity(records.labels, values, channel)
     result.detectable, result.smallest_size = _detectable(records, values * direction, settings.false_alarms)
     return result
 
 
-def _other_specimens(records: Records, values: np.ndarray) -> tuple[dict[str, StateResult], list[np.ndarray]]:
-    """Return each state against all healthy records, and the bootstrap samples of its AUC."""
+def _other_specimens(records: JudgedRecords, values: np.ndarray, judged: Separability) -> dict[str, StateResult]:
+    """Return each state against all healthy records."""
     healthy, specimen = records.labels["fault"] == HEALTHY, records.labels["specimen_id"]
-    found, samples = {}, []
-    for state in records.states:
+    found = {}
+    for state, area in judged.auc.items():
         rows = np.flatnonzero(np.isfinite(values) & (healthy | (records.labels["state"] == state)))
-        weights, positive = records.weights[:, rows], ~healthy[rows]
-        area = weighted_auc(values[rows], positive, weights, specimen[rows])
-        effect = cohens_d(values[rows], positive, weights)
+        positive = ~healthy[rows]
+        effect = cohens_d(values[rows], positive, records.weights[:, rows])
         groups = [rows[~positive], rows[positive]]
         p_value = two_sample_p(*(specimen_means(values[group], specimen[group]) for group in groups))
-        found[state] = StateResult(records.interval(area, rows), records.interval(effect, rows), p_value)
-        samples.append(area)
-    return found, samples
+        found[state] = StateResult(area, records.interval(effect, rows), p_value)
+    return found
 
 
-def _same_specimen(records: Records, values: np.ndarray) -> tuple[dict[str, StateResult], list[np.ndarray]]:
-    """Return each state against the specimen's own healthy record, and the samples of the share that rises."""
+def _same_specimen(records: JudgedRecords, values: np.ndarray, judged: Separability) -> dict[str, StateResult]:
+    """Return each state against the specimen's own healthy record."""
     pairs, specimen = records.pairs, records.labels["specimen_id"]
     change = values[pairs.rows] - values[pairs.partners]
-    found, samples = {}, []
-    for state in records.states:
+    found = {}
+    for state, share in judged.same.items():
         kept = np.isfinite(change) & (records.labels["state"][pairs.rows] == state)
         rows, difference = pairs.rows[kept], change[kept]
-        weights = records.weights[:, rows]
-        share, effect = shares_above(difference, weights), paired_d(difference, weights)
+        effect = paired_d(difference, records.weights[:, rows])
         p_value = paired_p(specimen_means(difference, specimen[rows])) if rows.size else math.nan
         found[state] = StateResult(records.interval(share, rows), records.interval(effect, rows), p_value)
-        samples.append(share)
-    return found, samples
+    return found
 
 
-def _direction(states: dict[str, StateResult]) -> int:
-    distance = [r.separation.value - 0.5 for r in states.values() if math.isfinite(r.separation.value)]
-    return int(np.sign(round(sum(distance), 12)))
-
-
-def _score(records: Records, samples: list[np.ndarray], direction: int) -> Interval:
+def _score(records: JudgedRecords, samples: list[np.ndarray], direction: int) -> Interval:
     """Return the mean separation over the states, turned by the direction."""
     if not samples:
         return UNDEFINED
@@ -166,7 +128,7 @@ def _adjust(found: list[IndicatorResult]) -> None:
     for design in ("others", "same"):
         results = [result for entry in found for result in getattr(entry, design).values()]
         p_values = np.array([result.p_value for result in results], dtype=np.float64)
-        for result, strict, mild in zip(results, holm(p_values), benjamini_hochberg(p_values), strict=True):
+        for result, strict, mild in zip(results, holm(p_values), false_discovery(p_values), strict=True):
             result.holm, result.false_discovery = float(strict), float(mild)
 
 
@@ -200,7 +162,7 @@ def _add_sensor_shares(table: IndicatorTable, found: list[IndicatorResult]) -> N
 
 
 def _detectable(
-    records: Records, values: np.ndarray, false_alarms: float
+    records: JudgedRecords, values: np.ndarray, false_alarms: float
 ) -> tuple[dict[str, Interval], dict[str, float]]:
     """Return the smallest sizes found, and the size of the smallest group of damage, by design and kind of size.
 

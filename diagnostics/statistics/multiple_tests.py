@@ -53,7 +53,7 @@ def holm(p_values: np.ndarray) -> np.ndarray:
     return _scattered(p_values.size, order, np.maximum.accumulate(p_values[order] * factor))
 
 
-def benjamini_hochberg(p_values: np.ndarray) -> np.ndarray:
+def false_discovery(p_values: np.ndarray) -> np.ndarray:
     """Return p-values adjusted by Benjamini and Hochberg: below q, a share q of the discoveries is false on average.
 
     Parameters
@@ -61,9 +61,13 @@ def benjamini_hochberg(p_values: np.ndarray) -> np.ndarray:
     p_values : (n,) float64
         NaN stays NaN and does not count.
     """
-    order = _ascending(p_values)
-    raised = p_values[order] * order.size / np.arange(1, order.size + 1)
-    return _scattered(p_values.size, order, np.minimum.accumulate(raised[::-1])[::-1])
+    from scipy.stats import false_discovery_control
+
+    defined = np.isfinite(p_values)
+    found = np.full(p_values.size, np.nan)
+    if defined.any():
+        found[defined] = false_discovery_control(p_values[defined], method="bh")
+    return found
 
 
 def _ascending(p_values: np.ndarray) -> np.ndarray:

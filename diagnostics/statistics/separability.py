@@ -1,35 +1,53 @@
-"""How well each single feature separates a state from healthy, and how it follows the damaged area.
+"""The one judgement of every indicator: AUC of each state against healthy, its direction, how it follows the damage.
 
-AUC of healthy against each state and Spearman's rank correlation with the damaged area, with intervals from resampled
-specimens. Features are not trained, so all specimens count; but reading off the best of hundreds of features is a
-choice made on the same specimens, and its value is optimistic.
+Report, ranking and audit read it from here, so that an indicator has one AUC. Intervals come from resampled specimens.
+Indicators are not trained, so all specimens count; but reading off the best of hundreds is a choice made on the same
+specimens, and its value is optimistic.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc, weighted_midranks
-
-RESAMPLES = 400
-LARGEST_BLOCK = 4_000_000
-"""Largest resamples times records; more records get fewer resamples, since their intervals are narrow anyway."""
+from diagnostics.statistics.evaluation import Interval, weighted_auc, weighted_midranks
+from diagnostics.statistics.judged_records import RESAMPLES, JudgedRecords, judged_records
+from diagnostics.statistics.paired_differences import shares_above
 
 
 @dataclass(frozen=True, slots=True)
 class Separability:
-    """One feature: AUC against healthy by state, correlation with the damaged area, share of records where defined."""
+    """One indicator in one channel.
+
+    Attributes
+    ----------
+    feature : str
+        Its column.
+    auc : dict of str to Interval
+        AUC of every state against healthy, between other specimens; below 0.5 where it falls.
+    spearman : Interval
+        Rank correlation with the damaged area.
+    defined_share : float
+        Share of records where it is defined.
+    direction : int
+        1 where it rises with damage, -1 where it falls: mean change of the same specimens, else of the AUC; 0 unknown.
+    samples, same : dict of str to (resamples + 1,)
+        Resamples of the AUC, and of the share of pairs of one specimen in which it is higher after, by state.
+    """
 
     feature: str
     auc: dict[str, Interval]
     spearman: Interval
     defined_share: float
+    direction: int = 0
+    samples: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+    same: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def strength(self) -> float:
@@ -37,9 +55,16 @@ class Separability:
         distance = [abs(found.value - 0.5) for found in self.auc.values() if math.isfinite(found.value)]
         return max(distance, default=0.0)
 
+    def turned(self, state: str) -> Interval:
+        """Return the AUC of a state, turned by the direction so that 1 is perfect."""
+        found = self.auc[state]
+        if (self.direction or (-1 if found.value < 0.5 else 1)) > 0:
+            return found
+        return Interval(1.0 - found.value, 1.0 - found.high, 1.0 - found.low)
+
 
 def separability(matrix: FeatureMatrix, seed: int, resamples: int = RESAMPLES) -> list[Separability]:
-    """Return every feature's separability, strongest first.
+    """Return every indicator's separability, strongest first.
 
     Parameters
     ----------
@@ -50,29 +75,46 @@ def separability(matrix: FeatureMatrix, seed: int, resamples: int = RESAMPLES) -
     resamples : int
         Most resamples to draw.
     """
-    records = matrix.values.shape[0]
-    weights = bootstrap_weights(matrix.labels["specimen_id"], seed, min(resamples, max(50, LARGEST_BLOCK // records)))
-    found = [_one(matrix, column, weights) for column in range(len(matrix.names))]
+    records = judged_records(matrix.labels, seed, resamples)
+    found = [separability_of(records, name, matrix.values[:, column]) for column, name in enumerate(matrix.names)]
     return sorted(found, key=lambda entry: (-entry.strength, entry.feature))
 
 
-def _one(matrix: FeatureMatrix, column: int, weights: np.ndarray) -> Separability:
-    values, labels = matrix.values[:, column], matrix.labels
-    defined = np.isfinite(values)
-    states, healthy = labels["state"], labels["fault"] == HEALTHY
-    auc = {}
-    for state in dict.fromkeys(states[~healthy].tolist()):
-        chosen = defined & (healthy | (states == state))
-        specimen = labels["specimen_id"][chosen]
-        area = weighted_auc(values[chosen], ~healthy[chosen], weights[:, chosen], specimen)
-        auc[state] = _interval(area, labels, chosen)
-    area = labels["damaged_area_mm2"]
-    correlation = weighted_spearman(values[defined], area[defined], weights[:, defined])
-    return Separability(matrix.names[column], auc, _interval(correlation, labels, defined), float(np.mean(defined)))
+def separability_of(records: JudgedRecords, name: str, values: np.ndarray) -> Separability:
+    """Return the separability of one column, (records,)."""
+    labels, defined = records.labels, np.isfinite(values)
+    healthy = labels["fault"] == HEALTHY
+    change = values[records.pairs.rows] - values[records.pairs.partners]
+    auc, samples, same = {}, {}, {}
+    for state in records.states:
+        rows = np.flatnonzero(defined & (healthy | (labels["state"] == state)))
+        weights, specimen = records.weights[:, rows], labels["specimen_id"][rows]
+        samples[state] = weighted_auc(values[rows], ~healthy[rows], weights, specimen)
+        auc[state] = records.interval(samples[state], rows)
+        kept = np.isfinite(change) & (labels["state"][records.pairs.rows] == state)
+        same[state] = shares_above(change[kept], records.weights[:, records.pairs.rows[kept]])
+    rows = np.flatnonzero(defined)
+    area = labels["damaged_area_mm2"][rows]
+    correlation = weighted_spearman(values[rows], area, records.weights[:, rows])
+    direction = _sign([own[0] for own in same.values()]) or _sign([found.value for found in auc.values()])
+    spearman = records.interval(correlation, rows)
+    return Separability(name, auc, spearman, float(np.mean(defined)), direction, samples, same)
 
 
-def _interval(samples: np.ndarray, labels: dict[str, np.ndarray], chosen: np.ndarray) -> Interval:
-    return interval(samples, int(np.unique(labels["specimen_id"][chosen]).size))
+def _sign(shares: Sequence[float]) -> int:
+    """Return which side of 0.5 the shares lie on together, 0 where that is not known."""
+    return int(np.sign(round(sum(share - 0.5 for share in shares if math.isfinite(share)), 12)))
+
+
+def best_by_state(found: Sequence[Separability]) -> dict[str, Separability]:
+    """Return by state the indicator of the largest AUC, turned by its direction; states without any are left out."""
+    best: dict[str, Separability] = {}
+    for entry in found:
+        for state in entry.auc:
+            area = entry.turned(state).value
+            if math.isfinite(area) and (state not in best or area > best[state].turned(state).value):
+                best[state] = entry
+    return best
 
 
 def weighted_spearman(first: np.ndarray, second: np.ndarray, weights: np.ndarray) -> np.ndarray:

@@ -1,11 +1,14 @@
-"""Logistic regression on the indicators, the trivial one on RMS alone, and both with permuted labels.
+"""Logistic regression on all indicators, the trivial one on RMS alone, and both with permuted labels.
 
-Scaling, imputation and coefficients see training specimens only; the strength of regularisation is chosen on validation
-specimens; test specimens are touched once. Source: standard literature.
+Columns that are positive in every training record are taken as logarithms: levels and ratios spread over decades, and a
+gain becomes a summand. Medians, scaling and coefficients see training specimens only. No column is left out; the
+strength of the penalty is what few gearboxes can choose, by cross-validation over whole training and validation
+specimens. Test specimens are touched once. Source: standard literature (ridge penalty, grouped cross-validation).
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,24 +16,25 @@ from typing import Any
 import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import CLASS
 from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.training.splits import SpecimenSplit
 
-STRENGTHS = (0.003, 0.03, 0.3, 3.0)
+STRENGTHS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 """Candidates for C, the inverse strength of regularisation, strongest regularisation first."""
 
-DEFAULT_STRENGTH = 0.3
-"""C where no validation specimens exist."""
+DEFAULT_STRENGTH = 0.01
+"""C where it cannot be chosen."""
 
+FOLDS = 4
 PERMUTATIONS = 20
 
 
 @dataclass(frozen=True, slots=True)
 class FeatureClassifier:
-    """A fitted pipeline with the features it takes and the states it tells apart.
+    """A fitted pipeline with the columns it takes and the states it tells apart.
 
     Attributes
     ----------
@@ -41,9 +45,11 @@ class FeatureClassifier:
     strength : float
         Chosen C; rounds of boosting.
     note : str
-        What was not as it should be (no validation specimens), or empty.
+        What was not as it should be (C not chosen), or empty.
     temperature : float
         Applied to the probabilities, see `diagnostics.statistics.calibration`; 1 leaves them.
+    logarithms : tuple of str
+        Those of the columns whose logarithm the pipeline takes.
     """
 
     pipeline: Any
@@ -52,11 +58,27 @@ class FeatureClassifier:
     strength: float
     note: str
     temperature: float = 1.0
+    logarithms: tuple[str, ...] = ()
 
     def predict(self, matrix: FeatureMatrix) -> Predictions:
         """Return the probabilities of records; states that training lacked get zero."""
-        found = _predictions(self.pipeline, matrix.columns(self.features), self.classes)
+        probability = self.probability(matrix.columns(self.features).values)
+        found = Predictions(self.classes, state_index(matrix, self.classes), probability, matrix.labels["specimen_id"])
         return calibrated(found, self.temperature)
+
+    def probability(self, values: np.ndarray) -> np.ndarray:
+        """Return the uncalibrated probabilities (n, classes) of columns (n, features) in the order of `features`."""
+        taken = set(self.logarithms)
+        found = np.zeros((len(values), len(self.classes)))
+        logs = np.array([name in taken for name in self.features], dtype=bool)
+        found[:, self.pipeline.classes_] = self.pipeline.predict_proba(with_logarithms(values, logs))
+        return found
+
+
+def with_logarithms(values: np.ndarray, logs: np.ndarray) -> np.ndarray:
+    """Return values (n, columns) with the marked columns as logarithms; what is not positive there is undefined."""
+    positive = values > 0.0
+    return np.where(logs, np.log(values, where=positive, out=np.full_like(values, np.nan)), values)
 
 
 def calibrated_classifier(
@@ -68,12 +90,6 @@ def calibrated_classifier(
     found = model.predict(matrix.rows(split.validation))
     truth = found.truth if target is None else target[split.validation]
     return replace(model, temperature=fitted_temperature(replace(found, truth=truth)))
-
-
-def _predictions(pipeline: Any, matrix: FeatureMatrix, classes: tuple[str, ...]) -> Predictions:
-    probability = np.zeros((matrix.values.shape[0], len(classes)))
-    probability[:, pipeline.classes_] = pipeline.predict_proba(matrix.values)
-    return Predictions(classes, state_index(matrix, classes), probability, matrix.labels["specimen_id"])
 
 
 def state_index(matrix: FeatureMatrix, classes: tuple[str, ...]) -> np.ndarray:
@@ -95,10 +111,54 @@ def logistic_pipeline(strength: float = DEFAULT_STRENGTH) -> Any:
     )
 
 
-def train_classifier(
-    matrix: FeatureMatrix, split: SpecimenSplit, target: np.ndarray | None = None
+def fitted_classifier(
+    matrix: FeatureMatrix,
+    truth: np.ndarray,
+    classes: tuple[str, ...],
+    strength: float = DEFAULT_STRENGTH,
+    *,
+    note: str = "",
+    take_logarithms: bool = True,
 ) -> FeatureClassifier:
-    """Fit on training specimens, choosing C by macro-AUROC on validation specimens (ties: stronger regularisation).
+    """Fit on all records of a matrix.
+
+    Parameters
+    ----------
+    matrix : FeatureMatrix
+        Training records; every column is used.
+    truth : (n,) int
+        Positions of their classes in `classes`.
+    classes : tuple of str
+        All classes.
+    strength : float
+        C.
+    note : str
+        What was not as it should be.
+    take_logarithms : bool
+        Whether columns that are positive in all records are taken as logarithms.
+    """
+    logs = _positive(matrix.values) if take_logarithms else np.zeros(len(matrix.names), dtype=bool)
+    pipeline = logistic_pipeline(strength).fit(with_logarithms(matrix.values, logs), truth)
+    taken = tuple(name for name, log in zip(matrix.names, logs.tolist(), strict=True) if log)
+    return FeatureClassifier(pipeline, matrix.names, classes, strength, note, logarithms=taken)
+
+
+def _positive(values: np.ndarray) -> np.ndarray:
+    """Return which columns are positive wherever they are defined, and defined somewhere, (columns,) bool."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a column that is undefined throughout has no least value
+        return np.asarray(np.nanmin(values, axis=0) > 0.0)
+
+
+def train_classifier(
+    matrix: FeatureMatrix,
+    split: SpecimenSplit,
+    target: np.ndarray | None = None,
+    *,
+    strengths: Sequence[float] = STRENGTHS,
+    take_logarithms: bool = True,
+) -> FeatureClassifier:
+    """Fit on training specimens with the C that does best on training and validation specimens left out in turn.
 
     Parameters
     ----------
@@ -108,24 +168,43 @@ def train_classifier(
         Whose specimens are which.
     target : (n,) int, optional
         Labels to learn, default the true states; the permutation control passes permuted ones.
+    strengths : sequence of float
+        Candidates for C; a single one is taken as it is.
+    take_logarithms : bool
+        As of `fitted_classifier`.
     """
     truth = state_index(matrix, split.classes) if target is None else target
-    train, validation = matrix.rows(split.train), matrix.rows(split.validation)
-    if not split.validation.any():
-        pipeline = logistic_pipeline().fit(train.values, truth[split.train])
-        note = f"no validation specimens: C = {DEFAULT_STRENGTH} was not chosen but taken as it is"
-        return FeatureClassifier(pipeline, matrix.names, split.classes, DEFAULT_STRENGTH, note)
-    best: tuple[float, float, Any] | None = None
-    ones = np.ones((1, int(split.validation.sum())))
-    for strength in STRENGTHS:
-        pipeline = logistic_pipeline(strength).fit(train.values, truth[split.train])
-        found = _predictions(pipeline, validation, split.classes)
-        judged = Predictions(found.classes, truth[split.validation], found.probability, found.specimen)
-        area = float(np.nan_to_num(macro_auroc(judged, ones)[0], nan=0.5))
-        if best is None or area > best[0] + 1e-12:
-            best = (area, strength, pipeline)
-    assert best is not None
-    return FeatureClassifier(best[2], matrix.names, split.classes, best[1], "")
+    strength, note = strengths[0], ""
+    if len(strengths) > 1:
+        strength, note = _chosen_strength(matrix, split, truth, strengths, take_logarithms)
+    train = matrix.rows(split.train)
+    return fitted_classifier(
+        train, truth[split.train], split.classes, strength, note=note, take_logarithms=take_logarithms
+    )
+
+
+def _chosen_strength(
+    matrix: FeatureMatrix, split: SpecimenSplit, truth: np.ndarray, strengths: Sequence[float], take_logarithms: bool
+) -> tuple[float, str]:
+    """Return the C of largest macro-AUROC on specimens left out (ties: stronger penalty), or why none was chosen."""
+    used = split.train | split.validation
+    seen, own = matrix.rows(used), truth[used]
+    _, place = np.unique(seen.labels["specimen_id"], return_inverse=True)
+    fold, ones = place % FOLDS, np.ones((1, own.size))
+    if any(np.unique(own[fold != k]).size < 2 for k in np.unique(fold)):
+        note = f"too few training specimens to choose by: C = {DEFAULT_STRENGTH} was taken as it is"
+        return DEFAULT_STRENGTH, note
+    areas = []
+    for strength in strengths:
+        held_out = np.zeros((own.size, len(split.classes)))
+        for k in np.unique(fold):
+            rest = seen.rows(fold != k)
+            model = fitted_classifier(rest, own[fold != k], split.classes, strength, take_logarithms=take_logarithms)
+            held_out[fold == k] = model.probability(seen.values[fold == k])
+        found = Predictions(split.classes, own, held_out, seen.labels["specimen_id"])
+        areas.append(float(np.nan_to_num(macro_auroc(found, ones)[0], nan=0.5)))
+    best = max(range(len(areas)), key=lambda k: (round(areas[k], 12), -k))
+    return strengths[best], ""
 
 
 def rms_features(names: Sequence[str]) -> tuple[str, ...]:
@@ -147,17 +226,20 @@ def permutation_control(
     split: SpecimenSplit,
     seed: int,
     repeats: int = PERMUTATIONS,
+    strength: float = DEFAULT_STRENGTH,
     advance: Callable[[], None] | None = None,
 ) -> np.ndarray:
     """Return macro-AUROC on the test specimens, (repeats,), of classifiers trained on permuted labels.
 
     They must scatter around 0.5; if they do not, the scoring itself is biased. They say nothing about leakage: test
-    records among the training ones would give 0.5 as well. Against that, specimens are split (`specimen_split`).
+    records among the training ones would give 0.5 as well. Against that, specimens are split (`specimen_split`). All
+    take the C that was chosen with the true labels.
     """
     truth, test = state_index(matrix, split.classes), matrix.rows(split.test)
     areas = np.empty(repeats)
     for repeat in range(repeats):
-        model = train_classifier(matrix, split, permuted_target(truth, split, seed, repeat))
+        permuted = permuted_target(truth, split, seed, repeat)
+        model = train_classifier(matrix, split, permuted, strengths=(strength,))
         areas[repeat] = macro_auroc(model.predict(test), np.ones((1, test.values.shape[0])))[0]
         if advance:
             advance()

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.calibration import SMALLEST_PROBABILITY
 from diagnostics.training.baselines import FeatureClassifier, state_index
 from diagnostics.training.splits import SpecimenSplit

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from diagnostics.indicators.features import FeatureSettings
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.training.baselines import FeatureClassifier
 from siggen.errors import UsageError
 
@@ -18,7 +18,7 @@ TRUSTED_TYPES = ("numpy.dtype",)
 
 
 def save_classifier(
-    model: FeatureClassifier, settings: FeatureSettings, identity: str, folder: Path, prefix: str = ""
+    model: FeatureClassifier, settings: IndicatorSettings, identity: str, folder: Path, prefix: str = ""
 ) -> Path:
     """Write `classifier.skops` and `feature_names.json` (features, states, settings, identity); return the former.
 
@@ -34,6 +34,7 @@ def save_classifier(
         "strength": model.strength,
         "note": model.note,
         "temperature": model.temperature,
+        "logarithms": model.logarithms,
         "settings": asdict(settings),
         "identity": identity,
     }
@@ -74,6 +75,7 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
         strength=float(facts["strength"]),
         note=str(facts["note"]),
         temperature=float(facts.get("temperature", 1.0)),
+        logarithms=tuple(facts.get("logarithms", ())),
     )
 
 
@@ -82,7 +84,7 @@ def classifier_identity(folder: Path, prefix: str = "") -> str:
     return str(_facts(folder, prefix).get("identity", ""))
 
 
-def load_settings(folder: Path) -> FeatureSettings:
+def load_settings(folder: Path) -> IndicatorSettings:
     """Read the settings of the features of a classifier written by `save_classifier`.
 
     Raises
@@ -91,7 +93,7 @@ def load_settings(folder: Path) -> FeatureSettings:
         If they are missing or of another version.
     """
     try:
-        return FeatureSettings(**_facts(folder, "")["settings"])
+        return IndicatorSettings(**_facts(folder, "")["settings"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UsageError(f"{folder / NAMES_FILE}: no readable settings of features ({error})") from error
 

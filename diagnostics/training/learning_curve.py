@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.evaluation import macro_auroc
 from diagnostics.training.baselines import rms_features, state_index, train_classifier
 from diagnostics.training.splits import SpecimenSplit

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnostics.base.progress import Stage
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY, class_names
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.baselines import FeatureClassifier, state_index

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import CLASS
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, Predictions, bootstrap_weights, interval
 from diagnostics.statistics.separability import weighted_spearman

@@ -9,8 +9,8 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.base.single_thread import single_thread
-from diagnostics.indicators.feature_table import FeatureMatrix
-from diagnostics.indicators.window_features import window_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.windows import window_matrix
 from diagnostics.training.learning_curve import CurvePoint, curve_sizes, learning_curve
 from diagnostics.training.split_study import SplitScore, rows_of_study, split_study
 from diagnostics.training.splits import SpecimenSplit

@@ -11,7 +11,8 @@ import pyarrow as pa
 
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, table_notes
+from diagnostics.indicators.classifier_table import feature_matrix, table_notes
+from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.statistics.comparison import Comparison, comparison, state_auc
 from diagnostics.statistics.evaluation import Interval, Predictions
 from diagnostics.statistics.judgement import (
@@ -124,7 +125,7 @@ def train_models(
     split = specimen_split(matrix.labels)
     models = _feature_models(matrix, split, seed, stage)
     with stage("permuted labels", PERMUTATIONS) as advance:
-        control = permutation_control(matrix, split, seed, advance=advance)
+        control = permutation_control(matrix, split, seed, strength=models[INDICATORS].strength, advance=advance)
     results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
     trained = None
     if options.cnn:

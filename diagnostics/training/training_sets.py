@@ -9,9 +9,10 @@ from typing import Any
 import pyarrow as pa
 
 from diagnostics.base.progress import Stage
-from diagnostics.indicators.feature_table import feature_table, with_notes
+from diagnostics.indicators.classifier_table import check_table, classifier_table
+from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.table import record_table
 from diagnostics.records.usable_channels import with_channels
-from diagnostics.records.usable_records import check_records
 from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet
 from siggen.dataset import reading
@@ -36,19 +37,19 @@ def open_sets(directory: Path, test: Path | None, channels: Sequence[str]) -> tu
     return dataset, other
 
 
-def set_table(dataset: Dataset, stage: Stage, title: str = "indicators") -> pa.Table:
-    """Return the feature table of a set whose records are usable, with notes on those to be taken with care.
+def set_table(dataset: Dataset, stage: Stage, title: str = "indicators", own: Sequence[OwnIndicator] = ()) -> pa.Table:
+    """Return what classifiers take of a set whose records are usable, with notes on those to be taken with care.
 
     Raises
     ------
     DatasetError
-        As of `check_records`.
+        As of `check_table`.
     """
-    notes = check_records(dataset, can_leave_channels=True)
     with stage(title, int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
-        return with_notes(feature_table(dataset, advance=advance), notes)
+        table = record_table(dataset, own=own, advance=advance)
+    return classifier_table(table, check_table(table, dataset, can_leave_channels=True))
 
 
-def other_table(other: Dataset, stage: Stage) -> OtherSet:
-    """Return the other set with its feature table."""
-    return OtherSet(other, set_table(other, stage, "indicators of the other set"))
+def other_table(other: Any, stage: Stage, own: Sequence[OwnIndicator] = ()) -> OtherSet:
+    """Return the other set with its table."""
+    return OtherSet(other, set_table(other, stage, "indicators of the other set", own))

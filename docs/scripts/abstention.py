@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.indicators.features import FeatureSettings
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.release.log_features import log_values
 from diagnostics.prediction.record_pieces import at_rate, record_pieces
 from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
@@ -37,7 +37,7 @@ def records(dataset: Any, channels: tuple[str, ...], fs_hz: float, duration_s: f
         measured = at_rate(MeasuredRecording(Path(), signals, record.fs_hz, record.tacho_s), fs_hz)
         pulses = ShaftPulses(record.tacho_s, "tacho")
         teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
-        pieces = record_pieces(measured, pulses, teeth, duration_s, FeatureSettings())
+        pieces = record_pieces(measured, pulses, teeth, duration_s, IndicatorSettings())
         parts = distance_features(pieces.names)
         logs.append(np.nanmedian(log_values(pieces.columns(tuple(name for part in parts for name in part))), axis=0))
         speed_hz.append(pulses.speed_hz)

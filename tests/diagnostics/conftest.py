@@ -155,9 +155,10 @@ def effectless() -> MemoryDataset:
 @pytest.fixture(scope="session")
 def features(dataset: MemoryDataset) -> pa.Table:
     """The feature table of the separable set."""
-    from diagnostics.indicators.feature_table import feature_table
+    from diagnostics.indicators.classifier_table import classifier_table
+    from diagnostics.indicators.table import record_table
 
-    return feature_table(dataset)
+    return classifier_table(record_table(dataset))
 
 
 @pytest.fixture(scope="session")

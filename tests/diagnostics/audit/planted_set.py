@@ -138,7 +138,7 @@ def _row(
         "fault": "pitting" if damaged else "healthy", "severity": state,
         "faulty_teeth_pinion": [tooth] if damaged else [],
         "damaged_area_mm2": 2.0 * state_id, "damaged_area_share": 0.02 * state_id,
-        "damage_profile_length_mm": 0.5 * state_id, "status": "ok",
+        "damage_profile_length_mm": 0.5 * state_id, "mesh_stiffness_loss": 0.01 * state_id, "status": "ok",
         "teeth_pinion": TEETH[0], "teeth_gear": TEETH[1], "speed_hz": speed_hz, "torque_nm": torque_nm,
         "start_angle_rad": 2 * np.pi * start,
         "noise_floor_lid_x_m_s2": float(rng.uniform(0.9, 1.1)), "path_gain_lid_x": 1.0 + 0.01 * specimen,

@@ -26,11 +26,11 @@ def test_the_ranges_hold_their_limits_and_undefined_is_outside() -> None:
 def test_thirteen_quantities_count_healthy_channel_records_only(found: MeasuredSet) -> None:
     fm4 = np.where(found.healthy[:, None], 3.0, 99.0) * np.ones((1, 3))
     fm4[0, 0], fm4[0, 1] = np.nan, 9.0
-    result = realism(replace(found, values={**found.values, "fm4": fm4}))
+    result = realism(replace(found, values={**found.values, "fm4_pinion": fm4}))
     assert result is not None
     assert len(result.shares) == 13
     assert result.channel_records == 3 * 2 * 3
-    share = next(share for share in result.shares if share.quantity.name == "fm4")
+    share = next(share for share in result.shares if share.quantity.name == "fm4_pinion")
     assert share.inside == pytest.approx(16 / 18)
     assert share.undefined == pytest.approx(1 / 18)
     assert share.quantiles[1] == 3.0

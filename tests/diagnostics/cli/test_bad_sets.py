@@ -15,7 +15,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from diagnostics.cli.app import main
-from diagnostics.indicators.feature_table import table_notes
+from diagnostics.indicators.classifier_table import table_notes
 from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.dataset.manifest import sealed

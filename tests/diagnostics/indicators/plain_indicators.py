@@ -116,6 +116,9 @@ def sideband_indicators(average: np.ndarray, spread: float, teeth: int) -> dict[
         six = (a[z - 3], a[z - 2], a[z - 1], a[z + 1], a[z + 2], a[z + 3])
         values[f"sideband_ratio_h{h}_k{RATIO_SIDEBANDS}"] = sum(six) / a[z]
         values[f"sideband_asymmetry_h{h}"] = 20 * math.log10(a[z + 1] / a[z - 1])
+        for k in range(1, SIDEBANDS + 1):
+            values[f"sideband_h{h}_lower{k}"] = a[z - k] / a[z]
+            values[f"sideband_h{h}_upper{k}"] = a[z + k] / a[z]
     mesh = sum(a[h * teeth] ** 2 for h in range(1, HARMONICS + 1))
     for k in range(1, SIDEBANDS + 1):
         both = sum(a[h * teeth - k] ** 2 + a[h * teeth + k] ** 2 for h in range(1, HARMONICS + 1))

@@ -10,16 +10,12 @@ import plain_indicators as plain
 import pytest
 from scipy.special import jv
 
-from diagnostics.indicators.channel_indicators import (
-    CEPSTRUM_BAND,
-    ChannelIndicators,
-    IndicatorSettings,
-    channel_indicators,
-    shaft_indicators,
-)
-from diagnostics.indicators.definition import base_name
-from diagnostics.indicators.definitions import BY_NAME
-from diagnostics.indicators.state_history import history_indicators
+from diagnostics.indicators.cepstrum import BAND_SHARE
+from diagnostics.indicators.channel_signals import ChannelSignals
+from diagnostics.indicators.history import history_indicators
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
 
@@ -29,14 +25,22 @@ TURNS = TEETH[1]
 ANGLE = 2 * np.pi * np.arange(PER_TURN) / PER_TURN
 SETTINGS = IndicatorSettings()
 PINION = Shaft("pinion", Z, 1, np.ones(6, dtype=bool), "")
+NO_GEAR = Shaft("gear", TEETH[1], 0, np.zeros(6, dtype=bool), "")
 
 
 def tone(order: int, amplitude: float = 1.0) -> np.ndarray:
     return amplitude * np.cos(order * ANGLE + 0.2)
 
 
+def over_angle(steps: np.ndarray) -> ChannelSignals:
+    """Return the signals of a record that is known at equal angles of the pinion already."""
+    signals = ChannelSignals(np.ones(1), FS_HZ, None, (PINION, NO_GEAR), SETTINGS)
+    signals.steps = steps
+    return signals
+
+
 def column(name: str, steps: np.ndarray) -> float:
-    return shaft_indicators(steps, PINION, SETTINGS).values[name]
+    return over_angle(steps).values(ALL)[name]
 
 
 # --- closed forms -----------------------------------------------------------------------------------------------------
@@ -78,6 +82,7 @@ CLOSED_ON_AVERAGES = {
     "energy_operator_lebold_pinion": (MIXED - tone(7, 0.8), 1.5),
     "sideband_index_pinion_h1": (AM, MODULATION),
     "sideband_level_factor_pinion_h1": (9.0 + AM, math.sqrt(2) * MODULATION / math.sqrt(1 + MODULATION**2 / 2)),
+    "sideband_pinion_h1_upper1": (AM, MODULATION / 2),
     "sideband_ratio_pinion_h1_k3": (AM + tone(Z + 3, 0.5) + tone(Z - 4, 9.0), MODULATION + 0.25),
     "sideband_power_pinion_h5_k1": (AM + tone(5 * Z, 1.0) + tone(6 * Z), MODULATION**2 / 2 * 4 / 5),
     "sideband_asymmetry_pinion_h1": (BOTH, 20 * math.log10((COMMON + jv(1, 0.2)) / (COMMON - jv(1, 0.2)))),
@@ -107,7 +112,8 @@ def test_closed_form_of_the_noise_share() -> None:
 
 
 def raw(name: str, signal: np.ndarray) -> float:
-    return channel_indicators(signal, FS_HZ, None, record_shafts(None, TEETH, PER_TOOTH, 6), SETTINGS).values[name]
+    shafts = record_shafts(None, TEETH, PER_TOOTH, 6)
+    return ChannelSignals(signal, FS_HZ, None, shafts, SETTINGS).values(ALL)[name]
 
 
 SINE = 1.7 * np.cos(2 * np.pi * np.arange(25_600) / 64)
@@ -133,9 +139,9 @@ def test_closed_form_of_the_spectral_kurtosis() -> None:
     assert raw("spectral_kurtosis_maximum", np.outer(height, spike).ravel()) == pytest.approx(expected, abs=0.02)
 
 
-def whole_record(signal: np.ndarray, pulses: np.ndarray) -> ChannelIndicators:
+def whole_record(signal: np.ndarray, pulses: np.ndarray) -> ChannelSignals:
     grid = angle_grid(pulses, PER_TURN)
-    return channel_indicators(signal, FS_HZ, grid, record_shafts(grid, TEETH, PER_TOOTH, 6), SETTINGS)
+    return ChannelSignals(signal, FS_HZ, grid, record_shafts(grid, TEETH, PER_TOOTH, 6), SETTINGS)
 
 
 def test_closed_form_of_the_cepstral_peaks() -> None:
@@ -144,7 +150,7 @@ def test_closed_form_of_the_cepstral_peaks() -> None:
     for share, name, delay in ((0.4, "pinion", 1280), (0.6, "gear", round(1280 * 47 / 18))):
         echo = noise.copy()
         echo[delay:] += share * noise[:-delay]
-        found = whole_record(echo, np.arange(0.01, 2.39, 0.05)).values  # 20 Hz: 1,280 samples per pinion revolution
+        found = whole_record(echo, np.arange(0.01, 2.39, 0.05)).values(ALL)  # 1,280 samples per pinion revolution
         other = "gear" if name == "pinion" else "pinion"
         assert found[f"cepstral_peak_{name}"] == pytest.approx(share / 2, abs=0.04)
         assert abs(found[f"cepstral_peak_{other}"]) < 0.03
@@ -156,6 +162,10 @@ CLOSED_OF_HISTORIES = {
     "na4_star": [2.25 * s**4 for s in SCALES],
     "nb4": [1.5 * s**4 / np.mean(np.square(SCALES[: i + 1])) ** 2 for i, s in enumerate(SCALES)],
 }
+
+
+def columns_of(rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def labels(order: list[int]) -> dict[str, np.ndarray]:
@@ -170,8 +180,8 @@ def labels(order: list[int]) -> dict[str, np.ndarray]:
 def test_closed_form_of_a_history_in_any_order_of_rows(name: str, order: list[int]) -> None:
     # sidebands grow with s: residual 0.2 s cos(angle) cos(2 z angle), kurtosis 1.5 * 1.5; envelope 2 + 0.2 s cos(angle)
     averages = [tone(2 * Z, 2.0) + tone(2 * Z, 0.1 * SCALES[i]) * 2 * np.cos(ANGLE) for i in order]
-    moments = [shaft_indicators(average, PINION, SETTINGS).moments for average in averages]
-    found = history_indicators(labels(order), moments, "a")[f"{name}_pinion__a"]
+    moments = columns_of([over_angle(average).moments() for average in averages])
+    found = history_indicators(labels(order), moments)[f"{name}_pinion"]
     np.testing.assert_allclose(found, np.array(CLOSED_OF_HISTORIES[name])[order], rtol=1e-9)
 
 
@@ -181,13 +191,13 @@ def test_a_history_is_one_specimen_at_one_operating_point_in_one_repeat() -> Non
     moments = []
     for s, p, r, i in owners:
         average = tone(2 * Z, 2.0) + tone(2 * Z, 0.02 * level[s, p, r] * SCALES[i]) * 2 * np.cos(ANGLE)
-        moments.append(shaft_indicators(average, PINION, SETTINGS).moments)
+        moments.append(over_angle(average).moments())
     names = ("specimen_id", "operating_point_id", "repeat")
     own = {name: np.array([owner[place] for owner in owners]) for place, name in enumerate(names)}
-    found = history_indicators({**labels([owner[3] for owner in owners]), **own}, moments, "a")
+    found = history_indicators({**labels([owner[3] for owner in owners]), **own}, columns_of(moments))
     for name, expected in CLOSED_OF_HISTORIES.items():
         wanted = [expected[owner[3]] for owner in owners]
-        np.testing.assert_allclose(found[f"{name}_pinion__a"], wanted, rtol=1e-9, err_msg=name)
+        np.testing.assert_allclose(found[f"{name}_pinion"], wanted, rtol=1e-9, err_msg=name)
 
 
 # --- a second computation ---------------------------------------------------------------------------------------------
@@ -231,13 +241,13 @@ def second_computation(seed: int) -> dict[str, float]:
         values |= plain.shaft_indicators(steps, name, teeth, PER_TOOTH)
     grid = angle_grid(pulses, PER_TURN)  # between its lines this record holds only the error of its resampling
     resampled = resample_to_angle(record, FS_HZ, grid)
-    highest = int(CEPSTRUM_BAND * 0.5 * FS_HZ / grid.slowest_hz)
+    highest = int(BAND_SHARE * 0.5 * FS_HZ / grid.slowest_hz)
     return values | plain.cepstral_peaks(resampled, TURNS, TEETH, highest)
 
 
 def test_every_column_by_a_second_computation() -> None:
     record, pulses, _ = record_and_truth(3)
-    found, expected = whole_record(record, pulses).values, second_computation(3)
+    found, expected = whole_record(record, pulses).values(ALL), second_computation(3)
     assert set(found) == set(expected)
     for name, value in expected.items():
         # resampling errs by 3e-5 of the amplitude at most; eighth moments and energies multiply that by up to ten
@@ -246,7 +256,8 @@ def test_every_column_by_a_second_computation() -> None:
 
 def test_every_history_by_a_second_computation() -> None:
     order = [2, 0, 1]
-    found = history_indicators(labels(order), [whole_record(*record_and_truth(i)[:2]).moments for i in order], "a")
+    moments = columns_of([whole_record(*record_and_truth(i)[:2]).moments() for i in order])
+    found = history_indicators(labels(order), moments)
     for shaft, teeth in zip(("pinion", "gear"), TEETH, strict=True):
         averages = [plain.plain_average(record_and_truth(i)[2], teeth * PER_TOOTH) for i in range(3)]
         residuals = [plain.without_fit(average, teeth, 0) for average in averages]
@@ -259,7 +270,7 @@ def test_every_history_by_a_second_computation() -> None:
                 "nb4": plain.plain_na4(envelopes[i], envelopes[: i + 1]),
             }
             for name, value in expected.items():
-                assert found[f"{name}_{shaft}__a"][row] == pytest.approx(value, rel=3e-4), (name, shaft, i)
+                assert found[f"{name}_{shaft}"][row] == pytest.approx(value, rel=3e-4), (name, shaft, i)
 
 
 # --- nothing left out -------------------------------------------------------------------------------------------------
@@ -272,5 +283,5 @@ def test_every_definition_has_a_closed_form_and_a_second_computation() -> None:
     tables = (CLOSED_ON_AVERAGES, CLOSED_ON_RECORDS, CLOSED_OF_HISTORIES)
     assert {base_name(name) for table in tables for name in table} | SEPARATE == set(BY_NAME)
     record, pulses, _ = record_and_truth(3)
-    by_column = {base_name(name) for name in whole_record(record, pulses).values}
+    by_column = {base_name(name) for name in whole_record(record, pulses).values(ALL)}
     assert by_column | set(CLOSED_OF_HISTORIES) == set(BY_NAME)

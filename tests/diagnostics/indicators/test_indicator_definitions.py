@@ -9,16 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagnostics.indicators.crest_factor import crest_factor
-from diagnostics.indicators.energy_ratio import energy_ratio
-from diagnostics.indicators.fm0 import fm0
-from diagnostics.indicators.fm4 import fm4
-from diagnostics.indicators.kurtosis import kurtosis
-from diagnostics.indicators.rms import rms
-from diagnostics.indicators.sideband_amplitude import sideband_amplitude
-from diagnostics.indicators.sideband_index import sideband_index
-from diagnostics.indicators.sideband_level_factor import sideband_level_factor
-from diagnostics.indicators.sideband_ratio import sideband_ratio
+from diagnostics.indicators.average import energy_ratio, fm0, fm4, noise_share
+from diagnostics.indicators.level import crest_factor, kurtosis, rms
+from diagnostics.indicators.sidebands import relative_amplitude, sideband_index, sideband_level_factor, sideband_ratio
 from diagnostics.signal.difference_signal import separated_average
 from diagnostics.signal.spectrum import line_amplitudes
 
@@ -75,8 +68,8 @@ def test_modulation_index_is_read_back(index: float, harmonic: int) -> None:
 def test_known_lines_give_their_ratios() -> None:
     signal = SINE + sum(a * np.cos((TEETH + k) * ANGLE) for k, a in {-3: 0.3, -1: 0.6, 2: 0.9, 4: 1.5}.items())
     lines = line_amplitudes(signal)
-    assert sideband_amplitude(lines, TEETH, 1, -3) == pytest.approx(0.1)
-    assert sideband_amplitude(lines, TEETH, 1, 4) == pytest.approx(0.5)
+    assert relative_amplitude(lines, TEETH, 1, -3) == pytest.approx(0.1)
+    assert relative_amplitude(lines, TEETH, 1, 4) == pytest.approx(0.5)
     assert sideband_ratio(lines, TEETH, 1, 3) == pytest.approx(0.6)  # the fourth sideband does not count
     assert sideband_ratio(lines, TEETH, 1, 6) == pytest.approx(1.1)
 
@@ -95,15 +88,15 @@ def test_ratios_without_a_denominator_are_undefined() -> None:
     assert math.isnan(kurtosis(np.full(SAMPLES, 0.1)))
     assert math.isnan(energy_ratio(nothing, nothing))
     assert math.isnan(fm0(np.cos(7 * ANGLE), lines, TEETH, 5))
-    assert math.isnan(sideband_amplitude(lines, TEETH, 1, 1))
+    assert math.isnan(relative_amplitude(lines, TEETH, 1, 1))
     assert math.isnan(sideband_ratio(lines, TEETH, 1))
     assert math.isnan(sideband_level_factor(lines, nothing, TEETH))
 
 
 def test_sidebands_outside_the_band_or_nearer_to_another_mesh_line_are_undefined() -> None:
     lines = line_amplitudes(SINE)
-    assert math.isnan(sideband_amplitude(lines, TEETH, 64, 1))
-    assert math.isnan(sideband_amplitude(lines, TEETH, 1, 9))
+    assert math.isnan(relative_amplitude(lines, TEETH, 64, 1))
+    assert math.isnan(relative_amplitude(lines, TEETH, 1, 9))
     assert math.isnan(sideband_index(lines, TEETH, 64))
 
 
@@ -112,3 +105,19 @@ def test_ratios_do_not_depend_on_the_unit(scale: float, seed: int) -> None:
     signal = modulated(0.3) + 0.1 * np.random.default_rng(seed).standard_normal(SAMPLES)
     for value in (kurtosis, crest_factor, lambda x: sideband_ratio(line_amplitudes(x), TEETH, 1)):
         assert value(scale * signal) == pytest.approx(value(signal), rel=1e-9)
+
+
+def test_noise_share_is_that_of_the_noise_put_in() -> None:
+    rng = np.random.default_rng(3)
+    turn, count = 2.0 * np.cos(2 * np.pi * np.arange(2000) / 2000), 25
+    angle_signal = np.tile(turn, count) + rng.standard_normal(turn.size * count)
+
+    def share(steps: np.ndarray) -> float:
+        turns = steps.reshape(-1, turn.size)
+        return noise_share(turns, turns.mean(axis=0))
+
+    expected = (1 / count) / (2.0 + 1 / count)
+    # standard error: sqrt(2/2000) of the average's noise variance and cross terms 2 sqrt(2 s^2/M / 2000)
+    assert share(angle_signal) == pytest.approx(expected, rel=0.05)
+    assert share(rng.standard_normal(turn.size * count)) == pytest.approx(1.0, abs=0.2)
+    assert math.isnan(share(turn))

@@ -9,25 +9,35 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnostics.indicators.channel_indicators import IndicatorSettings
-from diagnostics.indicators.definition import base_name
-from diagnostics.indicators.definitions import BY_NAME, DEFINITIONS
-from diagnostics.indicators.features import record_features
-from diagnostics.indicators.indicator_table import IndicatorTable, indicator_table, record_indicators
-from diagnostics.indicators.na4 import na4
-from diagnostics.indicators.na4_star import na4_star
-from diagnostics.indicators.nb4 import dominant_harmonic, nb4
+from diagnostics.indicators.history import central_moments, dominant_harmonic, moment_over_history
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.own_columns import own_values
 from diagnostics.indicators.own_indicator import Gears, OwnIndicator, register, unregister
+from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
+from diagnostics.indicators.record import record_result, record_values
+from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import record_table
 from diagnostics.records.record_problems import clipped_share
 from diagnostics.records.recording import Recording, recordings
+from diagnostics.signal.mesh_band import mesh_baseband
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import record_shafts, shaft_signals
 from siggen.errors import DatasetError, UsageError
 
 
+def indicator_table(
+    dataset: Any, own: Any = (), settings: IndicatorSettings | None = None, *, workers: int = 1, **choices: Any
+) -> IndicatorTable:
+    return ranking_table(record_table(dataset, settings, own, workers=workers), dataset, **choices)
+
+
 @pytest.fixture(scope="module")
 def table(small: Any) -> IndicatorTable:
     return indicator_table(small)
+
+
+READ = "diagnostics.indicators.table.recordings"
 
 
 @pytest.fixture(scope="module")
@@ -41,18 +51,17 @@ def column(table: IndicatorTable, name: str) -> np.ndarray:
 
 def test_every_definition_has_columns_and_every_column_a_definition(table: IndicatorTable) -> None:
     assert {base_name(name) for name in table.matrix.names} == set(BY_NAME)
-    assert len(BY_NAME) == len(DEFINITIONS)
+    assert len(BY_NAME) == len(ALL)
     channels = {name.split("__")[1] for name in table.matrix.names}
     assert channels == set(table.channels)
 
 
-def test_what_the_table_of_features_has_too_is_the_same(small: Any, table: IndicatorTable) -> None:
+def test_a_record_alone_gives_what_the_table_holds(small: Any, table: IndicatorTable) -> None:
     record = next(recordings(small))
-    features = record_features(record.channels, record.tacho_s, record.fs_hz, (18, 47)).values
-    shared = set(features) & set(table.matrix.names)
-    assert len(shared) > 40
-    for name in shared:
-        np.testing.assert_equal(column(table, name)[0], features[name])
+    alone = record_values(record.channels, record.tacho_s, record.fs_hz, (18, 47)).values
+    assert set(alone) == {name for name in table.matrix.names if not name.startswith(("na4", "nb4"))}
+    for name, value in alone.items():
+        np.testing.assert_equal(column(table, name)[0], value)
 
 
 def test_indicators_with_a_history_are_those_of_the_signals_themselves(small: Any, table: IndicatorTable) -> None:
@@ -63,11 +72,16 @@ def test_indicators_with_a_history_are_those_of_the_signals_themselves(small: An
         shaft = record_shafts(grid, (18, 47), 128, 6)[0]
         found = shaft_signals(steps, shaft, 128, 2, 1)
         averages.append(found.average)
-        residuals.append(found.parts.residual)
+        residuals.append(central_moments(found.parts.residual))
         lines.append(found.lines)
     harmonic = dominant_harmonic(lines[0], 18, 5)
     for count in (1, 2, 3):
-        expected = (na4(residuals[:count]), na4_star(residuals[:count], 1), nb4(averages[:count], 18, harmonic, 6))
+        envelopes = [central_moments(np.abs(mesh_baseband(average, 18, harmonic, 6))) for average in averages[:count]]
+        expected = (
+            moment_over_history(residuals[count - 1][0], [second for _, second in residuals[:count]]),
+            moment_over_history(residuals[count - 1][0], [residuals[0][1]]),
+            moment_over_history(envelopes[-1][0], [second for _, second in envelopes]),
+        )
         for name, value in zip(("na4", "na4_star", "nb4"), expected, strict=True):
             assert column(table, f"{name}_pinion__bearing_vertical")[count - 1] == pytest.approx(value)
 
@@ -91,18 +105,16 @@ def test_angle_comes_from_the_channel_whose_mesh_lines_are_clearest(small: Any) 
     noise = np.random.default_rng(1).standard_normal(12_800)
     settings = IndicatorSettings(speed_range_hz=(25.0, 36.0))
     clear = record.channels["bearing_vertical"]
-    both = record_indicators(replace(record, channels={"a": noise, "b": clear}), settings=settings)
-    alone = record_indicators(replace(record, channels={"b": clear}), settings=settings)
+    both = record_result(replace(record, channels={"a": noise, "b": clear}), settings)
+    alone = record_result(replace(record, channels={"b": clear}), settings)
     assert not both.problems
-    assert both.values["fm4_pinion__b"] == alone.values["fm4_pinion__b"]
+    assert both.channels["b"].values["fm4_pinion"] == alone.channels["b"].values["fm4_pinion"]
 
 
 def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
-    found = record_indicators(
-        replace(record, channels={"a": noise}), settings=IndicatorSettings(speed_range_hz=(25.0, 36.0))
-    )
+    found = record_result(replace(record, channels={"a": noise}), IndicatorSettings(speed_range_hz=(25.0, 36.0)))
     assert str(found.problems[0]).startswith("record 0: no mesh line stands above the noise")
 
 
@@ -158,8 +170,8 @@ def test_own_indicator_cannot_change_what_the_next_one_sees(small: Any) -> None:
         return 0.0
 
     record = next(recordings(small))
-    alone = record_indicators(record, [OwnIndicator("other", peak)]).values
-    after = record_indicators(record, [OwnIndicator("greedy", greedy), OwnIndicator("other", peak)]).values
+    alone, _ = own_values([OwnIndicator("other", peak)], record)
+    after, _ = own_values([OwnIndicator("greedy", greedy), OwnIndicator("other", peak)], record)
     assert {name: after[name] for name in alone} == pytest.approx(alone, nan_ok=True)
 
 
@@ -190,19 +202,23 @@ def changed(record: Recording, channel: str = "bearing_vertical", **changes: Any
         ({"tacho_s": np.array([0.2, 0.1, 0.3, 0.4])}, "not finite and increasing"),
     ],
 )
-def test_record_that_cannot_be_used_is_left_out_with_its_reason(small: Any, changes: dict[str, Any], text: str) -> None:
-    found = record_indicators(changed(next(recordings(small)), **changes))
-    assert [problem for problem in found.problems if text in str(problem) and "record 0" in str(problem)]
-    assert text in found.notes
-    assert not any(name.endswith("__bearing_vertical") for name in found.values)
+def test_record_that_cannot_be_used_is_left_out_with_its_reason(
+    small: Any, changes: dict[str, Any], text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = list(recordings(small))
+    monkeypatch.setattr(READ, lambda dataset: iter([changed(good[0], **changes), *good[1:]]))
     whole = "labels" in changes or "fs_hz" in changes or "tacho_s" in changes
-    assert whole != any(name.endswith("__bearing_horizontal") for name in found.values)
+    found = indicator_table(small, leave_out=True)
+    assert [problem for problem in found.problems if text in str(problem) and "record 0" in str(problem)]
+    assert text in found.notes[0]
+    assert math.isnan(column(found, "rms__bearing_vertical")[0])
+    assert math.isnan(column(found, "rms__bearing_horizontal")[0]) == whole
 
 
 def test_unusable_record_stops_the_set_unless_it_is_left_out(small: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     good = list(recordings(small))
     broken = [changed(good[0], samples=[np.nan]), *good[1:]]
-    monkeypatch.setattr("diagnostics.indicators.indicator_table.recordings", lambda dataset, states=None: iter(broken))
+    monkeypatch.setattr(READ, lambda dataset: iter(broken))
     with pytest.raises(
         DatasetError, match=r"(?s)memory_set: 1 problems.*record 0, channel bearing_vertical.*--leave-out"
     ):

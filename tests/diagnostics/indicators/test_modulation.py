@@ -10,11 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import jv
 
-from diagnostics.indicators.amplitude_modulation import amplitude_modulation
-from diagnostics.indicators.cepstral_peak import cepstral_peak, shaft_log_spectrum
-from diagnostics.indicators.phase_modulation import phase_modulation_rad
-from diagnostics.indicators.sideband_asymmetry import sideband_asymmetry_db
-from diagnostics.indicators.sideband_power import sideband_power
+from diagnostics.indicators.cepstrum import cepstral_peak, shaft_log_spectrum
+from diagnostics.indicators.modulation import amplitude_modulation, phase_modulation_rad
+from diagnostics.indicators.sidebands import sideband_asymmetry_db, sideband_power
 from diagnostics.signal.demodulation import Modulation, demodulated
 from diagnostics.signal.spectrum import line_amplitudes
 

@@ -9,20 +9,35 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagnostics.indicators.energy_operator_lebold import energy_operator_lebold
-from diagnostics.indicators.energy_operator_teager import energy_operator_teager, teager_energy
-from diagnostics.indicators.fm4 import fm4
-from diagnostics.indicators.m6a import m6a
-from diagnostics.indicators.m8a import m8a
-from diagnostics.indicators.na4 import na4
-from diagnostics.indicators.na4_star import na4_star
-from diagnostics.indicators.nb4 import dominant_harmonic, nb4
-from diagnostics.indicators.spectral_kurtosis_maximum import spectral_kurtosis_maximum
+from diagnostics.indicators import history
+from diagnostics.indicators.average import energy_operator_lebold, energy_operator_teager, fm4, m6a, m8a, teager_energy
+from diagnostics.indicators.history import central_moments, dominant_harmonic
+from diagnostics.indicators.level import spectral_kurtosis_maximum
+from diagnostics.signal.mesh_band import mesh_baseband
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128
 ANGLE = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
 TONE = 0.7 * np.cos(7 * ANGLE)
+
+
+def moments(signals: list[np.ndarray]) -> tuple[float, list[float]]:
+    """Return the fourth moment of the last signal and the variances of all."""
+    found = [central_moments(signal) for signal in signals]
+    return found[-1][0], [second for _, second in found]
+
+
+def na4(residuals: list[np.ndarray]) -> float:
+    return history.na4(*moments(residuals))
+
+
+def na4_star(residuals: list[np.ndarray], healthy: int) -> float:
+    fourth, second = moments(residuals)
+    return history.na4_star(fourth, second[:healthy])
+
+
+def nb4(averages: list[np.ndarray], teeth: int, harmonic: int, half_width: int) -> float:
+    return history.nb4(*moments([np.abs(mesh_baseband(a, teeth, harmonic, half_width)) for a in averages]))
 
 
 @pytest.mark.parametrize(("indicator", "order", "value"), [(fm4, 4, 3.0), (m6a, 6, 15.0), (m8a, 8, 105.0)])

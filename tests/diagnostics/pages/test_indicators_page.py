@@ -11,8 +11,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from diagnostics.cli.app import main as diagnostics_main
-from diagnostics.indicators.definitions import DEFINITIONS, definition_table
 from diagnostics.indicators.own_indicator import unregister
+from diagnostics.indicators.registry import ALL, definition_table
 from siggen.cli.app import main as siggen_main
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "understand" / "indicators.md").read_text(encoding="utf-8")
@@ -31,7 +31,7 @@ def command(line: str, monkeypatch: pytest.MonkeyPatch) -> int:
 
 def test_table_of_definitions_is_the_registrys() -> None:
     assert definition_table() in PAGE
-    for definition in DEFINITIONS:
+    for definition in ALL:
         assert all((definition.title, definition.signal, definition.formula, definition.known, definition.undefined))
 
 

@@ -17,7 +17,9 @@ from pyarrow import parquet
 from scipy.signal import resample_poly
 
 from diagnostics.cli.app import main
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_table
+from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.table import record_table
 from diagnostics.release.log_features import healthy_referenced, healthy_references, reference_speed_ratio
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
@@ -103,7 +105,7 @@ def measured(make_dataset: Callable[..., Any]) -> Any:
 
 @pytest.fixture(scope="module")
 def features_of_measured(measured: Any) -> pa.Table:
-    return feature_table(measured)
+    return classifier_table(record_table(measured))
 
 
 @pytest.fixture(scope="module")

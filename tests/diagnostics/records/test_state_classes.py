@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 import pytest
 
 from diagnostics.base.progress import silent_stage
-from diagnostics.indicators.feature_table import feature_matrix
+from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.release.model_facts import read_facts
 from diagnostics.release.saved_models import save_models

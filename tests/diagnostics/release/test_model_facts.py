@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.indicators.feature_table import feature_matrix
+from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.release.model_facts import model_facts
 from diagnostics.release.release import release
 from diagnostics.release.release_card import release_card

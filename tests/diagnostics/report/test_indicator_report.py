@@ -13,8 +13,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.indicators.definitions import DEFINITIONS
-from diagnostics.indicators.indicator_table import indicator_table
+from diagnostics.indicators.ranking_table import ranking_table
+from diagnostics.indicators.registry import ALL
+from diagnostics.indicators.table import record_table
 from diagnostics.report.indicator_report import kind_notes, write_indicator_report
 from diagnostics.statistics.assessment import AssessmentSettings
 from diagnostics.statistics.noise_curve import noise_curve
@@ -25,7 +26,7 @@ SETTINGS = AssessmentSettings(resamples=60)
 @pytest.fixture(scope="module")
 def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("indicators")
-    table = indicator_table(dataset)
+    table = ranking_table(record_table(dataset), dataset)
     rng = np.random.default_rng(1)
     table.matrix.labels["snr_bearing_vertical_db"] = rng.uniform(0, 30, len(table.notes))
     table.matrix.values[0, table.matrix.names.index("phase_modulation_gear_h1__bearing_vertical")] = np.nan
@@ -38,7 +39,7 @@ def test_page_loads_nothing_from_elsewhere_and_names_every_indicator(folder: Pat
     assert not re.search(r'(src|href)="(?!data:)', page)
     for text in ("Ranking", "Definitions", "Undefined values", "other specimens", "manufacturing errors"):
         assert text in page
-    for definition in DEFINITIONS:
+    for definition in ALL:
         assert definition.name.replace("_", "_<wbr>") in page
     assert page.count("<img") == len(list((folder / "figures").glob("*.png"))) == 5
 
@@ -50,7 +51,7 @@ def test_numbers_are_those_of_the_tables(folder: Path) -> None:
     first = numbers["results"][0]
     assert first["score_other_specimens"]["value"] == table.column("score_other_specimens")[0].as_py()
     assert set(first["other_specimens"]) == {"slight", "severe"} == set(numbers["states"])
-    assert numbers["indicator_settings"]["order_domain"]["samples_per_tooth"] == 128
+    assert numbers["indicator_settings"]["samples_per_tooth"] == 128
     assert pq.read_table(folder / "indicators.parquet").num_rows == numbers["records"] == 72
 
 
@@ -68,7 +69,7 @@ def test_set_of_healthy_records_and_of_one_specimen_still_give_a_page(make_datas
     healthy.table = healthy.table.filter(pc.equal(healthy.table.column("state"), "healthy"))
     single = make_dataset(("test",))
     for name, dataset in (("healthy", healthy), ("single", single)):
-        page = write_indicator_report(dataset, indicator_table(dataset), tmp_path / name, SETTINGS)
+        page = write_indicator_report(dataset, ranking_table(record_table(dataset), dataset), tmp_path / name, SETTINGS)
         assert "Definitions" in page.read_text(encoding="utf-8")
 
 
@@ -107,6 +108,6 @@ def test_states_of_several_kinds_are_noted_with_their_kinds(dataset: Any) -> Non
 def test_page_carries_the_note_on_kinds(dataset: Any, tmp_path: Path) -> None:
     state = dataset.table.column("state").to_pylist()
     mixed = with_labels(dataset, through_face=[name == "severe" for name in state])
-    table = indicator_table(mixed)
+    table = ranking_table(record_table(mixed), mixed)
     write_indicator_report(mixed, table, tmp_path, SETTINGS)
     assert "pitting through the face: severe" in (tmp_path / "indicators.html").read_text(encoding="utf-8")

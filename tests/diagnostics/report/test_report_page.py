@@ -67,7 +67,7 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
     validated = {name: found["validation_macro_auroc"] for name, found in metrics["training"]["classifiers"].items()}
     assert validated["rms"] < min(validated["indicators"], validated["boosting"]) <= 1.0
-    assert len(metrics["separability"]["features"]) == 312
+    assert len(metrics["separability"]["features"]) == 410
 
 
 def test_page_card_and_metrics_tell_calibration_without_and_with_temperature(folder: Path) -> None:

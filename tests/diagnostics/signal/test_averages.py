@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.signal import hilbert
 
-from diagnostics.signal.analytic_signal import analytic_signal, envelope
-from diagnostics.signal.averaging_bias import comb_gain, noise_share
+from diagnostics.signal.averaging_bias import comb_gain
 from diagnostics.signal.demodulation import demodulated
 from diagnostics.signal.difference_signal import separated_average
 from diagnostics.signal.hunting_average import hunting_average, hunting_meshes
@@ -55,36 +53,12 @@ def test_comb_gain_is_the_magnitude_of_the_mean_of_the_phasors(order: float, rev
     assert comb_gain(np.array([order]), revolutions)[0] == pytest.approx(naive, abs=1e-9)
 
 
-def test_noise_share_is_that_of_the_noise_put_in() -> None:
-    rng = np.random.default_rng(3)
-    turn, count = 2.0 * np.cos(2 * np.pi * np.arange(2000) / 2000), 25
-    angle_signal = np.tile(turn, count) + rng.standard_normal(turn.size * count)
-    expected = (1 / count) / (2.0 + 1 / count)
-    # standard error: sqrt(2/2000) of the average's noise variance and cross terms 2 sqrt(2 s^2/M / 2000)
-    assert noise_share(angle_signal, turn.size) == pytest.approx(expected, rel=0.05)
-    assert noise_share(rng.standard_normal(turn.size * count), turn.size) == pytest.approx(1.0, abs=0.2)
-    assert math.isnan(noise_share(turn, turn.size))
-
-
 def test_band_is_what_orders_it_names() -> None:
     inside = np.cos(18 * ANGLE) + 0.2 * np.cos(14 * ANGLE + 1)
     average = inside + np.cos(13 * ANGLE) + np.cos(36 * ANGLE) + 5.0
     np.testing.assert_allclose(mesh_band(average, 18, 1, 4), inside, atol=1e-12)
     with pytest.raises(ValueError, match="half width"):
         mesh_band(average, 18, 1, 9)
-
-
-@given(size=st.sampled_from([255, 256, 1152]), seed=st.integers(0, 1000))
-def test_analytic_signal_is_that_of_scipy(size: int, seed: int) -> None:
-    from scipy.signal import hilbert
-
-    signal = np.random.default_rng(seed).standard_normal(size)
-    np.testing.assert_allclose(analytic_signal(signal), hilbert(signal), atol=1e-12)
-
-
-def test_envelope_of_a_modulated_tone_is_its_modulation() -> None:
-    modulation = 2.0 * (1 + 0.5 * np.cos(ANGLE))
-    np.testing.assert_allclose(envelope(modulation * np.cos(18 * ANGLE + 0.7)), modulation, atol=1e-12)
 
 
 def test_amplitude_and_phase_are_read_apart() -> None:
@@ -106,11 +80,11 @@ def test_baseband_has_the_envelope_and_the_lines_of_the_mesh_band(harmonic: int,
     average = np.random.default_rng(4).standard_normal(18 * 128)
     band = mesh_band(average, 18, harmonic, half_width)
     baseband = mesh_baseband(average, 18, harmonic, half_width)
-    np.testing.assert_allclose(np.abs(baseband), envelope(band), rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(np.abs(baseband), np.abs(hilbert(band)), rtol=1e-12, atol=1e-14)
     carrier = np.exp(2j * np.pi * (harmonic * 18 * np.arange(average.size) % average.size) / average.size)
     np.testing.assert_allclose((baseband * carrier).real, band, atol=1e-14)
 
 
 def test_baseband_weighs_the_last_line_of_an_even_length_once() -> None:
     average = np.random.default_rng(4).standard_normal(2 * (18 + 4))
-    np.testing.assert_allclose(np.abs(mesh_baseband(average, 18, 1, 4)), envelope(mesh_band(average, 18, 1, 4)))
+    np.testing.assert_allclose(np.abs(mesh_baseband(average, 18, 1, 4)), np.abs(hilbert(mesh_band(average, 18, 1, 4))))

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from diagnostics.indicators.feature_table import FeatureMatrix
-from diagnostics.indicators.indicator_table import IndicatorTable, indicator_table
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
+from diagnostics.indicators.table import record_table
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
 from diagnostics.statistics.indicator_result import IndicatorResult
 
@@ -19,7 +20,7 @@ SETTINGS = AssessmentSettings(resamples=60)
 
 @pytest.fixture(scope="module")
 def table(dataset: Any) -> IndicatorTable:
-    return indicator_table(dataset)
+    return ranking_table(record_table(dataset), dataset)
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +61,7 @@ def test_level_is_random_between_specimens(found: list[IndicatorResult]) -> None
 
 
 def test_without_an_effect_nothing_survives_the_correction(effectless: Any) -> None:
-    found = assessment(indicator_table(effectless), SETTINGS)
+    found = assessment(ranking_table(record_table(effectless), effectless), SETTINGS)
     # NA4* of a history depends on M by construction; it compares with one record, the rest must show nothing
     fresh = [r for r in found if not r.indicator.startswith(("na4", "nb4"))]
     assert min(result.holm for r in fresh for result in r.others.values() if np.isfinite(result.holm)) > 0.05
@@ -98,7 +99,8 @@ def test_what_moves_a_healthy_indicator_is_found(table: IndicatorTable) -> None:
 
 
 def test_healthy_repeats_give_a_threshold_on_the_same_specimen(make_dataset: Callable[..., Any]) -> None:
-    small = indicator_table(make_dataset(("test",) * 8))
+    few = make_dataset(("test",) * 8)
+    small = ranking_table(record_table(few), few)
     labels = {name: np.concatenate([values, values]) for name, values in small.matrix.labels.items()}
     labels["repeat"] = np.repeat([0, 1], 24)
     rng = np.random.default_rng(2)

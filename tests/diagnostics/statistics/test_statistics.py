@@ -14,7 +14,7 @@ from sklearn.isotonic import IsotonicRegression
 from diagnostics.statistics.detectable_size import detection_curve, isotonic, size_at, weighted_quantile
 from diagnostics.statistics.effect_size import cohens_d, paired_d
 from diagnostics.statistics.monotonicity import ladder_steps, monotonicity
-from diagnostics.statistics.multiple_tests import benjamini_hochberg, holm, paired_p, smallest_paired_p, two_sample_p
+from diagnostics.statistics.multiple_tests import false_discovery, holm, paired_p, smallest_paired_p, two_sample_p
 from diagnostics.statistics.paired_differences import paired_records, shares_above
 from diagnostics.statistics.sensitivity import explained_share
 
@@ -74,7 +74,7 @@ def test_monotonicity_is_the_mean_sign_of_the_steps() -> None:
 @given(p_values=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=20))
 def test_adjusted_p_values_by_their_definitions(p_values: list[float]) -> None:
     p = np.array(p_values)
-    np.testing.assert_allclose(benjamini_hochberg(p), stats.false_discovery_control(p))
+    np.testing.assert_allclose(false_discovery(p), stats.false_discovery_control(p))
     ordered = sorted(range(p.size), key=lambda i: (p[i], i))
     for rank, i in enumerate(ordered):
         expected = min(1.0, max((p.size - k) * p[ordered[k]] for k in range(rank + 1)))

@@ -13,19 +13,22 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix, feature_table
-from diagnostics.indicators.features import FeatureSettings
+from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import record_table
 from diagnostics.statistics.evaluation import scores
 from diagnostics.statistics.separability import separability
 from diagnostics.training.baselines import (
     DEFAULT_STRENGTH,
+    STRENGTHS,
     permutation_control,
     permuted_target,
     rms_features,
     state_index,
     train_classifier,
 )
-from diagnostics.training.classifier_file import load_classifier, save_classifier, untrusted_types
+from diagnostics.training.classifier_file import load_classifier, load_settings, save_classifier, untrusted_types
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 from siggen.errors import UsageError
 
@@ -77,12 +80,12 @@ def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(
 
 
 def test_without_any_effect_the_scores_are_chance(effectless: Any) -> None:
-    matrix = feature_matrix(feature_table(effectless))
+    matrix = feature_matrix(classifier_table(record_table(effectless)))
     split = specimen_split(matrix.labels)
     found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0).macro_auroc
     assert found.value == pytest.approx(0.5, abs=0.3)  # one run on 24 records: 0.5 +- 0.1, three of which are allowed
     strongest = separability(matrix, seed=0, resamples=50)[0]
-    assert strongest.strength < 0.4  # the best of 312 by chance, where a real effect reaches 0.5
+    assert strongest.strength < 0.4  # the best of 410 by chance, where a real effect reaches 0.5
 
 
 def test_test_specimens_do_not_touch_the_fit(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
@@ -102,10 +105,40 @@ def test_undefined_values_are_imputed_even_where_a_feature_is_never_defined(
     np.testing.assert_allclose(found.probability.sum(axis=1), 1.0)
 
 
-def test_without_validation_specimens_it_says_so(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
-    model = train_classifier(matrix, replace(split, validation=np.zeros_like(split.validation)))
+def test_strength_is_chosen_without_validation_specimens_too_and_never_by_test_specimens(
+    matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
+    alone = replace(split, validation=np.zeros_like(split.validation))
+    model = train_classifier(matrix, alone)
+    assert model.strength in STRENGTHS
+    assert model.note == ""
+    shuffled = matrix.values.copy()
+    shuffled[split.test] = np.random.default_rng(0).permutation(shuffled[split.test])
+    assert train_classifier(replace(matrix, values=shuffled), alone).strength == model.strength
+
+
+def test_too_few_specimens_take_the_default_strength_and_say_so(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
+    healthy = matrix.labels["state"] == "healthy"
+    first, second = np.unique(matrix.labels["specimen_id"][split.train])[:2]
+    own = matrix.labels["specimen_id"]
+    train = ((own == first) & healthy) | ((own == second) & ~healthy)
+    model = train_classifier(matrix, replace(split, train=train, validation=np.zeros_like(train)))
     assert model.strength == DEFAULT_STRENGTH
-    assert "no validation specimens" in model.note
+    assert "too few training specimens" in model.note
+
+
+def test_positive_columns_are_taken_as_logarithms_so_that_a_gain_is_a_summand(
+    matrix: FeatureMatrix, split: SpecimenSplit
+) -> None:
+    model = train_classifier(matrix, split)
+    assert "rms__bearing_vertical" in model.logarithms
+    assert not [name for name in model.logarithms if name.startswith("sideband_asymmetry")]
+    # a column in another unit: the same logarithms but for a constant, which scaling takes off
+    place = matrix.names.index("rms__bearing_vertical")
+    other = matrix.values.copy()
+    other[:, place] *= 1e3
+    again = train_classifier(replace(matrix, values=other), split).predict(replace(matrix, values=other))
+    np.testing.assert_allclose(again.probability, model.predict(matrix).probability, atol=1e-6)
 
 
 def test_separability_sorts_by_strength_and_follows_the_area(matrix: FeatureMatrix) -> None:
@@ -119,7 +152,7 @@ def test_separability_sorts_by_strength_and_follows_the_area(matrix: FeatureMatr
 
 def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
     model = train_classifier(matrix, split)
-    path = save_classifier(model, FeatureSettings(), "identity", tmp_path)
+    path = save_classifier(model, IndicatorSettings(), "identity", tmp_path)
     assert untrusted_types(path) == ()
     again = load_classifier(tmp_path)
     test = matrix.rows(split.test)
@@ -127,10 +160,26 @@ def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSpli
     assert json.loads((tmp_path / "feature_names.json").read_text())["features"] == list(matrix.names)
 
 
+def test_a_classifier_that_was_saved_before_logarithms_predicts_as_it_did(
+    matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path
+) -> None:
+    few = matrix.columns([name for name in matrix.names if name.startswith(("rms", "fm4", "sideband_ratio"))])
+    model = train_classifier(few, split, take_logarithms=False)
+    save_classifier(model, IndicatorSettings(), "identity", tmp_path)
+    facts = json.loads((tmp_path / "feature_names.json").read_text())
+    del facts["logarithms"]
+    later = ("modulation_harmonics", "frame_samples", "speed_range_hz")
+    facts["settings"] = {name: value for name, value in facts["settings"].items() if name not in later}
+    (tmp_path / "feature_names.json").write_text(json.dumps(facts))
+    test = matrix.rows(split.test)
+    np.testing.assert_array_equal(load_classifier(tmp_path).predict(test).probability, model.predict(test).probability)
+    assert load_settings(tmp_path) == IndicatorSettings()
+
+
 def test_a_file_with_unknown_types_is_not_loaded(matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path) -> None:
     import skops.io
 
-    save_classifier(train_classifier(matrix, split), FeatureSettings(), "identity", tmp_path)
+    save_classifier(train_classifier(matrix, split), IndicatorSettings(), "identity", tmp_path)
     skops.io.dump(shutil.rmtree, tmp_path / "classifier.skops")
     with pytest.raises(UsageError, match="rmtree"):
         load_classifier(tmp_path)

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.indicators.feature_table import feature_matrix
+from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.loader.windows import OrderRecords, WindowSettings, drawn_windows, order_records, record_windows
 from diagnostics.training.baselines import state_index
 from diagnostics.training.splits import SpecimenSplit, specimen_split

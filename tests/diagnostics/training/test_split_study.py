@@ -8,8 +8,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.indicators.feature_table import FeatureMatrix, feature_matrix
-from diagnostics.indicators.window_features import by_channel, window_matrix, windows_of
+from diagnostics.indicators.classifier_table import feature_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.windows import by_channel, window_matrix, windows_of
 from diagnostics.records.recording import recordings
 from diagnostics.statistics.evaluation import Predictions, macro_auroc, scores
 from diagnostics.training.baselines import rms_features, train_classifier

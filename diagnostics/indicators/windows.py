@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.indicators.feature_table import FeatureMatrix
-from diagnostics.indicators.features import FeatureSettings, record_features
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.record import record_values
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
 from diagnostics.records.state_classes import CLASS, class_names
 from siggen.dataset.reading import Dataset
@@ -37,8 +37,7 @@ def window_matrix(
     for record in recordings(dataset):
         teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
         for window in windows_of(record):
-            found = record_features(window.channels, window.tacho_s, window.fs_hz, teeth, FeatureSettings())
-            rows.append(found.values)
+            rows.append(record_values(window.channels, window.tacho_s, window.fs_hz, teeth).values)
             labels.append(dict(record.labels))
         if advance:
             advance()

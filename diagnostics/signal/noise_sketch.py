@@ -18,7 +18,7 @@ SMALLEST_SHARE = 1e-5
 
 
 def noise_sketch(
-    signal: np.ndarray, fs_hz: float, turns: np.ndarray, grid: AngleGrid, tacho_s: np.ndarray
+    signal: np.ndarray, fs_hz: float, average: np.ndarray, grid: AngleGrid, tacho_s: np.ndarray
 ) -> np.ndarray:
     """Return unit phases (1024,) complex64 of the residual of the first 4096 samples between pulses, or empty.
 
@@ -28,8 +28,8 @@ def noise_sketch(
         The channel.
     fs_hz : float
         Sampling frequency [Hz].
-    turns : (revolutions, steps) float64
-        The channel at equal angle steps.
+    average : (steps,) float64
+        Synchronous average of the pinion in this channel.
     grid : AngleGrid
         Times of the angle steps.
     tacho_s : (k,) float64
@@ -45,10 +45,10 @@ def noise_sketch(
     first = int(0.25 * signal.size)
     piece = signal[first : first + SEGMENT_SAMPLES]
     time_s = (first + np.arange(piece.size)) / fs_hz
-    if piece.size < SEGMENT_SAMPLES or time_s[0] < tacho_s[0] or time_s[-1] > tacho_s[-1] or turns.shape[0] < 4:
+    if piece.size < SEGMENT_SAMPLES or time_s[0] < tacho_s[0] or time_s[-1] > tacho_s[-1] or grid.revolutions < 4:
         return np.empty(0, dtype=np.complex64)
     turn = np.interp(time_s, grid.time_s, np.arange(grid.time_s.size) / grid.samples_per_revolution)
-    left = piece - _periodic(turns.mean(axis=0), turn)
+    left = piece - _periodic(average, turn)
     if float(left.std()) < SMALLEST_SHARE * float(np.sqrt(np.mean(np.square(signal)))):
         return np.empty(0, dtype=np.complex64)
     # the upper half of the band, where what is locked to the gear is weakest

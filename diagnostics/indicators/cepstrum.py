@@ -1,4 +1,4 @@
-"""Cepstral peak: first rahmonic of a shaft, from its sidebands and harmonics in the whole order spectrum."""
+"""Indicators of the cepstrum: first rahmonic of a shaft, from its sidebands and harmonics in the order spectrum."""
 
 from __future__ import annotations
 
@@ -6,7 +6,11 @@ import math
 
 import numpy as np
 
+from diagnostics.indicators.indicator import indicator
 from diagnostics.signal.cepstrum import cepstrum_at, log_amplitude, without_lines
+
+BAND_SHARE = 0.8
+"""Share of the band whose spectrum counts in the cepstrum; above, the anti-alias filter shapes it."""
 
 
 def shaft_log_spectrum(angle_signal: np.ndarray, revolutions: int, teeth: int, highest_order: int) -> np.ndarray:
@@ -33,6 +37,15 @@ def shaft_log_spectrum(angle_signal: np.ndarray, revolutions: int, teeth: int, h
     return np.asarray(flat - flat.mean())
 
 
+@indicator(
+    "cepstral_peak_{shaft}",
+    "Cepstral peak",
+    signal="record over angle, log spectrum up to 0.8 of the band, mesh lines taken out",
+    formula="largest real cepstrum within one step of one revolution of the shaft",
+    known="echo of share a after one revolution: a/2",
+    undefined="the record holds no two revolutions of the shaft",
+    source="Randall 2017",
+)
 def cepstral_peak(log_spectrum: np.ndarray, period_steps: float) -> float:
     """Return the largest cepstrum within one step of a quefrency; NaN where the cepstrum does not reach it.
 

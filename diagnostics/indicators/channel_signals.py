@@ -1,0 +1,180 @@
+"""What the indicators of one channel are made of, each signal made once, when a formula first asks for it.
+
+Names that a formula may take: of the record `signal`, `spectral_kurtosis`; of a shaft `average`, `regular`, `residual`,
+`difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `teeth`, `log_spectrum`, `period_steps`; and the
+fields of its columns (`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the pinion's.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
+from diagnostics.indicators.history import central_moments, dominant_harmonic
+from diagnostics.indicators.indicator import Indicator
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.signal.demodulation import Modulation, demodulated
+from diagnostics.signal.mesh_band import mesh_baseband
+from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
+from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals
+from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
+
+SHAFT_SIGNALS = ("average", "lines", "sideband_lines", "sideband_average")
+PARTS = ("regular", "residual", "difference")
+
+
+class UndefinedSignalError(Exception):
+    """The record does not hold what a formula asks for; the indicator is then undefined."""
+
+
+class ChannelSignals:
+    """One channel of a record and what is made of it.
+
+    Parameters
+    ----------
+    signal : (n,) float64
+        Record [m/s²], finite.
+    fs_hz : float
+        Sampling frequency [Hz].
+    grid : AngleGrid, optional
+        Steps of pinion angle; without them everything over angle is undefined.
+    shafts : (Shaft, Shaft)
+        Pinion and gear.
+    settings : IndicatorSettings
+        Harmonics, sidebands, frames.
+    """
+
+    def __init__(
+        self,
+        signal: np.ndarray,
+        fs_hz: float,
+        grid: AngleGrid | None,
+        shafts: tuple[Shaft, Shaft],
+        settings: IndicatorSettings,
+    ) -> None:
+        self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
+        self._of_shaft: dict[str, ShaftSignals] = {}
+        self._modulations: dict[tuple[str, int], Modulation] = {}
+
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """(steps,) float64: the record over pinion angle."""
+        return np.empty(0) if self.grid is None else resample_to_angle(self.signal, self.fs_hz, self.grid)
+
+    @cached_property
+    def spectral_kurtosis(self) -> np.ndarray:
+        """Spectral kurtosis over frequency."""
+        frame = self.settings.frame_samples
+        if self.signal.size < (FEWEST_FRAMES + 1) * (frame // 2):
+            raise UndefinedSignalError
+        return spectral_kurtosis(self.signal, frame)
+
+    @cached_property
+    def log_spectrum(self) -> np.ndarray:
+        """Log spectrum over pinion orders without mesh lines, as of `shaft_log_spectrum`."""
+        if self.grid is None:
+            raise UndefinedSignalError
+        return shaft_log_spectrum(self.steps, self.grid.revolutions, self.shafts[0].teeth, self._highest_order)
+
+    @property
+    def _highest_order(self) -> int:
+        assert self.grid is not None
+        return int(BAND_SHARE * 0.5 * min(self.fs_hz / self.grid.slowest_hz, float(self.grid.samples_per_revolution)))
+
+    def shaft(self, name: str) -> ShaftSignals:
+        """Return the average of a shaft and its parts."""
+        if name not in self._of_shaft:
+            shaft = self._shaft(name)
+            if shaft.revolutions < 1:
+                raise UndefinedSignalError
+            own = self.settings
+            self._of_shaft[name] = shaft_signals(
+                self.steps, shaft, own.samples_per_tooth, own.shaft_orders, own.difference_sidebands
+            )
+        return self._of_shaft[name]
+
+    def _shaft(self, name: str) -> Shaft:
+        return next(shaft for shaft in self.shafts if shaft.name == name)
+
+    def values(self, indicators: tuple[Indicator, ...]) -> dict[str, float]:
+        """Return the columns of all indicators that need this record alone, NaN where undefined."""
+        found = {}
+        for entry in indicators:
+            if not entry.history:
+                for chosen in product(*(self.settings.choices(field) for field in entry.fields)):
+                    field = dict(zip(entry.fields, chosen, strict=True))
+                    found[entry.column.format(**field)] = self._value(entry, field)
+        return found
+
+    def _value(self, entry: Indicator, field: dict[str, Any]) -> float:
+        shaft = str(field.get("shaft", "pinion"))
+        try:
+            taken = {
+                name: field[name] if name in field else self._named(name, shaft, field) for name in entry.parameters
+            }
+        except UndefinedSignalError:
+            return math.nan
+        return entry.function(**taken)
+
+    def _named(self, name: str, shaft: str, field: dict[str, Any]) -> Any:
+        """Return what a formula takes by this name."""
+        if name in ("signal", "spectral_kurtosis"):
+            return getattr(self, name)
+        if name in SHAFT_SIGNALS:
+            return getattr(self.shaft(shaft), name)
+        if name in PARTS:
+            return getattr(self.shaft(shaft).parts, name)
+        if name == "teeth":
+            return self._shaft(shaft).teeth
+        return {
+            "revolutions": self._revolutions,
+            "modulation": self._modulation,
+            "log_spectrum": self._shaft_log_spectrum,
+            "period_steps": self._period_steps,
+        }[name](shaft, field)
+
+    def _revolutions(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002 - one signature for all
+        size = self.shaft(shaft).average.size
+        return self.steps[: self.steps.size // size * size].reshape(-1, size)
+
+    def _modulation(self, shaft: str, field: dict[str, Any]) -> Modulation:
+        """Return amplitude and phase of a mesh harmonic; undefined where the first sideband is not resolved."""
+        signals, harmonic = self.shaft(shaft), int(field["demodulated_harmonic"])
+        if not signals.shaft.resolved[0]:
+            raise UndefinedSignalError
+        if (shaft, harmonic) not in self._modulations:
+            teeth, around = signals.shaft.teeth, signals.sideband_average
+            self._modulations[shaft, harmonic] = demodulated(around, teeth, harmonic, self._half_width(teeth))
+        return self._modulations[shaft, harmonic]
+
+    def _shaft_log_spectrum(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002
+        if self._shaft(shaft).revolutions < 2:
+            raise UndefinedSignalError
+        return self.log_spectrum
+
+    def _period_steps(self, shaft: str, field: dict[str, Any]) -> float:  # noqa: ARG002
+        """Return one revolution of a shaft in steps of the cepstrum: the gear takes z2/z1 pinion revolutions."""
+        return 2.0 * self._highest_order * self._shaft(shaft).teeth / self.shafts[0].teeth
+
+    def _half_width(self, teeth: int) -> int:
+        """Return the sidebands on each side that a band round a mesh harmonic holds: as set, or as many as fit."""
+        return min(self.settings.sidebands, (teeth - 1) // 2)
+
+    def moments(self) -> dict[str, float]:
+        """Return what indicators with a history need: moments of the residual and of the envelope of every harmonic."""
+        found: dict[str, float] = {}
+        for shaft in self.shafts:
+            if shaft.revolutions < 1:
+                continue
+            signals, name, teeth = self.shaft(shaft.name), shaft.name, shaft.teeth
+            found[f"residual_fourth_{name}"], found[f"residual_second_{name}"] = central_moments(signals.parts.residual)
+            found[f"dominant_{name}"] = float(dominant_harmonic(signals.lines, teeth, self.settings.mesh_harmonics))
+            for h in range(1, self.settings.mesh_harmonics + 1):
+                envelope = np.abs(mesh_baseband(signals.average, teeth, h, self._half_width(teeth)))
+                found[f"envelope_fourth_{name}_h{h}"], found[f"envelope_second_{name}_h{h}"] = central_moments(envelope)
+        return found

@@ -1,0 +1,149 @@
+"""What classifiers, `features` and the report take of the one table: all indicators of single records, with labels."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import RecordTable
+from diagnostics.records.record_problems import problem_list
+from diagnostics.records.recording import LABEL_NAMES
+from diagnostics.records.state_classes import CLASS, class_names
+from diagnostics.records.usable_records import RecordCheck
+from siggen.dataset.reading import Dataset
+from siggen.errors import DatasetError, UsageError
+
+BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
+SETTINGS_KEY = b"diagnostics.indicators"
+NOTES_KEY = b"diagnostics.notes"
+WRITERS = (".parquet", ".csv")
+
+
+def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
+    """Check that every record can be used: known gears, a usable angle, channels finite, varying and not clipped.
+
+    Parameters
+    ----------
+    table : RecordTable
+        Of the set.
+    dataset : siggen Dataset
+        The set.
+    can_leave_channels : bool
+        Whether the command has `--channel`, which the message then offers.
+
+    Returns
+    -------
+    tuple of str
+        Notes on what is used all the same.
+
+    Raises
+    ------
+    DatasetError
+        As of `RecordCheck.finish`, or if an indicator of the user's fails.
+    """
+    check, own = RecordCheck(), {*table.channels, ""}
+    numbers = table.select(["record_id"]).column("record_id").to_pylist()
+    for number, refused, clipped in zip(numbers, table.texts("refused"), table.texts("clipped"), strict=True):
+        check.add(
+            int(number),
+            [(channel, text) for channel, text in refused if channel in own],
+            [channel for channel in clipped if channel in own],
+        )
+    notes = check.finish(dataset, can_leave_channels=can_leave_channels)
+    if table.own_problems:
+        raise DatasetError(
+            f"{dataset.path}: {len(table.own_problems)} values of your indicators failed\n"
+            f"{problem_list(list(table.own_problems))}\nMend the function, or leave --indicator out."
+        )
+    return (*notes, table.note) if table.note else notes
+
+
+def classifier_table(table: RecordTable, notes: Sequence[str] = ()) -> pa.Table:
+    """Return labels, revolutions, notes and the columns that classifiers take, with the settings in the metadata.
+
+    Parameters
+    ----------
+    table : RecordTable
+        Of the set, checked.
+    notes : sequence of str
+        Notes on its records; `table_notes` reads them.
+    """
+    names = table.names()
+    values = dict(zip(names, table.values(names).T, strict=True))
+    found = table.select([*LABEL_NAMES, *BOOKKEEPING])
+    for name, column in values.items():
+        found = found.append_column(name, pa.array(column))
+    metadata = {SETTINGS_KEY: json.dumps(asdict(table.settings)).encode(), NOTES_KEY: json.dumps(list(notes)).encode()}
+    return found.replace_schema_metadata(metadata)
+
+
+def table_notes(table: pa.Table) -> tuple[str, ...]:
+    """Return the notes on a table's records; none where it carries none."""
+    return tuple(json.loads((table.schema.metadata or {}).get(NOTES_KEY, b"[]")))
+
+
+def table_settings(table: pa.Table) -> IndicatorSettings:
+    """Return the settings that a table was made with."""
+    return IndicatorSettings(**json.loads(table.schema.metadata[SETTINGS_KEY]))
+
+
+def indicator_names(table: pa.Table) -> tuple[str, ...]:
+    """Return the columns of a table that are indicators."""
+    known = {*LABEL_NAMES, *BOOKKEEPING}
+    return tuple(name for name in table.column_names if name not in known)
+
+
+def feature_matrix(table: pa.Table, healthy: str | None = None) -> FeatureMatrix:
+    """Return a classifier table as arrays; healthy states are one class, see `diagnostics.records.state_classes`.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+        What `classifier_table` returned.
+    healthy : str, optional
+        Name of the healthy class; default the first healthy state of the table.
+    """
+    names = indicator_names(table)
+    columns = [table.column(name).to_numpy(zero_copy_only=False).astype(np.float64) for name in names]
+    labels = {name: np.asarray(table.column(name).to_pylist()) for name in LABEL_NAMES}
+    labels[CLASS] = class_names(labels, healthy)
+    return FeatureMatrix(np.stack(columns, axis=1), names, labels)
+
+
+def check_suffix(path: Path) -> None:
+    """Check that a table can be written under this name.
+
+    Raises
+    ------
+    UsageError
+        If the suffix is neither .parquet nor .csv.
+    """
+    if path.suffix not in WRITERS:
+        raise UsageError(f"{path}: received suffix {path.suffix!r}; allowed are {', '.join(WRITERS)}")
+
+
+def write_table(table: pa.Table, path: Path) -> None:
+    """Write a table as Parquet or CSV, by the file's suffix; undefined values are NaN.
+
+    Raises
+    ------
+    UsageError
+        If the suffix is neither.
+    """
+    check_suffix(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".csv":
+        from pyarrow import csv
+
+        csv.write_csv(table, path)
+        return
+    from pyarrow import parquet
+
+    parquet.write_table(table, path, compression="zstd")

@@ -1,0 +1,113 @@
+"""What an indicator is: a formula, its columns, and its description, which stand together in the source.
+
+A formula takes signals and numbers by the names of its parameters, such as `difference` or `teeth`; which names there
+are, `diagnostics.indicators.channel_signals` says. Its columns follow from a template:
+`sideband_ratio_{shaft}_h{harmonic}_k{ratio_sidebands}` is one column per shaft and mesh harmonic.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from string import Formatter
+
+SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+)?$")
+
+STILL = "the signal does not vary (standard deviation below 1e-9 of its rms)"
+NO_LINE = "the mesh line is below 1e-9 of the strongest line, or a sideband is unresolved or outside the band"
+BOOK = "standard literature"
+CONDITION_METRICS = "MATLAB gearConditionMetrics"
+
+Formula = Callable[..., float]
+
+
+@dataclass(frozen=True, slots=True)
+class Indicator:
+    """One indicator.
+
+    Attributes
+    ----------
+    column : str
+        Template of its columns.
+    function : callable
+        Its formula.
+    title : str
+        What people call it.
+    signal : str
+        What it is taken from.
+    formula : str
+        Its value.
+    unit : str
+        Empty for ratios.
+    known : str
+        Its value on signals where that follows from the formula.
+    undefined : str
+        When it has no value.
+    source : str
+        Where it comes from; with MATLAB's convention where there is one.
+    history : bool
+        Whether it needs other records of the same specimen.
+    """
+
+    column: str
+    function: Formula
+    title: str
+    signal: str
+    formula: str
+    unit: str
+    known: str
+    undefined: str
+    source: str
+    history: bool = False
+
+    @property
+    def name(self) -> str:
+        """What its columns start with."""
+        before = self.column.split("{", maxsplit=1)[0]
+        return before if before == self.column else re.sub(r"_h?$", "", before)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """What its columns differ by: `shaft`, `harmonic` ..."""
+        return tuple(name for _, name, _, _ in Formatter().parse(self.column) if name)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """What its formula takes; a parameter with a default only where its columns differ by it."""
+        return tuple(
+            name
+            for name, parameter in inspect.signature(self.function).parameters.items()
+            if parameter.default is parameter.empty or name in self.fields
+        )
+
+
+INDICATORS: list[Indicator] = []
+"""Those whose file has been imported, in its order; `diagnostics.indicators.registry` has all of them."""
+
+
+def indicator(
+    column: str,
+    title: str,
+    *,
+    signal: str,
+    formula: str,
+    known: str,
+    undefined: str,
+    source: str,
+    unit: str = "",
+    history: bool = False,
+) -> Callable[[Formula], Formula]:
+    """Return a decorator that puts a formula among the indicators; the arguments are those of `Indicator`."""
+
+    def keep(function: Formula) -> Formula:
+        INDICATORS.append(Indicator(column, function, title, signal, formula, unit, known, undefined, source, history))
+        return function
+
+    return keep
+
+
+def base_name(column: str) -> str:
+    """Return the indicator's name of a column such as `fm0_pinion_h5__bearing_vertical`."""
+    return SUFFIX.sub("", column.split("__", maxsplit=1)[0])

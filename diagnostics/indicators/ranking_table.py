@@ -1,0 +1,179 @@
+"""What the ranking judges: all indicators of single records and those with a history, of the records it can use.
+
+It leaves out what others take with a note: clipped channels, and records in which the gear turns too seldom.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.indicators.classifier_table import SETTINGS_KEY
+from diagnostics.indicators.history import history_indicators
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.needed_duration import duration_advice
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import RecordTable
+from diagnostics.records.chosen_states import chosen_states
+from diagnostics.records.record_problems import RecordProblem, problem_list
+from siggen.dataset.reading import Dataset
+from siggen.errors import DatasetError
+
+OPTIONAL_LABELS = ("damage_profile_length_mm", "damage_face_length_mm", "contact_length_loss_mm")
+
+
+@dataclass(frozen=True, slots=True)
+class IndicatorTable:
+    """Labels and indicators of the records that a ranking judges.
+
+    Attributes
+    ----------
+    matrix : FeatureMatrix
+        Values (records, columns), NaN where undefined; labels of records, with sizes of damage and, where the set has
+        them, `snr_<channel>_db`.
+    channels : tuple of str
+    revolutions : (records, 2) int
+        Whole revolutions of pinion and gear that were averaged.
+    notes : tuple of str
+        Per record, what is undefined and why beyond the definitions.
+    problems : tuple of RecordProblem
+        Records or channels that were left out.
+    settings : IndicatorSettings
+    """
+
+    matrix: FeatureMatrix
+    channels: tuple[str, ...]
+    revolutions: np.ndarray
+    notes: tuple[str, ...]
+    problems: tuple[RecordProblem, ...]
+    settings: IndicatorSettings
+
+    def arrow(self) -> pa.Table:
+        """Return everything as one table, the settings in its metadata."""
+        labels = {name: values.tolist() for name, values in self.matrix.labels.items()}
+        values = dict(zip(self.matrix.names, self.matrix.values.T, strict=True))
+        revolutions = {"revolutions_pinion": self.revolutions[:, 0], "revolutions_gear": self.revolutions[:, 1]}
+        table = pa.table({**labels, **revolutions, "notes": list(self.notes), **values})
+        return table.replace_schema_metadata({SETTINGS_KEY: json.dumps(asdict(self.settings)).encode()})
+
+
+def ranking_table(
+    table: RecordTable, dataset: Dataset, *, states: Sequence[str] = (), leave_out: bool = False
+) -> IndicatorTable:
+    """Return what the ranking judges.
+
+    Parameters
+    ----------
+    table : RecordTable
+        Of the set.
+    dataset : siggen Dataset
+        The set.
+    states : sequence of str
+        Damaged states to take besides the healthy ones; all where empty. Histories run over these alone.
+    leave_out : bool
+        Leave records and channels out that cannot be used, instead of stopping.
+
+    Raises
+    ------
+    DatasetError
+        If some records cannot be used or make an own indicator fail and `leave_out` is not set, or none can be used.
+    UsageError
+        If the set has no such state.
+    """
+    rows = np.flatnonzero(np.isin(table.labels()["state"], chosen_states(dataset, states)))
+    labels = {name: values[rows] for name, values in table.labels().items()}
+    problems = _problems(table, rows)
+    if problems and not leave_out:
+        raise DatasetError(
+            f"{dataset.path}: {len(problems)} problems among {rows.size} records\n{problem_list(problems)}\n"
+            f"{duration_advice(dataset, table.settings.frame_samples)}"
+            "Mend them, or give --leave-out to do without these records and channels."
+        )
+    labels |= _more_labels(dataset, labels["record_id"], table.channels)
+    names = table.names()
+    values = dict(zip(names, table.values(names)[rows].T.copy(), strict=True))
+    unusable = _unusable(table, rows)
+    for channel in table.channels:
+        for name in names:
+            if name.endswith(f"__{channel}"):
+                values[name][unusable[channel]] = np.nan
+        values |= _histories(table, labels, rows, channel, unusable[channel])
+    if not any(np.isfinite(column).any() for column in values.values()):
+        raise DatasetError(
+            f"{dataset.path}: not one of {rows.size} records can be used\n{problem_list(problems)}\n"
+            f"{duration_advice(dataset, table.settings.frame_samples)}Without usable records there is nothing to rank."
+        )
+    matrix = FeatureMatrix(np.stack(list(values.values()), axis=1), tuple(values), labels)
+    return IndicatorTable(
+        matrix,
+        table.channels,
+        _revolutions(table, rows),
+        _notes(table, rows, problems),
+        tuple(problems),
+        table.settings,
+    )
+
+
+def _problems(table: RecordTable, rows: np.ndarray) -> list[RecordProblem]:
+    """Return what keeps the ranking from using the chosen records, in their order."""
+    numbers = table.select(["record_id"]).column("record_id").to_pylist()
+    stored = table.texts("problems")
+    own: dict[int, list[RecordProblem]] = {}
+    for problem in table.own_problems:
+        own.setdefault(problem.record_id, []).append(problem)
+    found = []
+    for row in rows.tolist():
+        number = int(numbers[row])
+        found += [RecordProblem(number, *pair) for pair in stored[row] if pair[0] in ("", *table.channels)]
+        found += own.get(number, [])
+    return found
+
+
+def _unusable(table: RecordTable, rows: np.ndarray) -> dict[str, np.ndarray]:
+    """Return by channel which of the chosen records cannot be used there."""
+    lost = [{channel for channel, _ in pairs} for pairs in table.texts("problems")]
+    return {c: np.array([bool({"", c} & lost[row]) for row in rows], dtype=bool) for c in table.channels}
+
+
+def _histories(
+    table: RecordTable, labels: dict[str, np.ndarray], rows: np.ndarray, channel: str, unusable: np.ndarray
+) -> dict[str, np.ndarray]:
+    found = {name: values[rows] for name, values in table.moments(channel).items()}
+    moments = {name: np.where(unusable, np.nan, values) for name, values in found.items()}
+    return {f"{name}__{channel}": values for name, values in history_indicators(labels, moments).items()}
+
+
+def _revolutions(table: RecordTable, rows: np.ndarray) -> np.ndarray:
+    found = table.select(["revolutions_pinion", "revolutions_gear"])
+    turns = np.stack([column.to_numpy() for column in found.columns], axis=1)[rows]
+    whole = [any(not channel for channel, _ in pairs) for pairs in table.texts("problems")]
+    return np.where(np.array(whole)[rows, None], 0, turns)
+
+
+def _notes(table: RecordTable, rows: np.ndarray, problems: Sequence[RecordProblem]) -> tuple[str, ...]:
+    """Return per record what is undefined and why; of a record that cannot be used, only why."""
+    numbers, notes = table.select(["record_id"]).column("record_id").to_pylist(), table.texts("notes")
+    own: dict[int, list[RecordProblem]] = {}
+    for problem in problems:
+        own.setdefault(problem.record_id, []).append(problem)
+    found = []
+    for row in rows.tolist():
+        mine = own.get(int(numbers[row]), [])
+        whole = [problem.text for problem in mine if not problem.channel]
+        shafts = [notes[row]] if notes[row] else []
+        found.append("; ".join(whole or [*shafts, *(f"{p.channel}: {p.text}" for p in mine)]))
+    return tuple(found)
+
+
+def _more_labels(dataset: Dataset, record_ids: np.ndarray, channels: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Return further label columns that the set has, in the order of the records."""
+    table = dataset.labels()
+    wanted = [*OPTIONAL_LABELS, *(f"snr_{channel}_db" for channel in channels)]
+    present = [name for name in wanted if name in table.column_names]
+    place = {number: row for row, number in enumerate(table.column("record_id").to_pylist())}
+    rows = np.array([place[number] for number in record_ids.tolist()])
+    return {name: np.asarray(table.column(name).to_pylist(), dtype=np.float64)[rows] for name in present}

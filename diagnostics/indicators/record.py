@@ -1,0 +1,239 @@
+"""One pass over a record: resampled to angle once per channel, averaged once per shaft, and everything read from that.
+
+Indicators, sideband amplitudes, what the audit compares, averaged waveforms and noise sketches all come from here.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from diagnostics.indicators.channel_signals import ChannelSignals
+from diagnostics.indicators.line_levels import LEVELS, record_levels
+from diagnostics.indicators.registry import ALL
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
+from diagnostics.records.recording import Recording
+from diagnostics.records.usable_records import refused_parts
+from diagnostics.signal.noise_sketch import noise_sketch
+from diagnostics.signal.order_domain import AngleGrid, angle_grid
+from diagnostics.signal.shaft_signals import Shaft, record_shafts
+from diagnostics.signal.speed_variation import speed_variation_percent
+from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
+from siggen.errors import UsageError
+
+WAVEFORM_HARMONICS = 20
+"""Averaged waveforms are kept up to this mesh harmonic and its first sidebands."""
+
+FEWEST_AUDIT_TURNS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelResult:
+    """What one channel gave: values by column, moments, lines of the averaged waveform, noise sketch, conditions."""
+
+    values: dict[str, float]
+    moments: dict[str, float] = field(default_factory=dict)
+    waveform: np.ndarray = field(default_factory=lambda: np.empty(0, np.complex64))
+    sketch: np.ndarray = field(default_factory=lambda: np.empty(0, np.complex64))
+    conditions: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordResult:
+    """What one record gave.
+
+    Attributes
+    ----------
+    labels : mapping
+        Label columns.
+    channels : dict of str to ChannelResult
+        By channel name; without values where the channel cannot be used at all.
+    pulses_s : (k,) float64
+        Pulse times that the angles come from.
+    revolutions : (int, int)
+        Whole revolutions of pinion and gear that were averaged.
+    conditions : dict of str to float
+        Speed, speed variation and start angle by the pulses.
+    shaft_notes : str
+        What the shafts leave undefined, and why.
+    problems : list of RecordProblem
+        What keeps a ranking from using the record or a channel.
+    refused : list of (str, str)
+        What keeps everything else from it: channel (empty: the whole record) and text.
+    clipped : list of str
+        Channels that stand clipped.
+    """
+
+    labels: Mapping[str, Any]
+    channels: dict[str, ChannelResult]
+    pulses_s: np.ndarray
+    revolutions: tuple[int, int]
+    conditions: dict[str, float]
+    shaft_notes: str
+    problems: list[RecordProblem]
+    refused: list[tuple[str, str]]
+    clipped: list[str]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordValues:
+    """Indicators of one record by column with channel, whole revolutions of pinion and gear, what is undefined."""
+
+    values: dict[str, float]
+    revolutions: tuple[int, int]
+    notes: str
+
+
+def record_signals(
+    channels: Mapping[str, np.ndarray],
+    tacho_s: np.ndarray,
+    fs_hz: float,
+    teeth: tuple[int, int],
+    settings: IndicatorSettings,
+) -> tuple[dict[str, ChannelSignals], tuple[Shaft, Shaft]]:
+    """Return the signals of every channel, which formulas read from, and the shafts of the record."""
+    grid = angle_grid(tacho_s, teeth[0] * settings.samples_per_tooth) if len(tacho_s) > 1 else None
+    shafts = record_shafts(grid, teeth, settings.samples_per_tooth, settings.sidebands)
+    return {
+        name: ChannelSignals(_float64(signal), fs_hz, grid, shafts, settings) for name, signal in channels.items()
+    }, shafts
+
+
+def record_values(
+    channels: Mapping[str, np.ndarray],
+    tacho_s: np.ndarray,
+    fs_hz: float,
+    teeth: tuple[int, int],
+    settings: IndicatorSettings | None = None,
+) -> RecordValues:
+    """Return the indicators of a record that is not one of a set: a window, or a piece of a recording.
+
+    Parameters
+    ----------
+    channels : mapping of str to (n,) float
+        Signals by channel name.
+    tacho_s : (k,) float64
+        Pulse times, one per pinion revolution; with fewer than two everything but the raw indicators is undefined.
+    fs_hz : float
+        Sampling frequency [Hz].
+    teeth : (int, int)
+        Teeth of pinion and gear.
+    settings : IndicatorSettings, optional
+        Default: `IndicatorSettings()`.
+    """
+    signals, shafts = record_signals(channels, tacho_s, fs_hz, teeth, settings or IndicatorSettings())
+    values = {f"{name}__{channel}": v for channel, own in signals.items() for name, v in own.values(ALL).items()}
+    return RecordValues(values, (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts))
+
+
+def shaft_notes(shafts: tuple[Shaft, Shaft]) -> str:
+    """Return what the shafts leave undefined, and why."""
+    return "; ".join(shaft.note for shaft in shafts if shaft.note)
+
+
+def record_result(record: Recording, settings: IndicatorSettings | None = None) -> RecordResult:
+    """Return everything that is taken of one record of a set.
+
+    Parameters
+    ----------
+    record : Recording
+        Labels, channels and pulses.
+    settings : IndicatorSettings, optional
+        Default: `IndicatorSettings()`.
+    """
+    chosen = settings or IndicatorSettings()
+    needs_tacho = chosen.speed_range_hz is None
+    problems = record_problems(record, chosen.frame_samples, needs_tacho=needs_tacho)
+    refused, clipped = refused_parts(record, needs_tacho=needs_tacho), clipped_channels(record)
+    lost = {channel for channel, _ in refused}
+    usable = {} if "" in lost else {name: _float64(s) for name, s in record.channels.items() if name not in lost}
+    pulses = _float64(record.tacho_s)
+    if not needs_tacho and usable:
+        bad = {problem.channel for problem in problems}
+        good = {name: signal for name, signal in usable.items() if name not in bad}
+        try:
+            pulses = _tacholess(record, good or usable, chosen)
+        except UsageError as error:
+            problems, usable = [*problems, RecordProblem(int(record.labels["record_id"]), "", str(error))], {}
+    channels = {name: ChannelResult({}, conditions=_channel_conditions(s)) for name, s in record.channels.items()}
+    turns, notes = (0, 0), ""
+    if usable:
+        teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
+        signals, shafts = record_signals(usable, pulses, record.fs_hz, teeth, chosen)
+        turns, notes = (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts)
+        channels |= {name: _channel_result(own, record.channels[name], pulses) for name, own in signals.items()}
+    conditions = _pulse_conditions(pulses)
+    return RecordResult(record.labels, channels, pulses, turns, conditions, notes, problems, refused, clipped)
+
+
+def _channel_result(signals: ChannelSignals, raw: np.ndarray, pulses: np.ndarray) -> ChannelResult:
+    values = signals.values(ALL)
+    conditions, grid = _channel_conditions(raw), signals.grid
+    if grid is None or grid.revolutions < FEWEST_AUDIT_TURNS:
+        return ChannelResult(values | dict.fromkeys(LEVELS, math.nan), signals.moments(), conditions=conditions)
+    values |= _levels(signals, grid, pulses)
+    average = signals.shaft("pinion").average
+    return ChannelResult(
+        values,
+        signals.moments(),
+        _waveform(average, signals.shafts[0].teeth),
+        noise_sketch(signals.signal, signals.fs_hz, average, grid, pulses),
+        conditions,
+    )
+
+
+def _levels(signals: ChannelSignals, grid: AngleGrid, pulses: np.ndarray) -> dict[str, float]:
+    turns = signals.steps.reshape(grid.revolutions, grid.samples_per_revolution)
+    teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
+    return record_levels(turns, float(pulses[-1] - pulses[0]), teeth)
+
+
+def _waveform(average: np.ndarray, teeth: int) -> np.ndarray:
+    """Return complex lines of an averaged revolution up to the 20th mesh harmonic and its first sidebands."""
+    from scipy import fft
+
+    spectrum = 2.0 * fft.rfft(average) / average.size
+    return np.asarray(spectrum[: WAVEFORM_HARMONICS * teeth + 2].astype(np.complex64))
+
+
+def _float64(values: np.ndarray) -> np.ndarray:
+    return np.asarray(values, dtype=np.float64)
+
+
+def _channel_conditions(signal: np.ndarray) -> dict[str, float]:
+    """Return checksum of the samples and number of samples before the last ones that repeat."""
+    last = np.flatnonzero(signal != signal[-1]) if signal.size else np.empty(0)
+    return {
+        "checksum": zlib.crc32(np.ascontiguousarray(signal).tobytes()),
+        "samples": float(last[-1] + 2 if last.size else 0),
+    }
+
+
+def _pulse_conditions(pulses: np.ndarray) -> dict[str, float]:
+    """Return mean speed [Hz], its slow variation [%], and the pinion's angle at the first sample [revolutions]."""
+    span = float(pulses[-1] - pulses[0]) if pulses.size > 1 else 0.0
+    if not span > 0.0:
+        return dict.fromkeys(("pulses_per_s", "speed_variation_percent", "start_turn"), math.nan)
+    return {
+        "pulses_per_s": (pulses.size - 1) / span,
+        "speed_variation_percent": speed_variation_percent(pulses),
+        "start_turn": float((-pulses[0] / (pulses[1] - pulses[0])) % 1.0),
+    }
+
+
+def _tacholess(record: Recording, channels: dict[str, np.ndarray], settings: IndicatorSettings) -> np.ndarray:
+    """Return the pulse times that the mesh lines of the clearest usable channel give."""
+    assert settings.speed_range_hz is not None
+    teeth = int(record.labels["teeth_pinion"])
+    clarity = {
+        name: mesh_ridge(signal, record.fs_hz, teeth, settings.speed_range_hz).clarity
+        for name, signal in channels.items()
+    }
+    clearest = channels[max(clarity, key=lambda name: clarity[name])]
+    return tacholess_pulses(clearest, record.fs_hz, teeth, settings.speed_range_hz)

@@ -1,0 +1,221 @@
+"""One table of everything that is taken of the records of a set, from one pass by any number of workers.
+
+`features`, `train`, `report`, `indicators`, `audit` and the card read named sets of its columns (`classifier_table`,
+`ranking_table`, `audit.measured_set`). Values do not depend on the number of workers: records are handed out in the
+order of the files and come back in it. Functions of the user are called anew each time, since their code may change.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from diagnostics.indicators.line_levels import LEVELS
+from diagnostics.indicators.own_columns import all_own, own_columns
+from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.record import RecordResult, record_result
+from diagnostics.indicators.registry import columns
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table_cache import is_readable, keep_table, table_file
+from diagnostics.indicators.workers import mapped
+from diagnostics.records.record_problems import RecordProblem
+from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
+from siggen.dataset.reading import Dataset
+from siggen.errors import DatasetError
+
+Advance = Callable[[], None]
+PULSE_CONDITIONS = ("pulses_per_s", "speed_variation_percent", "start_turn")
+COMPLEX = pa.list_(pa.float32())
+
+
+@dataclass(frozen=True, slots=True)
+class RecordTable:
+    """Everything that was taken of the records of a set.
+
+    Attributes
+    ----------
+    source : pyarrow.Table or Path
+        One row per record, in memory or as Parquet.
+    settings : IndicatorSettings
+    channels : tuple of str
+    own : dict of str to (records,) float64
+        Columns of the user's indicators.
+    own_problems : tuple of RecordProblem
+        Where those failed.
+    note : str
+        Why the table could not be kept on disk, or empty.
+    """
+
+    source: pa.Table | Path
+    settings: IndicatorSettings
+    channels: tuple[str, ...]
+    own: dict[str, np.ndarray] = field(default_factory=dict)
+    own_problems: tuple[RecordProblem, ...] = ()
+    note: str = ""
+
+    def select(self, names: Sequence[str]) -> pa.Table:
+        """Return the named columns."""
+        if isinstance(self.source, Path):
+            return pq.read_table(self.source, columns=list(names))
+        return self.source.select(list(names))
+
+    def labels(self) -> dict[str, np.ndarray]:
+        """Return the label columns, (records,) each."""
+        return {name: np.asarray(column.to_pylist()) for name, column in _named(self.select(LABEL_NAMES)).items()}
+
+    def values(self, names: Sequence[str]) -> np.ndarray:
+        """Return the named columns as numbers, (records, columns), the user's among them; NaN where undefined."""
+        table = _named(self.select([name for name in names if name not in self.own]))
+        found = [self.own[name] if name in self.own else _numbers(table[name]) for name in names]
+        return np.stack(found, axis=1) if found else np.empty((self.rows, 0))
+
+    @property
+    def rows(self) -> int:
+        """Number of records."""
+        return int(self.select(["record_id"]).num_rows)
+
+    def texts(self, name: str) -> list[Any]:
+        """Return what a column of texts or lists holds, record by record: `problems`, `refused`, `clipped`, `notes`."""
+        rows = self.select([name]).column(name).to_pylist()
+        return rows if name == "notes" else [json.loads(text) for text in rows]
+
+    def complex_rows(self, name: str) -> list[list[np.ndarray]]:
+        """Return waveforms or sketches, (k,) complex64 by record and channel."""
+        table = self.select([f"{name}.{channel}" for channel in self.channels])
+        columns = [[np.asarray(row.values, np.float32).view(np.complex64) for row in found] for found in table.columns]
+        return [list(row) for row in zip(*columns, strict=True)]
+
+    def moments(self, channel: str) -> dict[str, np.ndarray]:
+        """Return what indicators with a history need of a channel, (records,) each by name."""
+        schema = pq.read_schema(self.source) if isinstance(self.source, Path) else self.source.schema
+        start, end = "moment.", f"__{channel}"
+        stored = [name for name in schema.names if name.startswith(start) and name.endswith(end)]
+        found = _named(self.select(stored))
+        return {name.removeprefix(start).removesuffix(end): _numbers(found[name]) for name in stored}
+
+    def names(self) -> tuple[str, ...]:
+        """Return all indicators of one record by column, the user's last."""
+        per_channel = [f"{name}__{channel}" for channel in self.channels for name in columns(self.settings)]
+        return (*per_channel, *self.own)
+
+
+def _named(table: pa.Table) -> dict[str, pa.ChunkedArray]:
+    return dict(zip(table.column_names, table.columns, strict=True))
+
+
+def _numbers(column: pa.ChunkedArray) -> np.ndarray:
+    return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
+
+
+def record_table(
+    dataset: Dataset,
+    settings: IndicatorSettings | None = None,
+    own: Sequence[OwnIndicator] = (),
+    *,
+    workers: int = 1,
+    advance: Advance | None = None,
+) -> RecordTable:
+    """Return the table of a set, as kept beside it or from one pass over its records.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    settings : IndicatorSettings, optional
+        Default: `IndicatorSettings()`.
+    own : sequence of OwnIndicator
+        The user's, besides those that are registered.
+    workers : int
+        Processes; 1 computes in this one.
+    advance : callable, optional
+        Called after every record of a pass.
+
+    Raises
+    ------
+    DatasetError
+        If the set holds no records.
+    UsageError
+        If two indicators have one name.
+    """
+    chosen, mine = settings or IndicatorSettings(), all_own(own)
+    channels = tuple(channel.name for channel in dataset.channels)
+    every = tuple(str(channel["name"]) for channel in dataset.manifest.get("channels", ()))
+    files = [table_file(dataset, chosen, names) for names in dict.fromkeys((every, channels)) if names]
+    kept = next((file for file in files if file is not None and is_readable(file)), None)
+    note, source = "", kept
+    if kept is None:
+        source = _computed(dataset, chosen, channels, workers, advance)
+        note = keep_table(source, files[-1]) if files and files[-1] is not None else ""
+    table = RecordTable(source, chosen, channels, note=note)
+    pulses = [np.asarray(row.values, np.float64) for row in table.select(["pulses_s"]).column("pulses_s")]
+    refused = table.texts("refused")
+    found, problems = own_columns(dataset, mine, pulses, refused, workers=workers, advance=advance if kept else None)
+    return RecordTable(source, chosen, channels, found, tuple(problems), note)
+
+
+def _computed(
+    dataset: Dataset, settings: IndicatorSettings, channels: tuple[str, ...], workers: int, advance: Advance | None
+) -> pa.Table:
+    results = list(_results(dataset, settings, workers, advance))
+    if not results:
+        raise DatasetError(f"{dataset.path}: no records to take indicators of; received splits {list(dataset.splits)}")
+    return _as_table(results, settings, channels)
+
+
+def _results(
+    dataset: Dataset, settings: IndicatorSettings, workers: int, advance: Advance | None
+) -> Iterator[RecordResult]:
+    for result in mapped(recordings(dataset), partial(_record_result, settings), workers):
+        yield result
+        if advance:
+            advance()
+
+
+def _record_result(settings: IndicatorSettings, record: Recording) -> RecordResult:
+    """Return the result of one record; a function that other processes can take."""
+    return record_result(record, settings)
+
+
+def _as_table(results: list[RecordResult], settings: IndicatorSettings, channels: tuple[str, ...]) -> pa.Table:
+    found: dict[str, Any] = {name: [result.labels[name] for result in results] for name in LABEL_NAMES}
+    found |= {
+        "revolutions_pinion": [result.revolutions[0] for result in results],
+        "revolutions_gear": [result.revolutions[1] for result in results],
+        "notes": [result.shaft_notes for result in results],
+        "problems": [json.dumps([(p.channel, p.text) for p in result.problems]) for result in results],
+        "refused": [json.dumps(result.refused) for result in results],
+        "clipped": [json.dumps(result.clipped) for result in results],
+        "pulses_s": pa.array([result.pulses_s for result in results], pa.list_(pa.float64())),
+        **{name: [float(result.conditions[name]) for result in results] for name in PULSE_CONDITIONS},
+    }
+    for channel in channels:
+        found |= _channel_columns([result.channels[channel] for result in results], settings, channel)
+    return pa.table(found)
+
+
+def _channel_columns(results: list[Any], settings: IndicatorSettings, channel: str) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        f"{name}__{channel}": _finite([own.values.get(name, np.nan) for own in results], keep_infinite=name in LEVELS)
+        for name in (*columns(settings), *LEVELS)
+    }
+    moments = dict.fromkeys(name for own in results for name in own.moments)
+    found |= {f"moment.{name}__{channel}": [own.moments.get(name, np.nan) for own in results] for name in moments}
+    found |= {f"{name}.{channel}": [own.conditions[name] for own in results] for name in ("checksum", "samples")}
+    for name in ("waveform", "sketch"):
+        rows = [np.ascontiguousarray(getattr(own, name), np.complex64).view(np.float32) for own in results]
+        found[f"{name}.{channel}"] = pa.array(rows, COMPLEX)
+    return found
+
+
+def _finite(values: list[float], *, keep_infinite: bool) -> np.ndarray:
+    """Return values with everything infinite undefined, but for levels: minus infinity says that no line is there."""
+    found = np.asarray(values, dtype=np.float64)
+    return found if keep_infinite else np.where(np.isfinite(found), found, np.nan)

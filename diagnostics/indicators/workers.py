@@ -1,0 +1,55 @@
+"""Records handed out to processes in chunks, with the results in the order of the records."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from itertools import islice
+from multiprocessing import get_context
+from typing import TypeVar
+
+from diagnostics.records.recording import Recording
+
+CHUNK_RECORDS = 8
+Result = TypeVar("Result")
+
+
+def mapped(records: Iterable[Recording], function: Callable[[Recording], Result], workers: int = 1) -> Iterator[Result]:
+    """Yield what a function returns of every record, with at most two chunks per worker on the way.
+
+    Parameters
+    ----------
+    records : iterable of Recording
+        Read by this process.
+    function : callable
+        One that other processes can take, see `pickle`, where there are any.
+    workers : int
+        Processes; 1 computes in this one.
+    """
+    if workers <= 1:
+        yield from map(function, records)
+        return
+    chunks = _chunks(records)
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        waiting: deque[Future[list[Result]]] = deque()
+        try:
+            for chunk in chunks:
+                waiting.append(pool.submit(_chunk_results, function, chunk))
+                if len(waiting) >= 2 * workers:
+                    yield from waiting.popleft().result()
+            while waiting:
+                yield from waiting.popleft().result()
+        finally:
+            for future in waiting:
+                future.cancel()
+
+
+def _chunks(records: Iterable[Recording]) -> Iterator[list[Recording]]:
+    iterator = iter(records)
+    while chunk := list(islice(iterator, CHUNK_RECORDS)):
+        yield chunk
+
+
+def _chunk_results(function: Callable[[Recording], Result], chunk: list[Recording]) -> list[Result]:
+    return [function(record) for record in chunk]
