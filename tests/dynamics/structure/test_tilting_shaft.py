@@ -11,8 +11,8 @@ from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Element, Structure, assemble, vector
 from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
-from siggen.dynamics.time.modes import natural_frequencies_hz
 from tests.dynamics.casing_stage import MEAN_STIFFNESS, make_casing, make_stage, make_structure
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 SHAFT = Shaft(0.12, 0.35, 0.025, 206e9, 0.3, 1e-4)
 STIFF = Shaft(0.12, 0.5, 10.0, 206e9, 0.3, 1e-4)

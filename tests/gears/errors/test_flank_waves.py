@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from siggen.gears.errors.transmission_error import unloaded_transmission_error_m
 
 from siggen.dynamics.friction.contact_kinematics import effective_modulus, hertz_half_width, relative_radius
 from siggen.gears.errors.flank_waves import ORDERS, FlankWaves, half_width_m, missing_m, with_waves
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.pair_runs import gear_pair
+from tests.gears.errors.unloaded_transmission_error import unloaded_transmission_error_m
 
 PAIR = gear_pair()
 LOAD = 5e4
