@@ -63,7 +63,7 @@ def test_operating_points_may_be_a_list_or_a_mapping(schema):
 
 def test_damage_is_chosen_by_its_kind(schema):
     (kinds,) = [c for c in schema["$defs"]["State"]["properties"]["damage"]["anyOf"] if "discriminator" in c]
-    assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "spall", "list"}
+    assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "spall", "list", "irregular"}
 
 
 @pytest.mark.parametrize("name", ["linear_pits", "quickstart", "paper_a"])
