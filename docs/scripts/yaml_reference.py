@@ -268,7 +268,8 @@ def table(schema: Schema, keys: list[Key], users: Mapping[str, list[str]], start
     yield row(*["---"] * 6)
     for key in keys:
         shown = key.path.removeprefix(start)
-        marks = "" if users[key.path] else "expert"
+        # What a section cannot do without is never for experts, as in `siggen schema`.
+        marks = "" if users[key.path] or default(key) == "required" else "expert"
         cells = (described(schema, key.schema), unit(key.path), allowed(schema, key.schema), default(key))
         yield row(f"`{shown}`", *cells, marks)
 

@@ -30,7 +30,8 @@ class State(Section):
 
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]*$"), STATE_NAME] = Field(description="label of the state")
     fault: Literal["healthy", "pitting", "spalling"] = Field(
-        description="default: spalling with damage of kind spall, pitting with any other, healthy with none"
+        description="default: spalling with damage of kind spall or irregular or a list of spalls alone, pitting with "
+        "any other, healthy with none"
     )
     severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
         description="default: the state's name if that is a severity; healthy without damage"

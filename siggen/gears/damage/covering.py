@@ -114,7 +114,7 @@ def hides(one: FloatArray, two: FloatArray) -> bool:
 
 @njit(cache=True)
 def hidden_rows(rows: FloatArray) -> NDArray[np.bool_]:
-    """Return which rows (n, 13), all different, another one hides (n,)."""
+    """Return which rows (n, 14), all different, another one hides (n,)."""
     count = rows.shape[0]
     out = np.zeros(count, np.bool_)
     for i in range(count):

@@ -16,7 +16,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 
 
 def pit_rows(pits: Iterable[ToothDamage]) -> FloatArray:
-    """Return the damage of one flank as rows (n, 13).
+    """Return the damage of one flank as rows (n, 14).
 
     Columns: `siggen.gears.damage.row_columns`. Sorted, without duplicates and without what a deeper one hides: a
     union depends on none of these, and neither does any bit of what follows.

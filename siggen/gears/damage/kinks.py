@@ -291,7 +291,7 @@ def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) ->
 
 @njit(cache=True)
 def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
-    """Return all heights where the section of a flank with `pits` (n, 13) changes its form, ascending (k,) [m]."""
+    """Return all heights where the section of a flank with `pits` (n, 14) changes its form, ascending (k,) [m]."""
     out = [0.0]
     out.pop()
     points = [(0.0, 0.0)]

@@ -40,7 +40,7 @@ NARROWEST = 1e-8
 
 
 def takes_whole_contact(pair: GearPair, pinion_rows: FloatArray, gear_rows: FloatArray) -> bool:
-    """Return whether the rows (n, 13) of two mating flanks, either of them none, cover the whole face somewhere.
+    """Return whether the rows (n, 14) of two mating flanks, either of them none, cover the whole face somewhere.
 
     Source: derived, see this module.
     """

@@ -123,7 +123,7 @@ def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, rows:
 
 
 def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start: float) -> FloatArray:
-    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 13), (k,) [rad]."""
+    """Return the ascending rolls from `start` to the tip that split integrals over pit rows (n, 14), (k,) [rad]."""
     kinks = involute.rolls_at_heights(section_kinks(rows, face_width_m), gear.base_radius_m, gear.base_half_angle_rad)
     inside = kinks[(kinks > start) & (kinks < gear.tip_roll_rad)]
     return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))

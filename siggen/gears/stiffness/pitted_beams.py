@@ -171,7 +171,7 @@ def _stride(
 def pit_integrals(
     rolls: FloatArray, breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
 ) -> FloatArray:
-    """Return what rows (n, 13) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
+    """Return what rows (n, 14) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
 
     `breaks` are ascending rolls that hold every kink. Pieces between breaks are cut into parts from below (`_stride`),
     each summed once; a contact adds what lies above the last cut: nothing above a contact and no other contact changes

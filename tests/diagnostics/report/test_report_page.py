@@ -14,6 +14,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from diagnostics.indicators.registry import columns
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
 from diagnostics.report.report import write_report
 from diagnostics.signal.order_spectrum import OrderSpectrum, strongest_harmonic
@@ -49,7 +51,7 @@ def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
     assert 'name="viewport"' in text
 
 
-def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
+def test_figures_tables_models_and_metrics_lie_beside_it(dataset: Any, folder: Path) -> None:
     written = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     figures = (
         "waveforms",
@@ -67,7 +69,8 @@ def test_figures_tables_models_and_metrics_lie_beside_it(folder: Path) -> None:
     assert len(metrics["training"]["classifiers"]["indicators"]["permuted_macro_auroc"]) == 20
     validated = {name: found["validation_macro_auroc"] for name, found in metrics["training"]["classifiers"].items()}
     assert validated["rms"] < min(validated["indicators"], validated["boosting"]) <= 1.0
-    assert len(metrics["separability"]["features"]) == 410
+    channels = len(dataset.channels)
+    assert len(metrics["separability"]["features"]) == channels * len(columns(IndicatorSettings()))
 
 
 def test_page_card_and_metrics_tell_calibration_without_and_with_temperature(folder: Path) -> None:
