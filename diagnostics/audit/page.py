@@ -84,7 +84,7 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
     text = (
         f"{percent(found.all_inside)} of {counted(found.channel_records, 'healthy channel-record')} lie inside the "
         "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
-        "machines. A line counts even where it is noise (see the traps)."
+        "machines. A spectral line counts even where it is only noise (see the traps)."
     )
     rows = [
         [

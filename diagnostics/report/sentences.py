@@ -178,7 +178,7 @@ def control_sentence(training: Training) -> str:
     verdict = (
         f"This is too far from chance (0.5) for {joined(suspicious)}: the scoring is biased. Do not trust these scores."
         if suspicious
-        else "Chance is 0.5, so the scoring itself has no bias. No gearbox is in two splits, which prevents leakage."
+        else "Chance is 0.5: the control shows no bias of the scoring. No gearbox is in two splits (no leakage)."
     )
     given = joined([_control(judged) for judged in shown])
     return f"Training on permuted labels gives a macro-AUROC of {given}. {verdict}"

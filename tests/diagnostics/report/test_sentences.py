@@ -201,7 +201,7 @@ def test_few_specimens_give_rough_intervals(specimens: int, verdict: str) -> Non
 
 def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> None:
     off = training()
-    assert "the scoring itself has no bias. No gearbox is in two splits" in control_sentence(off)
+    assert "the control shows no bias of the scoring. No gearbox is in two splits" in control_sentence(off)
     off.judged[0].permuted_auroc = np.array([0.7, 0.75, NAN])
     assert "too far from chance (0.5) for gradient boosting on indicators: the scoring is biased" in control_sentence(
         off
