@@ -100,14 +100,14 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
             why = (
                 "fewer than 4 specimens with defined values in a class"
                 if name == UNPAIRED
-                else "a healthy record needs another healthy one of its specimen within 1 % in torque and 0.2 % in "
-                "speed (`repeats: 2` or more), in 4 specimens"
+                else "in 4 specimens, a healthy record needs another healthy one of its specimen within 1 % in torque "
+                "and 0.2 % in speed (`repeats: 2` or more)"
             )
             notes.append(f"No AUC from {name} for {', '.join(lacking)}: {why}.")
     if with_realism and not measured.healthy.any():
         notes.append("No comparison with healthy gearboxes: the set has no healthy records.")
     if with_realism and len(measured.channels) < 3:
-        notes.append("No spread between sensors: it needs three channels or more.")
+        notes.append("No spread between sensors: at least three channels are needed.")
     return notes
 
 

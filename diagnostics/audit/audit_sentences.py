@@ -1,4 +1,4 @@
-"""The summary of an audit in at most five sentences, written from its numbers."""
+"""The summary of an audit in a few findings, written from its numbers."""
 
 from __future__ import annotations
 
@@ -20,25 +20,27 @@ def audit_summary(audit: Audit) -> list[str]:
 
 def basis_sentence(audit: Audit) -> str:
     """Say how much the audit has judged on, and what so few gearboxes leave open."""
-    text = f"Judged on {counted(audit.records, 'record')} of {counted(audit.specimens, 'specimen')} (gearboxes)"
+    text = (
+        f"The audit used {counted(audit.records, 'record')} of {counted(audit.specimens, 'specimen')} (gearboxes) in "
+        f"{counted(audit.channels, 'channel')}."
+    )
     if audit.specimens >= FEWEST_SPECIMENS:
-        return f"{text} in {counted(audit.channels, 'channel')}."
+        return text
     return (
-        f"{text} in {counted(audit.channels, 'channel')}: traps that show between gearboxes may have "
-        f"stayed unseen, and detectability needs {FEWEST_SPECIMENS} with healthy and {FEWEST_SPECIMENS} with damaged "
-        "records."
+        f"{text} Traps that only appear between gearboxes may not have been found. Detectability needs "
+        f"{FEWEST_SPECIMENS} gearboxes with healthy and {FEWEST_SPECIMENS} with damaged records."
     )
 
 
 def _realism_sentence(found: Realism) -> str:
     text = (
-        f"Of {counted(found.channel_records, 'healthy channel-record')} {percent(found.mean_inside)} on average lie "
-        "inside the range that measured healthy gearboxes show for a quantity"
+        f"On average over the quantities, {percent(found.mean_inside)} of "
+        f"{counted(found.channel_records, 'healthy channel-record')} lie in the range of measured healthy gearboxes."
     )
     if not found.shares:
-        return f"{text}."
+        return text
     worst = min(found.shares, key=lambda share: share.inside)
-    return f"{text}; fewest do for {worst.quantity.title}, with {percent(worst.inside)}."
+    return f"{text} The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
 
 
 def _hardest_sentence(audit: Audit) -> list[str]:
@@ -48,17 +50,22 @@ def _hardest_sentence(audit: Audit) -> list[str]:
         return []
     hardest, easiest = (chosen(judged, key=lambda state: judged[state].held_out) for chosen in (min, max))
     best = judged[hardest]
-    which = "hardest to tell from healthy" if len(judged) > 1 else "told from healthy"
+    which = f"The state {hardest} is the hardest to find" if len(judged) > 1 else f"The damaged state is {hardest}"
     text = (
-        f"The state {hardest} is {which}: the best of {counted(best.tried, 'single indicator')}, {best.column}, "
-        f"reaches an AUC of {decimal(best.auc.value)} ({limits(best.auc)}) on the gearboxes that chose it, and the "
-        f"best that other gearboxes choose {decimal(best.held_out)}"
+        f"{which}: an indicator chosen on other gearboxes reaches an AUC of {decimal(best.held_out)}. The best of "
+        f"{counted(best.tried, 'single indicator')}, {best.column}, reaches {decimal(best.auc.value)} "
+        f"({limits(best.auc)}) on the same gearboxes that it was chosen on."
     )
     if hardest != easiest:
-        text += f"; for {easiest} that is {decimal(judged[easiest].held_out)}"
+        easy = decimal(judged[easiest].held_out)
+        text += f" For {easiest} an indicator chosen on other gearboxes reaches {easy}."
     lost = [state for state in judged if max(audit.probes(state).values()) < CHANCE_AUC]
-    found = [f"No probe found {joined(lost)}: {joined(list(audit.probes(lost[0])))} failed."] if lost else []
-    return [f"{text}.", *found]
+    found = (
+        [f"No method found {joined(lost)}. These methods failed: {joined(list(audit.probes(lost[0])))}."]
+        if lost
+        else []
+    )
+    return [text, *found]
 
 
 def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:
@@ -69,4 +76,4 @@ def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:
             if reached:
                 bound = "at most " if reached.is_upper_bound else ""
                 parts.append(f"{bound}{reached.length_mm:.2f}\N{NO-BREAK SPACE}mm of {fault} by {name}")
-    return [f"An AUC of {target:g} is reached from {joined(parts)}, lengths along the profile."] if parts else []
+    return [f"An AUC of {target:g} is reached from {joined(parts)}. Lengths are along the profile."] if parts else []

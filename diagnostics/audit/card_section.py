@@ -1,4 +1,4 @@
-"""What a set can and cannot teach, in Markdown, from its audit."""
+"""What can and cannot be found in a set, in Markdown, from its audit."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ def card_section(audit: Audit) -> str:
     """Return the section for the card; it ends with a line break."""
     lines = ["## What this set was measured to teach", "", audit.verdict, ""]
     lines += [
-        f"* **{finding.trap}**: {finding.measured}; {finding.bound}. {finding.mend}" for finding in audit.findings
+        f"* **{finding.trap}**: {finding.measured}. Bound: {finding.bound}. To correct it: {finding.mend}"
+        for finding in audit.findings
     ]
     if audit.findings:
         lines.append("")
     if audit.realism:
         lines += [
-            f"Against recordings of healthy gearboxes: of {audit.realism.channel_records} healthy channel-records on "
-            f"average {audit.realism.mean_inside:.0%} lie inside the range of a quantity.",
+            f"Averaged over the quantities, {audit.realism.mean_inside:.0%} of {audit.realism.channel_records} healthy "
+            "channel-records lie inside the range of recordings of healthy gearboxes.",
             "",
             "| quantity | median | inside |",
             "|---|---|---|",
@@ -30,7 +31,7 @@ def card_section(audit: Audit) -> str:
             "",
         ]
     lines += [*probe_table(audit), ""] if audit.states else []
-    lines.append("From `siggen-diagnostics audit`; simulated data, judged on simulated data.")
+    lines.append("These values come from `siggen-diagnostics audit`. Simulated data were judged on simulated data.")
     return "\n".join(lines) + "\n"
 
 
@@ -44,8 +45,8 @@ def probe_table(audit: Audit) -> list[str]:
         own = [f"`{best.column}`", _auc(best.auc.value)] if best else ["-", "-"]
         rows.append([state, *own, *(_auc(probes.get(name, math.nan)) for name in names), verdict_words(audit, state)])
     return [
-        "AUC against healthy. The best indicator is chosen on the same gearboxes, so its AUC is optimistic; the other "
-        "columns are judged on gearboxes that were not seen.",
+        "The table gives the AUC against healthy. The AUC of the best indicator is optimistic: it is chosen on the "
+        "same gearboxes. The other columns are judged on gearboxes that were not seen.",
         "",
         f"| {' | '.join(head)} |",
         f"|{'---|' * len(head)}",
@@ -73,5 +74,5 @@ def verdict_words(audit: Audit, state: str) -> str:
         return "not judged"
     if max(probes.values()) >= TEACHABLE_AUC:
         return "can be found"
-    word = "lost" if max(probes.values()) < CHANCE_AUC else "hard"
-    return f"{word} for {joined([f'{name} ({_auc(auc)})' for name, auc in probes.items()])}"
+    word = "not found" if max(probes.values()) < CHANCE_AUC else "hard to find"
+    return f"{word} by {joined([f'{name} ({_auc(auc)})' for name, auc in probes.items()])}"

@@ -37,7 +37,7 @@ def damage_phase(measured: MeasuredSet) -> list[Finding]:
             f"constant_damage_phase_{name}",
             f"the first damaged pinion tooth has nearly the same angle {where[name]} "
             f"(mean phasor {mean_phasor(turns):.2f} of {turns.size})",
-            f"{phasor_bound(turns.size):.2f} is what chance leaves in 1 of 1000 sets",
+            f"by chance, 1 of 1000 sets exceeds {phasor_bound(turns.size):.2f}",
             MEND[name],
         )
         for name, turns in angles.items()

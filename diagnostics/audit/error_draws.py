@@ -47,7 +47,7 @@ def equal_error_labels(measured: MeasuredSet) -> list[Finding]:
         Finding(
             "one_error_draw",
             f"all {len(first)} healthy specimens have the same {', '.join(sorted(numeric)[:4])}",
-            "specimens have to differ",
+            "specimens must differ",
             MEND,
         )
     ]
@@ -73,7 +73,7 @@ def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
             "one_error_draw",
             f"{alike} of {len(judged)} pairs of healthy specimens have the same averaged waveform up to a rotation "
             f"(mean likeness of sideband phases {np.mean([found for found, _ in judged]):.2f})",
-            f"a pair counts from {LEAST_LIKENESS:g} on; allowed are {SHARE_ALLOWED:.0%} of the pairs",
+            f"a pair counts from likeness {LEAST_LIKENESS:g}, at most {SHARE_ALLOWED:.0%} of the pairs are allowed",
             MEND,
         )
     ]

@@ -28,4 +28,4 @@ class Finding:
 
     def line(self) -> str:
         """Return the finding on one line."""
-        return f"{self.trap}: {self.measured}; {self.bound}. {self.mend}"
+        return f"{self.trap}: {self.measured}. Bound: {self.bound}. To correct it: {self.mend}"

@@ -27,7 +27,7 @@ def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
             "healthy_without_sidebands",
             f"{share:.0%} of the healthy channel-records have no pinion sideband of mesh 1-3 above {WEAKEST_DB:g} dB "
             "of its mesh line and 10 dB above the noise",
-            f"allowed are {SHARE_ALLOWED:.0%}; measured healthy gearboxes show -30 to -8 dB",
+            f"at most {SHARE_ALLOWED:.0%} are allowed, measured healthy gearboxes have -30 to -8 dB",
             "Give the gears manufacturing errors (section `manufacture`), drawn anew for every specimen.",
         )
     ]

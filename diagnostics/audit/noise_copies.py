@@ -33,9 +33,9 @@ def copied_signals(measured: MeasuredSet) -> list[Finding]:
     return [
         Finding(
             "copied_signal",
-            f"{copies} of {measured.checksums.size} channel-records repeat another one sample by sample",
+            f"{copies} of {measured.checksums.size} channel-records are copies of another one, sample by sample",
             "allowed are none",
-            "Give every record its own seeds; remove the copies.",
+            "Give every record its own seeds and remove the copies.",
         )
     ]
 
@@ -62,9 +62,9 @@ def shared_by_records(measured: MeasuredSet) -> list[Finding]:
     return [
         Finding(
             "noise_shared_by_records",
-            f"{together} of {judged} records share noise with another one (correlation of what is left without the "
-            f"synchronous part up to {largest:.2f})",
-            f"a pair counts from {LARGEST_BETWEEN_RECORDS:g} on; independent noise stays below 0.2",
+            f"{together} of {judged} records share noise with another one (without the synchronous part, the "
+            f"correlation is up to {largest:.2f})",
+            f"a pair counts above {LARGEST_BETWEEN_RECORDS:g}, independent noise stays below 0.2",
             "Draw noise from a generator of its own for every record.",
         )
     ]

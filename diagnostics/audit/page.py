@@ -17,13 +17,15 @@ from diagnostics.page.wording import counted, percent
 from siggen.dataset.reading import Dataset
 
 HOW_SINGLE = (
-    "The best of all indicators in all channels, by state. Its AUC is chosen on the same gearboxes, therefore "
-    "optimistic; the other one is not: half of the gearboxes choose the indicator, the other half judges it."
+    "The table has the best of all indicators in all channels, by state. Its AUC is optimistic, because the indicator "
+    'is chosen on the same gearboxes. The AUC "chosen on other gearboxes" is not: half of the gearboxes choose the '
+    "indicator, the other half judge it."
 )
 HOW = (
-    "Logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels; cross-validated "
-    "by specimen, healthy and faulty records from different specimens; limits: 95 %, resampled specimens. Where a "
-    "state is at 0.5, this probe finds nothing on a gearbox that was not seen before; another one may."
+    "The method is logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels. "
+    "It is cross-validated by specimen, with healthy and faulty records from different specimens. The 95 % limits come "
+    "from resampled specimens. At an AUC of 0.5 this method finds nothing on a gearbox that was not seen before. "
+    "Another method may find the state."
 )
 
 SIZE_TITLES = {
@@ -31,11 +33,11 @@ SIZE_TITLES = {
     "damaged_area_share": "Share of the flank [-]",
     "damage_profile_length_mm": "Length along the profile [mm]",
 }
-RANGE_CAPTION = "Quantities of the healthy records and the ranges that measured healthy gearboxes show."
+RANGE_CAPTION = "Quantities of the healthy records and the ranges of measured healthy gearboxes."
 REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
 SIZE_CAPTION = (
-    "AUC against healthy over the length of the damage along the profile, 95 % limits; dashed: chance, dotted: 0.75 "
-    "and 0.85. Damage that grows along the face alone stands in the tables only."
+    "AUC against healthy over the length of the damage along the profile, with 95 % limits. Dashed: chance. Dotted: "
+    "0.75 and 0.85. Damage that grows along the face only is in the tables."
 )
 
 
@@ -68,21 +70,21 @@ def _best_table(audit: Audit) -> str:
         for state, best in ((state, audit.best[state]) for state in audit.states if state in audit.best)
     ]
     head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]", "Verdict"]
-    caption = f"Best of {counted(tried(audit), 'single indicator')} by state; AUC against healthy, 95 % limits."
+    caption = f"Best of {counted(tried(audit), 'single indicator')} by state: AUC against healthy, with 95 % limits."
     return html.table(head, rows, caption=caption, text=True)
 
 
 def _findings_table(audit: Audit) -> str:
     rows = [[Cell(f.trap), Cell(f.measured), Cell(f.bound), Cell(f.mend)] for f in audit.findings]
-    caption = "Traps, what was measured, and how to mend the configuration."
-    return html.table(["Trap", "Measured", "Bound", "How to mend it"], rows, caption=caption, text=True)
+    caption = "Traps, what was measured, and how to correct the configuration."
+    return html.table(["Trap", "Measured", "Bound", "How to correct it"], rows, caption=caption, text=True)
 
 
 def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
     text = (
         f"{percent(found.all_inside)} of {counted(found.channel_records, 'healthy channel-record')} lie inside the "
-        "ranges of all quantities. A share says how the distribution lies, not that it is the right one, and a line "
-        "counts even where it is noise (see the traps): the ranges pool few machines."
+        "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
+        "machines. A spectral line counts even where it is only noise (see the traps)."
     )
     rows = [
         [
@@ -120,8 +122,8 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     ]
     title = name[0].upper() + name[1:]
     if not any(math.isfinite(entry.auc.value) for entry in entries):
-        return html.heading(title, 3) + html.paragraph("No state could be judged, for the reason in the notes.")
-    caption = f"AUC against healthy on unseen gearboxes by {name}; 95 % limits from resampled gearboxes."
+        return html.heading(title, 3) + html.paragraph("No state could be judged. The notes give the reason.")
+    caption = f"AUC against healthy on unseen gearboxes by {name}, with 95 % limits from resampled gearboxes."
     reached = [
         f"{fault}: AUC {target:g} {_reached(length)}"
         for target in TARGETS

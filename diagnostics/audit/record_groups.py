@@ -44,7 +44,7 @@ GROUPS = (
     ColumnGroup(
         "length",
         r"^samples$|duration|revolutions|length_s$",
-        "Give all records the same length; do not pad.",
+        "Give all records the same length. Do not pad.",
     ),
     ColumnGroup(
         "operation",

@@ -1,4 +1,4 @@
-"""All traps of the separability audit, and the sentence that sums them up."""
+"""All traps of the separability audit, and the verdict on them."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ def verdict(findings: Sequence[Finding], specimens: int) -> str:
     """Return what the findings mean for scores on a set of so many specimens."""
     if not findings and specimens < FEWEST_SPECIMENS:
         return (
-            f"No trap was found, but among {counted(specimens, 'gearbox')} few can be: scores on this set say nothing "
-            "about other gearboxes."
+            f"No trap was found. Few traps can be found with {counted(specimens, 'gearbox')}. Scores on this set say "
+            "nothing about other gearboxes."
         )
     if not findings:
         return (
-            "No trap was found: scores on unseen specimens of this set measure the damage, as far as the audit can see."
+            "No trap was found. As far as the audit can see, scores on unseen specimens of this set measure the damage."
         )
     trivial = [finding.trap for finding in findings if finding.trap.startswith(TRIVIAL)]
     if trivial:
         return (
-            f"The set is trivially separable ({', '.join(trivial)}): a detection score on it says nothing about real "
+            f"The set is trivially separable ({', '.join(trivial)}). A detection score on it says nothing about real "
             "gearboxes."
         )
     found = "A trap was" if len(findings) == 1 else f"{len(findings)} traps were"
-    return f"{found} found: scores on this set are not what they seem to be."
+    return f"{found} found. Scores on this set do not measure what they seem to measure."

@@ -21,6 +21,6 @@ def shared_specimens(measured: MeasuredSet) -> list[Finding]:
             f"{len(shared)} of {len(owners)} specimens ({shown}{', ...' if len(shared) > 5 else ''}) "
             "have records in more than one split",
             "allowed are none",
-            "Split by `specimen_id`; siggen does so, hence the `split` column was changed: write it again.",
+            "Split by `specimen_id`. siggen does so, so the `split` column was changed: write it again.",
         )
     ]

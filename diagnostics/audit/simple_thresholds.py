@@ -62,6 +62,6 @@ def _finding(quantity: str, auc: float, state: str, channel: str) -> Finding:
         f"slight_separable_by_{quantity}",
         f"a threshold on the {quantity} of {channel} alone separates {state} from healthy with an AUC of at least "
         f"{auc:.2f} (lower 95 % limit over specimens)",
-        f"allowed is {LARGEST_AUC:g}",
-        "Smaller damage, larger manufacturing errors, more noise or a wider spread of speed and torque.",
+        f"at most {LARGEST_AUC:g} is allowed",
+        "Use smaller damage, larger manufacturing errors, more noise or a wider spread of speed and torque.",
     )

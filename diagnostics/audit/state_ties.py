@@ -144,9 +144,9 @@ def _finding(group: ColumnGroup, ties: list[Tie]) -> Finding:
     others = f" (and {len(ties) - 1} more columns of this group)" if len(ties) > 1 else ""
     return Finding(
         f"state_tied_to_{group.name}",
-        f"`{strongest.column}`{others} tells {strongest.observed:.0%} of the state's entropy",
-        f"chance with permuted states gives {strongest.chance:.1%} (spread {strongest.spread:.1%}); allowed are "
-        f"{LARGEST_EXCESS:.0%} beyond it",
+        f"`{strongest.column}`{others} explains {strongest.observed:.0%} of the state's entropy",
+        f"chance with permuted states gives {strongest.chance:.1%} (spread {strongest.spread:.1%}), at most "
+        f"{LARGEST_EXCESS:.0%} more is allowed",
         group.mend,
     )
 
@@ -171,7 +171,7 @@ def failed_states(measured: MeasuredSet) -> list[Finding]:
         Finding(
             "state_tied_to_status",
             f"{counts.max()} of {counts.sum()} failed records are of state {worst}",
-            f"{expected:.1f} were expected; allowed are {LARGEST_DEVIATIONS:g} standard deviations more",
-            "Ease the settings that make this state fail; what is left of it is a selection.",
+            f"{expected:.1f} were expected, at most {LARGEST_DEVIATIONS:g} standard deviations more are allowed",
+            "Change the settings that make this state fail. The records that are left of it are a selection.",
         )
     ]

@@ -21,24 +21,28 @@ class Speed(StrEnum):
 def audit(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
     strict: Annotated[bool, typer.Option("--strict", help="End with exit code 4 if a trap was found.")] = False,
-    realism: Annotated[bool, typer.Option("--realism", help="Compare with ranges of healthy gearboxes.")] = False,
+    realism: Annotated[
+        bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
+    ] = False,
     write_card: Annotated[
-        bool, typer.Option("--write-card", help="Put the summary into the set's README.md (implies --realism).")
+        bool, typer.Option("--write-card", help="Write the result into the set's README.md. Implies --realism.")
     ] = False,
     paired: Annotated[
-        bool, typer.Option("--paired", help="Also judge differences from the specimen's own healthy record.")
+        bool, typer.Option("--paired", help="Also judge the differences from the specimen's own healthy record.")
     ] = False,
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR2", help="Folder for the report; default DIR_audit.", show_default=False
+            "--out", "-o", metavar="DIR2", help="Folder for the report. Default: DIR_audit.", show_default=False
         ),
     ] = None,
     indicator: OwnIndicators = None,
-    speed: Annotated[Speed, typer.Option(help="Machine whose speed variation is compared with.")] = Speed.bench,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of permutations, folds and bootstrap.")] = 0,
+    speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the permutations, the folds and the bootstrap.")] = 0,
 ) -> None:
-    """Look for what makes scores on a set worthless, and write audit.html and audit.json.
+    """Check whether scores on a set measure the damage, and write audit.html and audit.json.
+
+    A trap is a property of the set that makes scores meaningless.
 
     Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found.
 

@@ -13,11 +13,11 @@ from diagnostics.cli.training_options import OwnIndicators
 def features(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="FILE", help="Table to write: .parquet or .csv.", show_default=False)
+        Path, typer.Option("--out", "-o", metavar="FILE", help="Table to write, .parquet or .csv.", show_default=False)
     ],
     indicator: OwnIndicators = None,
 ) -> None:
-    """Write the indicators of every record and channel.
+    """Compute the indicators of every record and channel, and write them as one table.
 
     Example: siggen-diagnostics features data/quickstart --out features.parquet
     """

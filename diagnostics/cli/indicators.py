@@ -15,19 +15,20 @@ def indicators(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="FOLDER", help="Folder to write; default DIR_indicators.", show_default=False
+            "--out", "-o", metavar="FOLDER", help="Folder for the report. Default: DIR_indicators.", show_default=False
         ),
     ] = None,
     indicator: OwnIndicators = None,
-    workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
     false_alarms: Annotated[
-        float, typer.Option(min=0.001, max=0.5, help="Share of healthy records above the threshold.")
+        float,
+        typer.Option(min=0.001, max=0.5, help="Rate of false alarms: share of healthy records above the threshold."),
     ] = 0.05,
     speed_range: Annotated[
         tuple[float, float] | None,
         typer.Option(
             metavar="LOW HIGH",
-            help="Angles from the mesh lines within this range of pinion speed [Hz], not from the tacho.",
+            help="Take shaft angles from the mesh lines, not the tacho; search this range of pinion speed [Hz].",
             show_default=False,
         ),
     ] = None,
@@ -35,15 +36,17 @@ def indicators(
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="A damaged state to judge beside the healthy ones; may be given several times; default all. Sizes and "
-            "trends mean something along one ladder of damage only.",
+            help="A damaged state to judge. May be given several times. Default: all. Sizes and trends are meaningful "
+            "within one kind of damage only.",
             show_default=False,
         ),
     ] = None,
-    leave_out: Annotated[bool, typer.Option("--leave-out", help="Leave unusable records and channels out.")] = False,
+    leave_out: Annotated[
+        bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
 ) -> None:
-    """Compute all indicators, rank them in both designs, and write page, JSON and tables.
+    """Compute all indicators, rank them by how well they separate damage, and write indicators.html and tables.
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
     """

@@ -24,38 +24,46 @@ def predict(
         Path,
         typer.Argument(metavar="FILE", help="Recording: .csv, .mat, .wav, .parquet, .npy or .npz.", show_default=False),
     ],
-    fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz]; WAV files state it themselves.")] = None,
+    fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz]. Not needed for WAV files.")] = None,
     teeth: Annotated[str | None, typer.Option(metavar="Z1,Z2", help="Teeth of pinion and gear.")] = None,
     speed_range: Annotated[
-        str | None, typer.Option(metavar="LOW,HIGH", help="Pinion speeds [Hz] to look in, without a tacho.")
+        str | None, typer.Option(metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho.")
     ] = None,
     channel: Annotated[
-        list[str] | None, typer.Option(metavar="NAME=COLUMN", help="Column of a channel of the model; repeat.")
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=COLUMN", help="Column of the file for a channel of the model. May be given several times."
+        ),
     ] = None,
-    unit: Annotated[str, typer.Option(help="m/s2, mm/s2, g, mg, mV or V.")] = "m/s2",
-    sensitivity: Annotated[float | None, typer.Option(help="Of the accelerometer in mV per g, for mV and V.")] = None,
-    full_scale: Annotated[float | None, typer.Option(help="Full scale of an integer WAV file, in the unit.")] = None,
-    tacho: Annotated[str | None, typer.Option(metavar="COLUMN", help="Tacho's waveform, or `tacho_s`.")] = None,
-    tacho_pulses: Annotated[int, typer.Option(min=1, help="Pulses per pinion revolution.")] = 1,
+    unit: Annotated[str, typer.Option(help="Unit of the file: m/s2, mm/s2, g, mg, mV or V.")] = "m/s2",
+    sensitivity: Annotated[
+        float | None, typer.Option(help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
+    ] = None,
+    full_scale: Annotated[float | None, typer.Option(help="Full scale of an integer WAV file, in its unit.")] = None,
+    tacho: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
+    ] = None,
+    tacho_pulses: Annotated[int, typer.Option(min=1, help="Tacho pulses per pinion revolution.")] = 1,
     reference: Annotated[
         list[str] | None,
         typer.Option(
             metavar="FILE[:ROW,ROW]",
-            help="Recording of the same machine in healthy state, with the same columns and unit; repeat.",
+            help="Recording of the same machine in healthy state, with the same columns and unit. May be given several "
+            "times.",
         ),
     ] = None,
     reference_fs: Annotated[
-        float | None, typer.Option(help="Sampling rate [Hz] of the references, where it is another one.")
+        float | None, typer.Option(help="Sampling rate [Hz] of the references, if it differs.")
     ] = None,
     row: Annotated[
-        int | None, typer.Option(help="Row of FILE, from 0, where it is Parquet with one record per row.")
+        int | None, typer.Option(help="Row of FILE, from 0, if FILE is Parquet with one record per row.")
     ] = None,
     indicator: OwnIndicators = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
     ] = None,
 ) -> None:
-    """Say which state a recording is most like, with probability, or that it is unlike the training records.
+    """Find the state that a recording is most like, or say why the models give no answer.
 
     Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
@@ -94,7 +102,7 @@ def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> 
     if said is None:
         pairs = " or ".join(f"{a},{b}" for a, b in known)
         raise UsageError(
-            f"{file}: teeth unknown; orders, averages and sidebands need them. Give --teeth PINION,GEAR (this model "
+            f"{file}: teeth unknown. Orders, averages and sidebands need them. Give --teeth PINION,GEAR (this model "
             f"was trained on {pairs})"
         )
     first, second = _pair(said, "--teeth", "18,47")

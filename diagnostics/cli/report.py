@@ -24,7 +24,7 @@ def report(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR2", help="Folder for the report; default DIR_report.", show_default=False
+            "--out", "-o", metavar="DIR2", help="Folder for the report. Default: DIR_report.", show_default=False
         ),
     ] = None,
     test: TestSet = None,
@@ -36,7 +36,7 @@ def report(
     augment: Augment = True,
     seed: Seed = 0,
 ) -> None:
-    """Run everything and write report.html, metrics.json, tables, figures and models.
+    """Compute indicators, train classifiers, and write report.html, metrics.json, tables, figures and models.
 
     Example: siggen-diagnostics report data/quickstart --studies
     """

@@ -34,7 +34,7 @@ def train(
     augment: Augment = True,
     seed: Seed = 0,
 ) -> None:
-    """Train classifiers on the training specimens and judge them on the test specimens, and on another set.
+    """Train classifiers on the training specimens, judge them on the test specimens, and save them.
 
     Example: siggen-diagnostics train data/quickstart --out models --test data/other_gears
     """

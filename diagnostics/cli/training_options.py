@@ -12,18 +12,20 @@ TestSet = Annotated[
     typer.Option(
         "--test",
         metavar="DIR3",
-        help="Judge on this set too: other gears, supports or paths, with the same channels, rate and states.",
+        help="Judge the classifiers on this set too. It needs the same channels, sampling rate and states.",
         show_default=False,
     ),
 ]
 Channels = Annotated[
     list[str] | None,
-    typer.Option("--channel", metavar="NAME", help="Use this channel only; may be repeated.", show_default=False),
+    typer.Option(
+        "--channel", metavar="NAME", help="Use this channel only. May be given several times.", show_default=False
+    ),
 ]
 WithStudies = Annotated[
     bool,
     typer.Option(
-        "--studies", help="Also: what each way to split does to the score, a learning curve, an ablation (minutes)."
+        "--studies", help="Also compare ways to split, draw a learning curve and run an ablation. This takes minutes."
     ),
 ]
 WithNetwork = Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the network too.")]
@@ -31,13 +33,13 @@ Device = Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where
 Augment = Annotated[
     bool, typer.Option("--augment/--no-augment", help="Train the network with random transfer paths and noise.")
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of bootstrap, permutations and network.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the bootstrap, the permutations and the network.")]
 OwnIndicators = Annotated[
     list[str] | None,
     typer.Option(
         "--indicator",
         metavar="MODULE:FUNCTION",
-        help="Your own indicator, function(signal, tacho, gears) -> float; may be given several times.",
+        help="Your own indicator: function(signal, tacho, gears) -> float. May be given several times.",
         show_default=False,
     ),
 ]

@@ -15,7 +15,7 @@ def provenance(dataset: Dataset, seed: int) -> str:
         f"Made by siggen-diagnostics {version('siggen')} with seed {seed} from the set {dataset.path.name}, identity "
         f"{dataset.manifest['identity']}: {counted(records, 'record')} of {dataset.duration_s:g}\N{NO-BREAK SPACE}s in "
         f"{counted(len(dataset.channels), 'channel')} at {dataset.fs_hz:g}\N{NO-BREAK SPACE}Hz. The identity names the "
-        "configuration; the same one gives the same records."
+        "configuration. The same configuration gives the same records."
     )
 
 

@@ -45,8 +45,8 @@ def score_table(training: Training) -> str:
         )
     specimens = counted(training.judged[0].scores.specimens, "test specimen")
     caption = (
-        f"Scores on {specimens} with 95 % limits from resampled specimens; macro-AUROC after training on permuted "
-        "labels (mean)."
+        f"Scores on {specimens}, with 95 % limits from resampled specimens. Last column: mean macro-AUROC after "
+        "training on permuted labels."
     )
     head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
     return table(head, rows, caption=caption, sortable=True)
@@ -71,10 +71,10 @@ def calibration_table(training: Training) -> str:
         "Calibration error if true [-]",
     ]
     caption = (
-        "Probabilities on test specimens without and with the temperature T from validation specimens (1 where it does "
-        "not help validation specimens left out of its fit), 95 % limits. Brier score: 0 is best, "
-        f"{1.0 - 1.0 / classes:.2f} is naming all classes equally probable. Expected calibration error: chance alone "
-        "makes it positive, the last column says how much for these probabilities (with T), were they true."
+        "Probabilities on test specimens without and with the temperature T, with 95 % limits. T comes from validation "
+        "specimens. It is 1 where it does not help validation specimens that are left out of its fit. The best Brier "
+        f"score is 0; equal probabilities for all classes give {1.0 - 1.0 / classes:.2f}. Chance alone makes the "
+        "expected calibration error positive. The last column is its value if these probabilities (with T) were true."
     )
     return table(head, rows, caption=caption, sortable=True)
 
@@ -109,7 +109,7 @@ def separability_html(found: list[Separability]) -> str:
     head = ["Feature", *(f"AUC, {state}" for state in states), "Spearman, damaged area", "Defined [%]"]
     caption = (
         "Every feature by itself, strongest first: AUC of each state against healthy, rank correlation with the "
-        "damaged area, share of records in which it is defined; 95 % limits from resampled specimens."
+        "damaged area and share of records in which it is defined. The 95 % limits come from resampled specimens."
     )
     return table(head, rows, caption=caption, sortable=True, tall=True)
 

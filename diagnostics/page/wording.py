@@ -19,6 +19,11 @@ def joined(parts: Sequence[str]) -> str:
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
+def capitalised(text: str) -> str:
+    """Return a text with a capital first letter, the rest as it is."""
+    return text[:1].upper() + text[1:]
+
+
 def percent(value: float) -> str:
     """Return a share as whole percent."""
     return f"{100.0 * value:.0f}\N{NO-BREAK SPACE}%" if math.isfinite(value) else "undefined"

@@ -22,11 +22,11 @@ def known_reasons(
     found = []
     if teeth not in facts.teeth:
         known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
-        found.append(f"{teeth[0]}/{teeth[1]} teeth; training knows {known} only")
+        found.append(f"the gears have {teeth[0]}/{teeth[1]} teeth, training covers {known} only")
     found += _rate_reasons(facts, recording)
     low, high = facts.speed_range_hz
     if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
-        found.append(f"pinion speed of {pulses.speed_hz:.4g} Hz; training covers {low:.4g} to {high:.4g} Hz")
+        found.append(f"the pinion speed is {pulses.speed_hz:.4g} Hz, training covers {low:.4g} to {high:.4g} Hz")
     return found + _length_reasons(facts, pieces)
 
 
@@ -34,7 +34,7 @@ def _rate_reasons(facts: ModelFacts, recording: MeasuredRecording) -> list[str]:
     if recording.fs_hz >= facts.fs_hz * (1.0 - 1e-3):
         return []
     return [
-        f"sampled at {recording.fs_hz:g} Hz, training at {facts.fs_hz:g} Hz: the band above "
+        f"the sampling rate is {recording.fs_hz:g} Hz, training has {facts.fs_hz:g} Hz: the band above "
         f"{0.5 * recording.fs_hz:g} Hz is missing"
     ]
 
@@ -42,7 +42,7 @@ def _rate_reasons(facts: ModelFacts, recording: MeasuredRecording) -> list[str]:
 def _length_reasons(facts: ModelFacts, pieces: RecordPieces) -> list[str]:
     if pieces.revolutions >= facts.fewest_revolutions - 1:  # one may be lost to where the piece begins
         return []
-    return [f"averages over {pieces.revolutions} pinion revolutions; training has {facts.fewest_revolutions} or more"]
+    return [f"averages cover {pieces.revolutions} pinion revolutions, in training {facts.fewest_revolutions} or more"]
 
 
 def reference_reasons(
@@ -53,7 +53,7 @@ def reference_reasons(
     allowed = 1.01 * (facts.reference_speed_ratio or 1.0)  # a mean speed scatters by less than one per cent
     if max(pulses.speed_hz / speed_hz, speed_hz / pulses.speed_hz) > allowed:
         found.append(
-            f"pinion speed of {pulses.speed_hz:.4g} Hz, the recording has {speed_hz:.4g} Hz; in training they differed "
-            f"by a factor of {facts.reference_speed_ratio or 1.0:.3g} at most"
+            f"the pinion speed is {pulses.speed_hz:.4g} Hz, the recording has {speed_hz:.4g} Hz, in training they "
+            f"differed by a factor of {facts.reference_speed_ratio or 1.0:.3g} at most"
         )
     return [f"reference {reference.path.name}: {text}" for text in found]

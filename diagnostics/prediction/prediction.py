@@ -187,7 +187,7 @@ def predict_recording(
 
 
 def _undefined_note(count: int) -> str:
-    return f"{count} indicators are undefined here; the classifier takes their training medians" if count else ""
+    return f"{count} indicators are undefined here: the classifier uses their training medians" if count else ""
 
 
 def _check_variant(model: ReleasedModel) -> None:
@@ -288,7 +288,7 @@ def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:
         if near.outside:
             strangest = ", ".join(f"{name} {off:+.1f} spreads" for name, off in near.strangest)
             found.append(
-                f"unlike the {what}: distance {near.distance:.2f}, up to {near.threshold:.2f} was seen on held-out "
-                f"gearboxes; farthest off: {strangest}"
+                f"unlike the {what}: the distance is {near.distance:.2f}, on held-out gearboxes it was at most "
+                f"{near.threshold:.2f} (largest deviations: {strangest})"
             )
     return found

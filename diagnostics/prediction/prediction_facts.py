@@ -12,8 +12,9 @@ from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.release.model_facts import ModelFacts
 
 MEANING = (
-    "The models were trained on simulated records only; no measured pitting was used. A probability says how like the "
-    "simulated states this recording is among those states; it is no probability that the gear is damaged."
+    "The models were trained on simulated records only. No measured pitting was used. A probability compares the "
+    "simulated states: it says which of them the recording is most like. It is not the probability that the gear is "
+    "damaged."
 )
 
 
@@ -87,12 +88,12 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
         plain = found.plain_nearness
         rows.append(("without reference", f"{plain.distance:.2f}, threshold {plain.threshold:.2f}"))
     rows += [("abstains because", reason) for reason in found.reasons]
-    rows += [("little rests on that", found.contradiction)] if found.contradiction else []
+    rows += [("weak answer", found.contradiction)] if found.contradiction else []
     return [*rows, *(("note", note) for note in found.notes)]
 
 
 def _vote_text(found: Prediction, vote: Vote) -> str:
     shares = ", ".join(f"{state} {share:.2f}" for state, share in zip(found.classes, vote.probability, strict=True))
     agree = "" if vote.agreement is None else f"; {vote.agreement:.0%} of {vote.parts} agree"
-    right = "" if vote.accuracy is None else f"; right on {vote.accuracy.value:.0%} of its test records"
-    return f"{shares}{agree}{right}{' (not to be taken)' if found.reasons else ''}"
+    right = "" if vote.accuracy is None else f"; right in {vote.accuracy.value:.0%} of its test records"
+    return f"{shares}{agree}{right}{' (do not use)' if found.reasons else ''}"

@@ -67,7 +67,7 @@ def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | No
         html.table(
             ("Indicator and channel", "Median"),
             values,
-            caption="Median of each indicator over the pieces of the recording; levels in m/s², ratios without unit.",
+            caption="Median of each indicator over the pieces of the recording. Levels in m/s², ratios without unit.",
             sortable=True,
             tall=True,
         ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from diagnostics.page.wording import counted, joined, percent
+from diagnostics.page.wording import capitalised, counted, joined, percent
 from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.release.model_facts import ModelFacts
 
@@ -22,26 +22,26 @@ def prediction_summary(found: Prediction) -> list[str]:
     speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
     source = "the tacho" if found.pulses.source == "tacho" else f"the mesh lines of {found.pulses.source}"
     if found.reasons:
-        reasons = "; ".join(reason.rstrip(".") for reason in found.reasons)
-        answer = f"No answer should be taken: {reasons}"
+        reasons = [f"{capitalised(reason.rstrip('.'))}." for reason in found.reasons]
+        answer = f"The models give no answer for this recording. {' '.join(reasons)}"
     else:
-        answer = f"The recording is most like the state {found.state}"
+        answer = f"The recording is most like the state {found.state}."
         if found.contradiction:
-            answer += f", but little rests on that: {found.contradiction}"
-    withheld = ", which is not to be taken" if found.reasons else ""
+            answer += f" This answer is weak: {found.contradiction}."
+    withheld = " Do not use these states." if found.reasons else ""
     return [
-        f"{answer}.",
-        *([f"Most probable is {joined(votes)}{withheld}."] if votes else []),
+        answer,
+        *([f"The most probable state is {joined(votes)}.{withheld}"] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
-        f"This rests on {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
-        f"revolutions at {speed}, from {source}.",
+        f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
+        f"revolutions. The pinion speed is {speed}, from {source}.",
     ]
 
 
 def _weight(vote: Vote) -> str:
     """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
     agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the {vote.parts} agree"]
-    right = [] if vote.accuracy is None else [f"right on {percent(vote.accuracy.value)} of its test records"]
+    right = [] if vote.accuracy is None else [f"right in {percent(vote.accuracy.value)} of its test records"]
     return "; ".join([percent(float(vote.probability.max())), *agree, *right])
 
 

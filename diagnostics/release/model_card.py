@@ -35,7 +35,8 @@ def model_card(training: Training, dataset: Dataset) -> str:
         _scores(training),
         _probabilities(training),
         "## Limits",
-        "Trained on simulated records only. Do not use the scores as an estimate of performance on measured records.",
+        "The models were trained on simulated records only. Do not use the scores as an estimate of performance on "
+        "measured records.",
     ]
     if training.notes:
         parts += ["## Notes", "\n".join(f"* {note}" for note in training.notes)]
@@ -49,7 +50,7 @@ def _data(training: Training, dataset: Dataset) -> str:
         [
             f"* identity of the set: `{dataset.manifest['identity']}`",
             f"* {class_text(training.split)}",
-            f"* specimens: {count}; no specimen is in two splits",
+            f"* specimens: {count} (no specimen is in two splits)",
             f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
         ]
     )
@@ -66,22 +67,21 @@ def class_text(split: SpecimenSplit) -> str:
 
 def _files(training: Training) -> str:
     lines = [
-        "* `classifier.skops`: medians for undefined values, standardisation, logistic regression "
-        f"with ridge penalty (C = {training.classifier.strength:g}, chosen by cross-validation over training and "
-        f"validation gearboxes) on {len(training.classifier.features)} columns, {len(training.classifier.logarithms)} "
-        "of them as logarithms; `feature_names.json` lists them in order, with the settings of their definitions. "
-        f"Columns: {columns_text(training.classifier.features)}",
+        f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
+        f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
+        f"columns are standardised. C = {training.classifier.strength:g} was chosen by cross-validation over training "
+        "and validation gearboxes. `feature_names.json` lists the columns in order, with the settings of their "
+        f"definitions. Columns: {columns_text(training.classifier.features)}",
     ]
     if training.network:
         facts = training.network.facts
         windows = facts.windows
         lines += [
-            f"* `cnn.safetensors`: 1-D network with a wide first layer, on windows of {windows.revolutions} pinion "
-            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles; input "
-            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2; normalisation is part of the network",
-            "* `cnn.onnx`: the same, input `windows`, output `logits`; average the class probabilities over "
-            "the windows "
-            f"of a record, {windows.hop_revolutions} revolutions apart",
+            f"* `cnn.safetensors`: 1-D network with a wide first layer. A window has {windows.revolutions} pinion "
+            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles. The input is "
+            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2. The network normalises it.",
+            "* `cnn.onnx`: the same network, input `windows`, output `logits`. Average the class probabilities over "
+            f"the windows of a record. Windows are {windows.hop_revolutions} revolutions apart.",
         ]
     return "\n".join(lines)
 
@@ -100,9 +100,9 @@ def _scores(training: Training) -> str:
     head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
     first = training.judged[0].scores
     return "\n".join([head, *(_row(found) for found in training.judged)]) + (
-        "\n\nIntervals: 95 %, bootstrap over test specimens. Always naming the most frequent class gives an accuracy "
-        f"of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}; both AUROC have 0.50 as "
-        "chance. Detection: healthy against all damaged records, by 1 - p(healthy)."
+        "\n\nThe 95 % intervals come from a bootstrap over test specimens. Always naming the most frequent class gives "
+        f"an accuracy of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}. Chance is 0.50 "
+        "for both AUROC. Detection is healthy against all damaged records, by 1 - p(healthy)."
     )
 
 
@@ -133,9 +133,9 @@ def _probabilities(training: Training) -> str:
     ]
     lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
     return "\n".join(lines) + (
-        "\n\nThe saved models give probabilities with T, which comes from validation specimens and is 1 where it does "
-        "not help those left out of its fit. Chance alone makes the calibration error positive: the last column is "
-        "what it would be on these records, were the probabilities (with T) true."
+        "\n\nThe saved models give probabilities with the temperature T. T comes from validation specimens. It is 1 "
+        "where it does not help validation specimens that are left out of its fit. Chance alone makes the calibration "
+        "error positive. The last column gives its value on these records if the probabilities (with T) were true."
     )
 
 

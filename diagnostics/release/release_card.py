@@ -11,18 +11,19 @@ def release_card(found: Release) -> str:
     teeth = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
     lines = [
         "## Use on recordings",
-        f"* digest of the set's manifest, which holds the hash of every file: `{facts.manifest_digest}`",
+        f"* digest of the set's manifest (the manifest holds the hash of every file): `{facts.manifest_digest}`",
         f"* `model.json`: channels ({', '.join(facts.channels)}), {facts.fs_hz:g} Hz, {teeth} teeth, "
         f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz pinion speed, "
-        f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation; outside of "
-        "these no answer is given, apart from the torque, which a recording does not tell",
-        f"* distance to the training records: threshold {distance.threshold:.2f} from {distance.held_out_specimens} "
-        f"held-out specimens; it refuses {found.test_outside:.1%} of the test records, which are of the same family",
+        f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
+        "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",
+        f"* distance to the training records: the threshold is {distance.threshold:.2f}, from "
+        f"{distance.held_out_specimens} held-out specimens. It refuses {found.test_outside:.1%} of the test records, "
+        "which are of the same family.",
     ]
     if found.referenced:
         accuracy = found.referenced.scores.accuracy.value
         lines.append(
-            "* `referenced_classifier.skops`: on log features minus those of healthy records of the same gearbox at "
-            f"other operating points; accuracy {accuracy:.2f} on test specimens"
+            "* `referenced_classifier.skops`: uses log features minus those of healthy records of the same gearbox in "
+            f"another state, repeat or operating point. Its accuracy is {accuracy:.2f} on test specimens."
         )
     return "\n\n".join([lines[0], "\n".join(lines[1:])]) + "\n"

@@ -34,9 +34,9 @@ def comparison_table(training: Training) -> str:
     ]
     head = ["Paired difference", "Macro-AUROC", "Accuracy", "Interval excludes 0"]
     caption = (
-        "Paired differences on the same resampled specimens, with 95 % limits; where the limits of macro-AUROC hold 0, "
-        "the set does not tell which classifier is better. Every interval stands for itself: of many pairs without any "
-        f"difference about one in twenty excludes 0. Below {FEWEST_SPECIMENS} test gearboxes that is not told."
+        "Paired differences on the same resampled specimens, with 95 % limits. Where the limits of macro-AUROC include "
+        "0, the set does not show which classifier is better. There is no correction for many pairs: about one pair in "
+        f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_SPECIMENS} test gearboxes."
     )
     return table(head, rows, caption=caption, sortable=True)
 
@@ -54,7 +54,9 @@ def severity_table(training: Training) -> str:
         [Cell(row.title), interval_cell(row.error_mm2), interval_cell(row.spearman, sign=True)]
         for row in training.severity
     ]
-    caption = "Severity as a number on the same test specimens; the median of training knows nothing of the signal."
+    caption = (
+        "The damaged area as a number, on the same test specimens. The median of training does not use the signal."
+    )
     return table(
         ["Damaged area by", "Mean absolute error [mm²]", "Rank correlation [-]"], rows, caption=caption, sortable=True
     )
@@ -67,8 +69,8 @@ def other_set_table(training: Training) -> str:
     head = ["Classifier", "Macro-AUROC there", "Macro-AUROC here", "Accuracy there", "Accuracy here"]
     there = training.other[0].scores
     caption = (
-        f"Judged on the other set, {training.other_name}, without any training on it: "
-        f"{counted(there.records, 'record')} of {counted(there.specimens, 'specimen')}."
+        f"Scores on the other set, {training.other_name}: {counted(there.records, 'record')} of "
+        f"{counted(there.specimens, 'specimen')}. No classifier was trained on it."
     )
     return table([*head, "Calibration error there"], rows, caption=caption, sortable=True)
 
@@ -82,7 +84,7 @@ def split_table(rows: tuple[SplitScore, ...]) -> str:
     """Return what every way to split does to the score."""
     cells = [
         [
-            Cell(row.title, "shares gearboxes between both sides" if row.leaky else ""),
+            Cell(row.title, "the same gearboxes on both sides" if row.leaky else ""),
             interval_cell(row.indicators.macro_auroc),
             interval_cell(row.rms.macro_auroc),
             interval_cell(row.indicators.accuracy),
@@ -91,7 +93,7 @@ def split_table(rows: tuple[SplitScore, ...]) -> str:
         for row in rows
     ]
     head = ["Held out", "Macro-AUROC, indicators", "Macro-AUROC, RMS", "Accuracy, indicators", "Folds"]
-    caption = "The same windows and logistic regression under different ways to hold windows out; 95 % limits."
+    caption = "Scores by the way windows are held out, with 95 % limits. Windows and logistic regression stay the same."
     return table(head, cells, caption=caption, sortable=True)
 
 
@@ -103,8 +105,8 @@ def curve_table(points: tuple[CurvePoint, ...]) -> str:
     ]
     head = ["Training specimens", "Macro-AUROC, indicators", "Macro-AUROC, RMS"]
     caption = (
-        "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws; C is chosen on "
-        "validation specimens, so that the last point is the classifier above."
+        "Learning curve: macro-AUROC on the test specimens, mean and range of up to five draws. C is chosen on the "
+        "validation specimens. The last point is therefore the classifier above."
     )
     return table(head, rows, caption=caption, sortable=True)
 
@@ -126,7 +128,7 @@ def score_blocks(training: Training) -> list[str]:
 def study_blocks(studies: Studies | None) -> list[str]:
     """Return the section of studies, or how to have it."""
     if studies is None:
-        return [paragraph("Not run; `siggen-diagnostics report DIR --studies` adds what each split does to the score.")]
+        return [paragraph("The studies were not run. Run them: `siggen-diagnostics report DIR --studies`.")]
     return [paragraph(split_sentence(studies.splits)), split_table(studies.splits), curve_table(studies.curve)]
 
 
@@ -134,17 +136,17 @@ def split_sentence(rows: tuple[SplitScore, ...]) -> str:
     """Say how much of the score by random windows is left where the gearbox is unseen."""
     by_title = {row.title: round(row.indicators.macro_auroc.value, 2) for row in rows}
     leaky, strict = by_title.get("random windows (leaky)", math.nan), by_title.get("specimens", math.nan)
-    first = "The same windows of 8 pinion revolutions and the same logistic regression, split in different ways."
+    first = "The same windows of 8 pinion revolutions are split in different ways, for the same logistic regression."
     if not math.isfinite(strict - leaky):
         return first
-    verdict = f"loses {leaky - strict:.2f}" if strict < leaky else "loses nothing"
+    verdict = f"{leaky - strict:.2f} less" if strict < leaky else "nothing is lost"
     text = (
-        f"{first} Random windows give {leaky:.2f}; held out by specimen the score {verdict} ({strict:.2f}). Random "
-        "windows have pieces of one record on both sides and are shown as the mistake they are."
+        f"Random windows give a macro-AUROC of {leaky:.2f}, windows held out by specimen give {strict:.2f} ({verdict})."
+        f" {first} Random windows are a mistake: pieces of one record are on both sides."
     )
     if by_title.get("records", math.nan) < strict:
         text += (
-            f" Held out by record the score is lower still ({by_title['records']:.2f}): training records of the same "
-            "gearbox are mostly of its other states, and what they share with the held-out one points to those."
+            f" Windows held out by record score lower still ({by_title['records']:.2f}). Most training records of the "
+            "same gearbox show its other states, so their resemblance leads to the wrong state."
         )
     return text

@@ -6,7 +6,7 @@ import math
 
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import joined, percent, percent_limits, signed, signed_limits
+from diagnostics.page.wording import capitalised, joined, percent, percent_limits, signed, signed_limits
 from diagnostics.statistics.judgement import RMS_ALONE, TITLES, Judged
 from diagnostics.training.training import Training
 
@@ -21,7 +21,11 @@ def detection_blocks(training: Training) -> list[str]:
     blocks.append(detection_table(shown, f"Damaged or not: {reading(training)}"))
     other = tuple(found for found in training.other if found.detection)
     if other:
-        blocks.append(detection_table(other, f"Damaged or not on the other set {training.other_name}, read likewise."))
+        blocks.append(
+            detection_table(
+                other, f"Damaged or not on the other set {training.other_name}. Read it like the table before."
+            )
+        )
     return blocks
 
 
@@ -29,7 +33,8 @@ def class_sentences(training: Training) -> list[str]:
     """Say which states are one class; nothing where every state is a class of its own."""
     merged = {name: states for name, states in training.split.members.items() if len(states) > 1}
     return [
-        f"Class {name}: records of {', '.join(states)}. No damage tells them apart, so no classifier is asked to."
+        f"The class {name} holds the records of {', '.join(states)}. No damage distinguishes these states, so no "
+        "classifier has to."
         for name, states in merged.items()
     ]
 
@@ -45,17 +50,17 @@ def balance_sentences(training: Training) -> list[str]:
         for found in training.judged
     ]
     return [
-        f"Classes are unequal: always naming the most frequent one gives an accuracy of {percent(first.guess)}. "
-        f"Averaged over the classes, the right one is named by {joined(parts)}; guessing gives "
-        f"{percent(1 / len(first.classes))}."
+        f"The classes have unequal numbers of records. Always naming the most frequent class gives an accuracy of "
+        f"{percent(first.guess)}. The balanced accuracy, a mean over the classes, is: {joined(parts)}. Guessing gives "
+        f"{percent(1 / len(first.classes))} of it."
     ]
 
 
 def reading(training: Training) -> str:
     """Say how the table is to be read."""
     return (
-        f"AUROC of 1 − p({training.split.healthy}) on the test specimens, one alarm for all damages; "
-        "0.5 is chance. Limits: 95 %, resampled specimens."
+        f"AUROC of 1 − p({training.split.healthy}) on the test specimens. One alarm covers all kinds of damage. "
+        "Chance is 0.5. The 95 % limits come from resampled specimens."
     )
 
 
@@ -67,8 +72,8 @@ def gain_sentences(training: Training) -> list[str]:
         return []
     best, gain = max(defined, key=lambda entry: entry[1].value)
     return [
-        f"Over RMS alone, {TITLES[best.first]} gains {signed(gain.value)} ({signed_limits(gain)}, paired over the "
-        "specimens)."
+        f"{capitalised(TITLES[best.first])} has the largest gain in detection over RMS alone: {signed(gain.value)} of "
+        f"AUROC ({signed_limits(gain)}, paired over the specimens)."
     ]
 
 
@@ -84,4 +89,4 @@ def detection_table(found: tuple[Judged, ...], caption: str) -> str:
         for judged in found
         if judged.detection
     ]
-    return table(["Classifier", "all damages", *states], rows, caption=caption, sortable=True)
+    return table(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)

@@ -59,14 +59,16 @@ def draw(
         _draw_scores(drawing, training)
     if studies:
         figure = score_figures.learning_curve_figure(studies.curve)
-        caption = "Macro-AUROC on the test specimens over the number of training specimens: mean, range of draws."
+        caption = (
+            "Macro-AUROC on the test specimens over the number of training specimens: mean and range of the draws."
+        )
         drawing.studies["learning_curve"] = (figure, caption)
     shown = distinct_features(found, INDICATORS_SHOWN)
     if shown:
         figure = score_figures.indicator_figure(matrix, shown, classes, colours)
         drawing.indicators["indicators"] = (
             figure,
-            "The strongest single indicators of different definition, all specimens.",
+            "The strongest single indicators of different definitions, on all specimens.",
         )
     return drawing
 
@@ -86,7 +88,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str])
         f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
     )
     figure = vibration_figures.waveform_figure(examples, colours)
-    drawing.vibration["waveforms"] = (figure, f"Waveform per state: {which}; dotted: one pinion revolution.")
+    drawing.vibration["waveforms"] = (figure, f"Waveform in each state: {which}. Dotted: one pinion revolution.")
     spectra = [example.spectrum for example in examples.examples if example.spectrum]
     if not spectra:
         drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
@@ -119,9 +121,9 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
 
 def _draw_scores(drawing: Drawing, training: Training) -> None:
     specimens = training.judged[0].scores.specimens
-    caption = f"Scores on {specimens} test specimens with 95 % intervals from resampled specimens; dashed: chance."
+    caption = f"Scores on {specimens} test specimens, with 95 % intervals from resampled specimens. Dashed: chance."
     drawing.scores["scores"] = (score_figures.score_figure(training), caption)
-    caption = "Permutation control: the same training with shuffled labels (dots) must scatter around 0.5."
+    caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
     drawing.scores["permuted"] = (score_figures.permutation_figure(training), caption)
     for judged in training.judged:
         figure = score_figures.confusion_figure(judged)

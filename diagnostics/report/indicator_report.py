@@ -38,14 +38,16 @@ if TYPE_CHECKING:
 CURVES_SHOWN = 6
 PAGE, NUMBERS = "indicators.html", "indicators.json"
 HOW_TO_READ = (
-    "Two designs. Other specimens: healthy against damaged records of all gearboxes; AUC 0.5 is chance, Cliff's delta "
-    "is 2 AUC − 1. Same specimen: each damaged record minus the healthy one of the same gearbox, operating point and "
-    "repeat; the share of pairs in which the indicator is higher after. Scores are means over the states, turned by "
-    "the direction with damage, which the same-specimen design tells. Limits: 95 %, resampled specimens. p-values: "
-    "specimen means, Mann-Whitney (other specimens, conservative, since healthy and damaged gearboxes are the same) "
-    "and Wilcoxon (same specimen), adjusted by Holm over all indicators, channels and states. NA4, NA4* and NB4 "
-    "compare each record with the healthy and milder ones of its own specimen, in the true order of severity: among "
-    "other specimens they know more than the indicators of single records, and the summary leaves them out."
+    'Indicators are judged in two designs. "Other specimens" compares healthy with damaged records of all gearboxes. '
+    'There an AUC of 0.5 is chance, and Cliff\'s delta is 2 AUC − 1. "Same specimen" compares each damaged record with '
+    "the healthy one of the same gearbox, operating point and repeat. It gives the share of pairs in which the "
+    "indicator is higher after damage. A score is the mean over the states, turned so that 1 is perfect. The direction "
+    "of turning comes from the same-specimen design. The 95 % limits come from resampled specimens. The p-values come "
+    "from specimen means: Mann-Whitney for other specimens, Wilcoxon for the same specimen. Holm's method adjusts them "
+    "over all indicators, channels and states. Mann-Whitney is conservative here, because healthy and damaged "
+    "gearboxes are the same. NA4, NA4* and NB4 compare each record with the healthy and milder ones of its own "
+    "specimen, in the true order of severity. They know more than indicators of single records, so the summary leaves "
+    "them out."
 )
 
 
@@ -158,29 +160,29 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     drawn: dict[str, tuple[Figure | None, str]] = {
         "separation": (
             indicator_figures.separation_figure(found, names),
-            f"Separation of each state from healthy, the best {indicator_figures.ROWS_SHOWN} indicators, median over "
-            "channels, turned so that 1 (red) is perfect and 0.5 (white) chance. Others: AUC between specimens. Same: "
-            "share of pairs of one specimen that move its way.",
+            f"Separation of each state from healthy by the best {indicator_figures.ROWS_SHOWN} indicators, median over "
+            "channels. 1 (red) is perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs "
+            "of one specimen that move in the direction of the indicator.",
         ),
         "sensitivity": (
             indicator_figures.sensitivity_figure(found),
-            "What moves the same indicators in healthy records: adjusted share of rank variance that each cause "
-            "explains alone, median over channels.",
+            "What changes the same indicators in healthy records. Shown is the adjusted share of rank variance that "
+            "each cause explains alone, median over channels.",
         ),
         "severity": (
             indicator_figures.severity_figure(matrix, evaluated.shown, names, intact),
-            "Indicators over the severity ladder: median (red), 5 to 95 % of the records (blue), specimens (grey).",
+            "Indicators over the severity of damage: median (red), 5 to 95 % of the records (blue), specimens (grey).",
         ),
         "detection": (
             indicator_figures.detection_figure(
                 matrix, evaluated.records, evaluated.shown, evaluated.settings.false_alarms
             ),
             f"Share of alarms over the damaged area at {percent(evaluated.settings.false_alarms)} false alarms "
-            "(dashed), other specimens, with 95 % limits; dotted: a50 and a90.",
+            "(dashed), between different specimens, with 95 % limits. Dotted: a50 and a90.",
         ),
         "noise": (
             indicator_figures.noise_figure(evaluated.noise, names),
-            "Separation over the signal-to-noise ratio: records in groups of equal count, 95 % limits.",
+            "Separation over the signal-to-noise ratio, with 95 % limits. Each group has the same number of records.",
         ),
     }
     return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
@@ -241,10 +243,10 @@ def _write_page(
         html.paragraph(_size_text(evaluated)),
         indicator_tables.trend_html(found, names),
         grid("severity", "noise", "detection"),
-        html.heading("What moves indicators in healthy records"),
+        html.heading("What changes indicators in healthy records"),
         html.paragraph(
-            "Adjusted share of rank variance that each cause explains alone; speed, load and signal-to-noise ratio as "
-            "a parabola, sensor and specimen as groups. Causes may share variance."
+            "The table gives the adjusted share of rank variance that each cause explains alone. Speed, load and "
+            "signal-to-noise ratio are fitted as a parabola, sensor and specimen as groups. Causes may share variance."
         ),
         indicator_tables.sensitivity_html(found),
         *([html.heading("Undefined values"), undefined] if undefined else []),
@@ -270,15 +272,16 @@ def _left_out(table: IndicatorTable) -> dict[str, float]:
 def _size_text(evaluated: Evaluated) -> str:
     repeated = evaluated.records.pairs.null_rows.size > 0
     same = (
-        "Same specimen: changes against the specimen's first healthy record, the threshold from its other healthy ones."
+        "On the same specimen, changes are taken against its first healthy record. Its other healthy records set the "
+        "threshold."
         if repeated
-        else "On the same specimen no threshold can be set, since healthy records are not repeated (repeats > 1)."
+        else "On the same specimen no threshold can be set: the set has no repeated healthy records (repeats > 1)."
     )
     return (
-        f"a50 and a90: size at which half and 90 % of the damaged records give an alarm, at "
-        f"{percent(evaluated.settings.false_alarms)} false alarms among healthy ones. ≤: found already at the smallest "
-        f"damage of the set. {same} Monotonicity: mean sign of the steps up the ladder. An indicator need not be "
-        "monotone: pitting over many teeth lowers FM4 again."
+        f"a50 and a90 are the sizes at which 50 % and 90 % of the damaged records give an alarm. The rate of false "
+        f"alarms among healthy records is {percent(evaluated.settings.false_alarms)}. The sign ≤ means: found already "
+        f"at the smallest damage of the set. {same} Monotonicity is the mean sign of the steps from each severity to "
+        "the next. An indicator need not be monotone: pitting over many teeth lowers FM4 again."
     )
 
 
@@ -292,7 +295,7 @@ def _notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
         *kind_notes(dataset, evaluated.records.states),
         *clipping_notes(dataset),
         f"Revolutions averaged: pinion {_range(table.revolutions[:, 0])}, gear {_range(table.revolutions[:, 1])}. "
-        "Values of averages depend on their number where noise matters (see noise_share).",
+        "Where noise matters, values from averages depend on the number of revolutions (see noise_share).",
         f"Settings: {settings}; bootstrap seed {evaluated.settings.seed}, "
         f"{evaluated.records.weights.shape[0] - 1} resamples.",
         f"Shaft angles come from {f'mesh lines within {angle[0]:g} to {angle[1]:g} Hz' if angle else 'the pulses'}.",
@@ -309,8 +312,8 @@ def kind_notes(dataset: Dataset, damaged: Sequence[str]) -> list[str]:
         return []
     listed = "; ".join(f"{kind}: {', '.join(members)}" for kind, members in kinds.items())
     return [
-        f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 mean something along one "
-        "ladder of damage only, not across these; --state NAME, given once per state, judges those of one kind."
+        f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 are meaningful within one "
+        "kind only. To judge the states of one kind, give --state NAME once for each."
     ]
 
 

@@ -20,12 +20,12 @@ WITH_HISTORY = ("na4_", "nb4_")
 def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
     """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
     if not states:
-        return ["The set has no damaged state: indicators stand in the tables, and nothing can be told apart."]
+        return ["The set has no damaged state, so no separation can be judged. The tables give the indicators."]
     if specimens < FEWEST_SPECIMENS:
-        whose, those = ("a single specimen", "that specimen") if specimens == 1 else (f"{specimens} specimens", "those")
+        whose, those = ("a single specimen", "it") if specimens == 1 else (f"{specimens} specimens", "them")
         return [
-            f"With {whose} the numbers below describe {those} and name no best indicator: they say nothing about "
-            f"others. It takes {FEWEST_SPECIMENS} specimens at least."
+            f"No best indicator is named, because the set has {whose}. The numbers below describe {those} and say "
+            f"nothing about others. At least {FEWEST_SPECIMENS} specimens are needed."
         ]
     return [*_best(found, states), *_by_state(found, states), *_survivors(found, specimens), *_smallest(found)]
 
@@ -38,20 +38,21 @@ def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
 def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
     single = [r for r in single_records(found) if math.isfinite(r.score_others.value)]
     if not single:
-        return ["No indicator can be judged between specimens: its values or the healthy records are missing."]
+        return ["No indicator can be judged between specimens: values or healthy records are missing."]
     other = max(single, key=lambda r: r.score_others.value)
     what = "AUC" if len(states) == 1 else "mean AUC over the states"
     text = (
-        f"Between other specimens {other.column} separates best among the indicators of single records, with "
-        f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)})"
+        f"The indicator {other.column} separates best between different specimens, with "
+        f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)}). "
+        "Only indicators of single records are compared here."
     )
     paired = [r for r in single if math.isfinite(r.score_same.value)]
     if not paired:
-        return [f"{text}."]
+        return [text]
     same = max(paired, key=lambda r: r.score_same.value)
     return [
-        f"{text}; on the same specimen before and after it is {'also ' if same is other else ''}{same.column}, which "
-        f"moves its way in {percent(same.score_same.value)} of the pairs."
+        f"{text} {'It is also' if same is other else f'The indicator {same.column} is'} the best on the same specimen "
+        f"before and after damage: it moves in its direction in {percent(same.score_same.value)} of the pairs."
     ]
 
 
@@ -77,9 +78,9 @@ def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list
         return []  # the sentence before has said it
     hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
     return [
-        f"By state the best single indicator reaches an AUC from {best[hardest][0]:.2f} for {hardest} "
-        f"({best[hardest][1]}) to {best[easiest][0]:.2f} for {easiest} ({best[easiest][1]}); the best of many is "
-        "optimistic."
+        f"The state {hardest} is the hardest to find: its best single indicator, {best[hardest][1]}, reaches an AUC of "
+        f"{best[hardest][0]:.2f}. The state {easiest} is the easiest: {best[easiest][1]} reaches "
+        f"{best[easiest][0]:.2f}. These values are optimistic, because each is the best of many."
     ]
 
 
@@ -87,26 +88,28 @@ def _survivors(found: Sequence[IndicatorResult], specimens: int) -> list[str]:
     others, same = ([r for entry in found for r in getattr(entry, design).values()] for design in ("others", "same"))
     tested = [sum(math.isfinite(r.p_value) for r in results) for results in (others, same)]
     if not any(tested):
-        return ["No difference could be tested: a test needs three specimens, healthy and damaged."]
+        return ["No difference could be tested: a test needs three specimens with healthy and damaged records."]
     kept = [sum(r.holm < SIGNIFICANT for r in results) for results in (others, same)]
     mild = sum(r.false_discovery < SIGNIFICANT for r in same)
     text = (
-        f"Of {counted(tested[0], 'comparison')} between other specimens (indicator, channel, state) {kept[0]} "
-        f"{_verb('survive', kept[0])} Holm's correction at {SIGNIFICANT:g}, of {tested[1]} on the same specimen "
-        f"{kept[1]}; {mild} of the latter {_verb('stay', mild)} below a false discovery rate of 5\N{NO-BREAK SPACE}%"
+        f"After Holm's correction at {SIGNIFICANT:g}, {kept[0]} of {counted(tested[0], 'comparison')} between "
+        f"different specimens {_is(kept[0])} significant, and {kept[1]} of {tested[1]} on the same specimen. A "
+        f"comparison is one indicator, channel and state. On the same specimen, {mild} {_is(mild)} below a false "
+        "discovery rate of 5\N{NO-BREAK SPACE}%."
     )
     if smallest_paired_p(specimens) * tested[1] <= SIGNIFICANT:
-        return [f"{text}."]
+        return [text]
     needed = math.ceil(1.0 + math.log2(tested[1] / SIGNIFICANT))
     least = f"{smallest_paired_p(specimens):.2g}"
     return [
-        f"{text}; with {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}, so that "
-        f"Holm's correction needs at least {needed} specimens to let any of {counted(tested[1], 'comparison')} pass."
+        f"{text} With {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}. "
+        f"At least {needed} specimens are needed before any of {counted(tested[1], 'comparison')} can pass Holm's "
+        "correction."
     ]
 
 
-def _verb(verb: str, number: int) -> str:
-    return f"{verb}s" if number == 1 else verb
+def _is(number: int) -> str:
+    return "is" if number == 1 else "are"
 
 
 def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
@@ -114,16 +117,16 @@ def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
     judged = [r for r in single_records(found) if name in r.detectable and not math.isnan(r.detectable[name].value)]
     reached = [r for r in judged if math.isfinite(r.detectable[name].value)]
     if not judged:
-        return ["From which size on damage is found cannot be said: there are too few records, healthy or damaged."]
+        return ["The smallest damage that is found is not known: there are too few healthy or damaged records."]
     if not reached:
         return [
-            "No single indicator finds 90\N{NO-BREAK SPACE}% of any size of damage at this rate of false alarms "
-            "between other specimens."
+            "No single indicator finds 90\N{NO-BREAK SPACE}% of the damage of any size. This is between different "
+            "specimens, at the chosen rate of false alarms."
         ]
     best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value))
     size = best.detectable[name]
     at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
     return [
-        f"The smallest damaged area that is found with 90\N{NO-BREAK SPACE}% probability is {at_most}"
-        f"{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}), by {best.column}."
+        f"The indicator {best.column} finds the smallest damaged area: {at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² "
+        f"({size_text(size.low)} to {size_text(size.high)}) with 90\N{NO-BREAK SPACE}% probability."
     ]

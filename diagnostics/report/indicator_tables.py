@@ -26,7 +26,7 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
         ]
         for rank, r in enumerate(found, start=1)
     ]  # fmt: skip
-    caption = "Ranking between other specimens: AUC of each state against healthy, their mean as score; 95 % limits."
+    caption = "Ranking between different specimens: AUC against healthy with 95 % limits. The score is their mean."
     return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
@@ -41,7 +41,7 @@ def same_specimen_html(found: Sequence[IndicatorResult], states: tuple[str, ...]
         ]
         for r in found
     ]
-    caption = "On the same specimen before and after: share of pairs in which the indicator rises; 95 % limits."
+    caption = "Same specimen before and after damage: share of pairs in which the indicator rises, with 95 % limits."
     return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
@@ -55,14 +55,14 @@ def p_value_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
         ]
         for r in found
     ]  # fmt: skip
-    caption = "p-values between other specimens and on the same specimen, adjusted by Holm."
+    caption = "p-values between different specimens and on the same specimen, adjusted by Holm's method."
     return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
 def best_html(best: Mapping[str, tuple[float, str]]) -> str:
     """Return the best single indicator of every state."""
     rows = [[Cell(state), Cell(f"{value:.2f}", value=value), Cell(column)] for state, (value, column) in best.items()]
-    caption = "Best single indicator by state, between other specimens; the best of many is optimistic."
+    caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     head = ["State", "AUC [-]", "Indicator and channel"]
     return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
 
@@ -79,7 +79,7 @@ def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str
         ]
         for r in found
     ]  # fmt: skip
-    caption = "Trend with severity, and the smallest damage found; 95 % limits."
+    caption = "Trend with severity and the smallest damage found, with 95 % limits."
     effects = [f"Cohen's d, {state}" for state in states] + [f"Paired d, {state}" for state in states]
     effect_rows = [
         [
@@ -92,7 +92,7 @@ def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str
     return table(head, rows, caption=caption, sortable=True, tall=True) + table(
         ["Indicator, channel", *effects],
         effect_rows,
-        caption="Effect sizes between other specimens and on the same specimen; 95 % limits.",
+        caption="Effect sizes between different specimens and on the same specimen, with 95 % limits.",
         sortable=True,
         tall=True,
     )

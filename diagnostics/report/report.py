@@ -116,7 +116,7 @@ def _trained(
     notes = []
     missing = missing_packages("torch", "safetensors") if options.cnn else ()
     if missing:
-        notes.append(f"No network: {', '.join(missing)} not installed (pip install 'siggen[cnn]').")
+        notes.append(f"No network: {', '.join(missing)} is not installed. Install it: pip install 'siggen[cnn]'.")
     for with_network in dict.fromkeys((options.cnn and not missing, False)):
         try:
             chosen = replace(options, cnn=with_network)
@@ -133,7 +133,7 @@ def _studied(
 ) -> tuple[Studies | None, list[str]]:
     """Run the studies; a set that does not allow them gets a note."""
     if training is None:
-        return None, ["No studies, since no classifier could be trained."]
+        return None, ["No studies: no classifier could be trained."]
     try:
         return run_studies(dataset, matrix, training.split, seed, other, stage), []
     except DatasetError as error:
@@ -155,8 +155,8 @@ def clipping_notes(dataset: Dataset) -> list[str]:
         share = np.array(dataset.labels(columns=[name]).column(name).to_pylist(), dtype=np.float64)
         if (share > 0).any():
             notes.append(
-                f"Channel {channel.name} clips in {int((share > 0).sum())} of {counted(share.size, 'record')}, up to "
-                f"{share.max():.1%} of the samples: clipping adds lines to the spectra that no gear made."
+                f"Channel {channel.name} clips in {int((share > 0).sum())} of {counted(share.size, 'record')}, in up "
+                f"to {share.max():.1%} of the samples. Clipping adds lines to the spectra that no gear makes."
             )
     return notes
 
@@ -246,12 +246,12 @@ def _section_tables(section: str, training: Training | None, found: list[Separab
                 *score_blocks(training),
             ]
             if training
-            else [html.paragraph("No classifier was trained, see the notes.")]
+            else [html.paragraph("No classifier was trained. The notes give the reason.")]
         )
     if section == "indicators":
         text = (
-            f"All {counted(len(found), 'feature')} on all specimens: nothing is trained here, so none has to be held "
-            "back. AUC 0.5 means no separation, 0 and 1 a perfect one."
+            f"The table has all {counted(len(found), 'feature')} on all specimens. Nothing is trained here, so no "
+            "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
         )
         followed = area_sentence(found)
         return [html.paragraph(" ".join([*followed, text])), tables.separability_html(found)]

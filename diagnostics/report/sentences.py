@@ -1,4 +1,4 @@
-"""The summary of a report in five sentences, written from its numbers."""
+"""The summary of a report in five findings, written from its numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.page.wording import counted, decimal, joined, limits, percent, percent_limits, signed, signed_limits
+from diagnostics.page.wording import (
+    capitalised,
+    counted,
+    decimal,
+    joined,
+    limits,
+    percent,
+    percent_limits,
+    signed,
+    signed_limits,
+)
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval, error_share_limit
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
@@ -25,7 +35,7 @@ MANY_SPECIMENS = 20
 
 
 def summary(config: dict[str, Any], training: Training | None, found: list[Separability]) -> list[str]:
-    """Return the sentences of the summary; the first says what scores on this set mean.
+    """Return the findings of the summary; the first says what scores on this set mean.
 
     Parameters
     ----------
@@ -45,20 +55,23 @@ def summary(config: dict[str, Any], training: Training | None, found: list[Separ
 def scores_sentence(training: Training) -> str:
     """Say how often each classifier named the right state; the network without augmentation is for the tables."""
     first = training.judged[0].scores
+    shown = [judged for judged in training.judged if judged.name != PLAIN_NETWORK]
+    noun = _noun(training)
     parts = [
-        f"{TITLES[judged.name]} {percent(judged.scores.accuracy.value)} ({percent_limits(judged.scores.accuracy)}, "
-        f"macro-AUROC {decimal(judged.scores.macro_auroc.value)})"
-        for judged in training.judged
-        if judged.name != PLAIN_NETWORK
+        f"{capitalised(TITLES[judged.name])} "
+        f"{f'names the right {noun}' if judged is shown[0] else 'does so'} in {percent(judged.scores.accuracy.value)}"
+        f"{' of records' if judged is shown[0] else ''} ({percent_limits(judged.scores.accuracy)}, "
+        f"macro-AUROC {decimal(judged.scores.macro_auroc.value)})."
+        for judged in shown
     ]
     return (
-        f"On {counted(first.records, 'record')} of {counted(first.specimens, 'test specimen')} the right one of "
-        f"{counted(len(first.classes), _told_apart(training))} was named by {joined(parts)}, where guessing gives "
-        f"{percent(first.guess)}."
+        f"{' '.join(parts)} There are {counted(len(first.classes), noun)}. Always naming the most frequent one gives "
+        f"{percent(first.guess)}. The test has {counted(first.records, 'record')} of "
+        f"{counted(first.specimens, 'specimen')}."
     )
 
 
-def _told_apart(training: Training) -> str:
+def _noun(training: Training) -> str:
     return "state" if all(len(states) == 1 for states in training.split.members.values()) else "class"
 
 
@@ -73,34 +86,34 @@ def comparison_sentence(training: Training) -> str:
         if pair.second == RMS_ALONE and pair.first != PLAIN_NETWORK and math.isfinite(pair.macro_auroc.value)
     }
     if not gains:
-        return "Whether anything beats RMS alone is not known, since macro-AUROC is undefined on these test specimens."
+        return "Nothing can be compared with RMS alone: macro-AUROC is undefined on these test specimens."
     validated = {judged.name: judged.details.get(VALIDATION_AUROC, math.nan) for judged in training.judged}
     if all(math.isfinite(validated[name]) for name in gains):
         best = max(gains, key=lambda name: validated[name])
         text = f"{_gain(TITLES[best], gains[best], len(gains))}{_between(training, best, gains, validated)}"
     else:
         told = [f"{TITLES[name]} {signed(gain.value)} ({signed_limits(gain)})" for name, gain in gains.items()]
-        text = f"Differences of macro-AUROC from RMS alone, paired: {joined(told)}"
+        text = f"The paired differences of macro-AUROC from RMS alone are: {joined(told)}."
     severe = training.rms_severe
     if severe is None or math.isnan(severe.value):
-        return f"{text}."
+        return text
     if severe.value > SATURATED:
         return (
-            f"{text}; yet RMS alone already tells the most severe state from healthy with an AUC of "
-            f"{severe.value:.2f}, so its scores say little about finer methods."
+            f"{text} RMS alone already separates the most severe state from healthy with an AUC of "
+            f"{severe.value:.2f}. Scores on this set therefore say little about finer methods."
         )
     only = " only" if severe.value < WEAK else ""
-    return f"{text}; RMS alone tells the most severe state from healthy with an AUC of {severe.value:.2f}{only}."
+    return f"{text} RMS alone separates the most severe state from healthy with{only} an AUC of {severe.value:.2f}."
 
 
 def _gain(title: str, gain: Interval, count: int) -> str:
     spread = signed_limits(gain) if math.isnan(gain.low) else f"{signed_limits(gain)}, paired"
-    chosen = ", the best on validation specimens" if count > 1 else ""
+    chosen = " It is the best classifier on the validation specimens." if count > 1 else ""
     if gain.value <= 0.0:
-        return f"RMS alone is not beaten by {title}{chosen}: {signed(gain.value)} of macro-AUROC ({spread})"
-    doubt = ", not told apart from none" if gain.low <= 0.0 else ""
-    chosen = f"{chosen}," if chosen else ""
-    return f"Over RMS alone, {title}{chosen} gains {signed(gain.value)} of macro-AUROC ({spread}{doubt})"
+        lost = f"its macro-AUROC differs by {signed(gain.value)} ({spread})"
+        return f"{capitalised(title)} does not beat RMS alone: {lost}.{chosen}"
+    doubt = " This gain cannot be distinguished from zero." if gain.low <= 0.0 else ""
+    return f"{capitalised(title)} gains {signed(gain.value)} of macro-AUROC over RMS alone ({spread}).{doubt}{chosen}"
 
 
 def _between(training: Training, best: str, gains: dict[str, Interval], validated: dict[str, float]) -> str:
@@ -114,8 +127,8 @@ def _between(training: Training, best: str, gains: dict[str, Interval], validate
         return ""
     found = _turned(pair, rival)
     if found.low <= 0.0 <= found.high:
-        return f", from which the {_short(rival)} cannot be told apart"
-    return f", the {_short(rival)} being {signed(found.value)} from it ({signed_limits(found)})"
+        return f" The {_short(rival)} cannot be distinguished from it."
+    return f" The {_short(rival)} differs from it by {signed(found.value)} ({signed_limits(found)})."
 
 
 def _turned(pair: Comparison, first: str) -> Interval:
@@ -129,9 +142,8 @@ def _short(name: str) -> str:
 
 
 def trust_sentence(training: Training) -> str:
-    """Say how certain the scores are and what permuted labels give, in one sentence."""
-    certainty, control = certainty_sentence(training), control_sentence(training)
-    return f"{certainty[:-1]}; {control[0].lower()}{control[1:]}" if control else certainty
+    """Say how certain the scores are and what permuted labels give."""
+    return f"{certainty_sentence(training)} {control_sentence(training)}".rstrip()
 
 
 def certainty_sentence(training: Training) -> str:
@@ -139,17 +151,17 @@ def certainty_sentence(training: Training) -> str:
     specimens = training.judged[0].scores.specimens
     perfect = [TITLES[judged.name] for judged in training.judged if judged.scores.accuracy.value == 1.0]
     if specimens == 1:
-        return "From a single test specimen there are no intervals, and nothing is known about other gearboxes."
+        return "A single test specimen gives no intervals. Nothing is known about other gearboxes."
     if perfect:
         return (
-            f"Without a single error on {specimens} specimens the interval of {joined(perfect)} has no width, yet up "
-            f"to {percent(error_share_limit(specimens))} of specimens with errors remain compatible with that "
-            "(95\N{NO-BREAK SPACE}%, binomial)."
+            f"The interval of {joined(perfect)} has no width, because no record of the {specimens} test specimens is "
+            f"named wrongly. Up to {percent(error_share_limit(specimens))} of specimens with errors remain compatible "
+            "with this result (95\N{NO-BREAK SPACE}%, binomial)."
         )
     verdict = "rough" if specimens < MANY_SPECIMENS else "meaningful"
     return (
-        f"Intervals are 95\N{NO-BREAK SPACE}% and come from resampling the {specimens} test specimens; with so "
-        f"{'few' if specimens < MANY_SPECIMENS else 'many'} they are {verdict}."
+        f"The 95\N{NO-BREAK SPACE}% intervals come from resampling the {specimens} test specimens. With so "
+        f"{'few' if specimens < MANY_SPECIMENS else 'many'} specimens they are {verdict}."
     )
 
 
@@ -164,11 +176,12 @@ def control_sentence(training: Training) -> str:
         if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
-        f"that is off chance (0.5) for {joined(suspicious)}, so the scoring is biased and its scores not to be trusted"
+        f"This is too far from chance (0.5) for {joined(suspicious)}: the scoring is biased. Do not trust these scores."
         if suspicious
-        else "chance is 0.5, so the scoring itself has no bias; against leakage no gearbox is in two splits"
+        else "Chance is 0.5: the control shows no bias of the scoring. No gearbox is in two splits (no leakage)."
     )
-    return f"Trained on permuted labels the macro-AUROC is {joined([_control(judged) for judged in shown])}; {verdict}."
+    given = joined([_control(judged) for judged in shown])
+    return f"Training on permuted labels gives a macro-AUROC of {given}. {verdict}"
 
 
 def _control(judged: Judged) -> str:
@@ -184,19 +197,20 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     """Say which state is hardest, and which single indicator does best there."""
     hardest = hardest_state(found)
     if hardest is None:
-        return ["No single indicator can be judged, since the set lacks healthy or damaged records."]
+        return ["No single indicator can be judged: the set lacks healthy or damaged records."]
     state, entry = hardest
     area = entry.auc[state]
     if math.isnan(area.low):
-        return ["With a single specimen the indicators below describe that specimen; they say nothing about others."]
+        return ["The indicators below describe a single specimen. They say nothing about others."]
     turned = entry.turned(state)
     falls = turned is not area
     states = {name for other in found for name in other.auc}
-    which = f"The state hardest to tell from healthy is {state}" if len(states) > 1 else f"The damaged state is {state}"
+    which = f"The state {state} is the hardest to find" if len(states) > 1 else f"The damaged state is {state}"
     return [
-        f"{which}: the best of {counted(len(found), 'single indicator')}, {entry.feature}, which "
-        f"{'falls' if falls else 'rises'} with damage, reaches an AUC of {turned.value:.2f} ({limits(turned)}; chosen "
-        "on the same specimens, therefore optimistic)."
+        f"{which}. The best of {counted(len(found), 'single indicator')} is {entry.feature}, which "
+        f"{'falls' if falls else 'rises'} with damage. It separates {state} from healthy with an AUC of "
+        f"{turned.value:.2f} ({limits(turned)}). This value is optimistic: the indicator was chosen on the same "
+        "specimens."
     ]
 
 
@@ -207,7 +221,7 @@ def area_sentence(found: list[Separability]) -> list[str]:
         return []
     best = max(followed, key=lambda entry: abs(entry.spearman.value))
     return [
-        f"The damaged area is followed best by {best.feature} (rank correlation {signed(best.spearman.value)}, "
+        f"The indicator {best.feature} follows the damaged area best (rank correlation {signed(best.spearman.value)}, "
         f"{signed_limits(best.spearman)})."
     ]
 

@@ -14,29 +14,23 @@ def is_error_free(config: Mapping[str, Any]) -> bool:
 
 
 def meaning_of_scores(config: Mapping[str, Any], *, scored: bool = True) -> str:
-    """Return the sentence that has to stand before any score of the set, or say that there is none."""
+    """Return the sentences that have to stand before any score of the set, or say that there is none."""
+    error_free = is_error_free(config)
     if not scored:
+        sideband_free = " The gears have no manufacturing errors: healthy records are free of sidebands."
         return (
-            "This page has no scores, for the reason in the notes at its end, so it shows nothing about how well the "
-            "damage could be found, neither in simulation nor on a real machine"
-            + (
-                "; the gears of this set have no manufacturing errors: healthy records are free of sidebands."
-                if is_error_free(config)
-                else "."
-            )
+            "This page has no scores. The notes at its end give the reason. It shows nothing about how well the damage "
+            f"could be found, neither in simulation nor on a real machine.{sideband_free if error_free else ''}"
         )
-    if is_error_free(config):
+    if error_free:
         return (
-            "These scores show that the simulated damage reaches the signals and that the evaluation is "
-            "sound; they do not "
-            "show that such damage could be found on a real machine, because the gears of this set have no "
-            "manufacturing "
-            "errors: healthy records are free of sidebands, so that whatever damage rises above the noise "
-            "separates trivially."
+            "These scores show that the simulated damage reaches the signals and that the evaluation is sound. They do "
+            "not show that such damage could be found on a real machine. The gears of this set have no manufacturing "
+            "errors: healthy records are free of sidebands. Any damage that rises above the noise is therefore "
+            "trivial to separate."
         )
     return (
-        "These scores show how well the damage of this set is told apart on simulated gearboxes that were "
-        "not trained on, "
-        "with manufacturing errors drawn anew for each; they do not show how well it would be found on a real machine, "
-        "which differs from all of them."
+        "These scores show how well the damage of this set is found on simulated gearboxes that were not used for "
+        "training. Each gearbox has its own manufacturing errors. The scores do not show how well the damage would be "
+        "found on a real machine, which differs from all of these gearboxes."
     )

@@ -61,7 +61,7 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
         "Against healthy gearboxes",
         "Spread between the sensors",
         "Best of",
-        "this probe finds nothing",
+        "this method finds nothing",
         "base64",
     ):
         assert part in page

@@ -81,7 +81,7 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
     assert "unlike the training records" in found
     file = save(tmp_path / "run.npz", dataset, 0)
     assert run(monkeypatch, str(folder), str(file), *options("--teeth", "18,31")) == 0
-    assert "18/31 teeth; training knows 18/47 only" in capsys.readouterr().out
+    assert "18/31 teeth, training covers 18/47 only" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -33,18 +33,18 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
 def test_an_answer_comes_with_its_votes_its_distance_and_its_length() -> None:
     assert prediction_summary(prediction(0.83)) == [
         "The recording is most like the state severe.",
-        "Most probable is severe by indicators (95\xa0%; right on 45\xa0% of its test records) and healthy by the "
-        "network (60\xa0%; 50\xa0% of the windows agree).",
+        "The most probable state is severe by indicators (95\xa0%; right in 45\xa0% of its test records) and healthy "
+        "by the network (60\xa0%; 50\xa0% of the windows agree).",
         "Its distance to the training records is 0.83, within the threshold of 2.00.",
-        "This rests on 1\xa0piece of 53 or more pinion revolutions at 36.33\xa0Hz, from the tacho.",
+        "The models used 1\xa0piece of 53 or more pinion revolutions. The pinion speed is 36.33\xa0Hz, from the tacho.",
     ]
 
 
 def test_without_an_answer_the_reasons_come_first_and_the_votes_are_withheld() -> None:
     found = prediction_summary(prediction(3.0, ("too far from training.", "other teeth"), pieces=2))
-    assert found[0] == "No answer should be taken: too far from training; other teeth."
-    assert found[1].endswith(", which is not to be taken.")
-    assert "(95\xa0%; 100\xa0% of the pieces agree; right on 45\xa0% of its test records)" in found[1]
+    assert found[0] == "The models give no answer for this recording. Too far from training. Other teeth."
+    assert found[1].endswith(". Do not use these states.")
+    assert "(95\xa0%; 100\xa0% of the pieces agree; right in 45\xa0% of its test records)" in found[1]
     assert "3.00, beyond the threshold" in found[2]
     assert "2\xa0pieces" in found[3]
 

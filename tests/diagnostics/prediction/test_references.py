@@ -218,11 +218,13 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     reference = ("--reference", str(tmp_path / "slow.npz"), "--reference-fs", str(FS_HZ * 3 // 4))
     found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)[1]
     assert found["state"] == "abstains"
-    assert any(text.startswith("reference slow.npz: sampled at 9600 Hz") for text in found["reasons_to_abstain"])
+    assert any(
+        text.startswith("reference slow.npz: the sampling rate is 9600 Hz") for text in found["reasons_to_abstain"]
+    )
     np.savez(tmp_path / "hurried.npz", **channels(other, 0, (5, 6)))  # read at the old rate: 6/5 of the speed
     found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(tmp_path / "hurried.npz"))[1]
     assert found["state"] == "abstains"
-    assert any("reference hurried.npz: pinion speed of 36" in text for text in found["reasons_to_abstain"])
+    assert any("reference hurried.npz: the pinion speed is 36" in text for text in found["reasons_to_abstain"])
 
 
 def test_the_recording_is_no_reference_to_itself(

@@ -57,7 +57,7 @@ def test_a_contradiction_of_the_votes_stands_beside_the_answer_and_is_no_reason_
     said = f"the classifiers name different states: indicators severe ({sure:.2f}), network healthy (0.97)"
     assert (found.state, found.reasons, found.contradiction) == ("severe", (), said)
     assert prediction_facts(found, model.facts)["contradiction"] == said
-    assert dict(prediction_rows(found))["little rests on that"] == said
+    assert dict(prediction_rows(found))["weak answer"] == said
     assert said in prediction_summary(found)[0]
 
 
@@ -75,7 +75,7 @@ def test_a_vote_comes_with_the_accuracy_that_training_measured(
     found = predicted(model, signals)
     expected = json.loads((model.folder / "model.json").read_text())["scores"]["test"]["indicators"]["accuracy"]
     assert prediction_facts(found, model.facts)["probabilities"]["indicators"]["test_accuracy"] == expected
-    assert f"right on {expected['value']:.0%} of its test records" in dict(prediction_rows(found))["by indicators"]
+    assert f"right in {expected['value']:.0%} of its test records" in dict(prediction_rows(found))["by indicators"]
 
 
 def test_a_single_piece_agrees_with_nobody(model: ReleasedModel, signals: dict[str, np.ndarray]) -> None:

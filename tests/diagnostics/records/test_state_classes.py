@@ -116,11 +116,11 @@ def test_page_card_and_model_say_what_the_healthy_class_holds(twice: Any, traini
     page = " ".join([scores_sentence(training), *detection_blocks(training)])
     page = page.replace("\N{NO-BREAK SPACE}", " ").replace("<wbr>", "")
     for text in (
-        "Class healthy: records of healthy, healthy_again",
-        "the right one of 3 classes",
-        "always naming the most frequent one gives an accuracy of 50 %",
-        "where guessing gives 50",
-        "Over RMS alone, ",
+        "The class healthy holds the records of healthy, healthy_again",
+        "There are 3 classes.",
+        "Always naming the most frequent class gives an accuracy of 50 %",
+        "Always naming the most frequent one gives 50",
+        "has the largest gain in detection over RMS alone: ",
         "Damaged or not on the other set other",
     ):
         assert text in page

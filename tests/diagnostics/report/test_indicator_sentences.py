@@ -37,33 +37,35 @@ def test_two_states_give_four_sentences_that_name_hardest_and_easiest() -> None:
     found = indicator_findings([falls, rises], ("slight", "severe"), 24)
     assert len(found) == 4
     assert "fm4__x separates best" in found[0]
-    assert "it is also fm4__x" in found[0]
-    assert "from 0.60 for slight (fm4__x) to 0.95 for severe (fm4__x)" in found[1]
-    assert "Of 4\xa0comparisons between other specimens (indicator, channel, state) 4 survive" in found[2]
-    assert "is 8\xa0mm² (6 to ∞), by fm4__x" in found[3]
+    assert "It is also the best on the same specimen" in found[0]
+    assert "slight is the hardest to find: its best single indicator, fm4__x, reaches an AUC of 0.60." in found[1]
+    assert "severe is the easiest: fm4__x reaches 0.95." in found[1]
+    assert "optimistic" in found[1]
+    assert "correction at 0.05, 4 of 4\xa0comparisons between different specimens are significant" in found[2]
+    assert "The indicator fm4__x finds the smallest damaged area: 8\xa0mm² (6 to ∞) with 90\xa0%" in found[3]
 
 
 def test_one_state_and_one_survivor_are_in_the_singular() -> None:
     found = indicator_findings([result("rms", {"slight": state(0.9)}, Interval(2.0, 2.0, 2.0))], ("slight",), 24)
     text = " ".join(found)
     assert "with an AUC of 0.90" in found[0]
-    assert "Of 1\xa0comparison between other specimens (indicator, channel, state) 1 survives" in text
-    assert "1 of the latter stays below" in text
+    assert "1 of 1\xa0comparison between different specimens is significant" in text
+    assert "On the same specimen, 1 is below" in text
     assert "at most 2\xa0mm²" in text
-    assert "By state" not in text
+    assert "hardest" not in text
 
 
 def test_few_specimens_are_told_how_many_a_correction_takes() -> None:
     (text,) = [t for t in indicator_findings([result("rms", {"slight": state(0.9)})], ("slight",), 4) if "Holm" in t]
     # 2^(1 - n) below 0.05 for one comparison: n = 6
-    assert "needs at least 6 specimens to let any of 1\xa0comparison pass" in text
+    assert "At least 6 specimens are needed before any of 1\xa0comparison can pass" in text
 
 
 def test_nothing_defined_is_said_and_no_number_is_made_up() -> None:
     lost = result("rms", {"slight": StateResult(UNDEFINED, UNDEFINED, NAN)})
     lost.score_others = lost.score_same = UNDEFINED
     text = " ".join(indicator_findings([lost], ("slight",), 5))
-    for part in ("No indicator can be judged", "No difference could be tested", "too few records"):
+    for part in ("No indicator can be judged", "No difference could be tested", "too few healthy or damaged records"):
         assert part in text
     assert "nan" not in text
     assert "inf" not in text
@@ -72,7 +74,11 @@ def test_nothing_defined_is_said_and_no_number_is_made_up() -> None:
 
 @pytest.mark.parametrize(
     ("states", "specimens", "text"),
-    [((), 24, "no damaged state"), (("slight",), 1, "With a single specimen"), (("slight",), 2, "With 2 specimens")],
+    [
+        ((), 24, "no damaged state"),
+        (("slight",), 1, "the set has a single specimen"),
+        (("slight",), 2, "the set has 2 specimens"),
+    ],
 )
 def test_sets_that_allow_no_finding(states: tuple[str, ...], specimens: int, text: str) -> None:
     (sentence,) = indicator_findings([result("rms", {"slight": state(0.9)})], states, specimens)

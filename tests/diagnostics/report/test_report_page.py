@@ -35,7 +35,7 @@ def test_first_sentence_says_that_error_free_gears_separate_trivially(folder: Pa
     text = (folder / "report.html").read_text()
     first = re.search(r"<p[^>]*>(.*?)</p>", text)
     assert first is not None
-    assert "they do not show that such damage could be found on a real machine" in first.group(1)
+    assert "They do not show that such damage could be found on a real machine" in first.group(1)
     assert "no manufacturing errors" in first.group(1)
 
 

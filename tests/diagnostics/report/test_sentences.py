@@ -45,15 +45,16 @@ def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
     one, two = indicator(0.8, 0.95), indicator(0.6, 0.8, 0.7, "rms__a", "severe")
     (first,) = indicator_sentences([one, two])
     (second,) = area_sentence([one])
-    assert "hardest to tell from healthy is severe: the best of 2\xa0single indicators, rms__a, which rises" in first
-    assert "0.70 (0.60 to 0.80" in first
+    assert "state severe is the hardest to find. The best of 2\xa0single indicators is rms__a, which rises" in first
+    assert "optimistic" in first
+    assert "severe from healthy with an AUC of 0.70 (0.60 to 0.80)" in first
     assert "+0.50" in second
 
 
 def test_an_indicator_that_falls_is_turned_and_a_single_state_is_not_the_hardest() -> None:
     (sentence,) = indicator_sentences([indicator(0.05, 0.2, 0.1)])
-    assert sentence.startswith("The damaged state is slight: the best of 1\xa0single indicator, fm4__a, which falls")
-    assert "an AUC of 0.90 (0.80 to 0.95;" in sentence
+    assert sentence.startswith("The damaged state is slight. The best of 1\xa0single indicator is fm4__a, which falls")
+    assert "an AUC of 0.90 (0.80 to 0.95)" in sentence
 
 
 @pytest.mark.parametrize("found", [[], [Separability("rms__a", {}, UNDEFINED, 1.0)], [indicator(NAN, NAN, NAN)]])
@@ -106,43 +107,50 @@ def training(
 
 
 @pytest.mark.parametrize(
-    ("severe", "text"), [(0.97, "already tells"), (0.95, "AUC of 0.95."), (0.5, "0.50 only."), (NAN, "told apart.")]
+    ("severe", "text"),
+    [
+        (0.97, "already separates"),
+        (0.95, "with an AUC of 0.95."),
+        (0.5, "with only an AUC of 0.50."),
+        (NAN, "distinguished from it."),
+    ],
 )
 def test_a_level_that_finds_severe_damage_by_itself_is_said(severe: float, text: str) -> None:
     sentence = comparison_sentence(training(severe))
     assert text in sentence
-    name = "gradient boosting on indicators, the best on validation specimens,"
-    assert f"{name} gains +0.30 of macro-AUROC (+0.20 to +0.40, paired)" in sentence
+    gain = "Gradient boosting on indicators gains +0.30 of macro-AUROC over RMS alone (+0.20 to +0.40, paired)."
+    assert sentence.startswith(f"{gain} It is the best classifier on the validation specimens.")
 
 
 def test_the_network_is_ahead_or_behind_only_where_the_paired_interval_says_so() -> None:
-    assert "cannot be told apart" in comparison_sentence(training())
+    assert "The 1-D network cannot be distinguished from it." in comparison_sentence(training())
     sentence = comparison_sentence(training(network=(0.1, 0.05, 0.15))).replace("\N{MINUS SIGN}", "-")
-    assert "1-D network being -0.10 from it (-0.15 to -0.05)" in sentence
+    assert "The 1-D network differs from it by -0.10 (-0.15 to -0.05)." in sentence
 
 
 def test_a_network_that_is_best_is_compared_with_the_best_of_the_others() -> None:
     ahead = training(network=(-0.1, -0.15, -0.05), gains=(0.2, 0.3), validated=(0.7, 0.8))
     sentence = comparison_sentence(ahead).replace("\N{MINUS SIGN}", "-")
-    assert "Over RMS alone, 1-D network, the best on validation specimens, gains +0.30" in sentence
-    assert "best of the others, gradient boosting on indicators, being -0.10 from it (-0.15 to -0.05)" in sentence
+    assert sentence.startswith("1-D network gains +0.30 of macro-AUROC over RMS alone")
+    assert "It is the best classifier on the validation specimens." in sentence
+    assert "best of the others, gradient boosting on indicators, differs from it by -0.10 (-0.15 to -0.05)" in sentence
     alike = comparison_sentence(training(network=(-0.1, -0.15, 0.05), gains=(0.2, 0.3), validated=(0.7, 0.8)))
-    assert "from which the best of the others, gradient boosting on indicators, cannot be told apart" in alike
+    assert "The best of the others, gradient boosting on indicators, cannot be distinguished from it." in alike
 
 
 def test_a_gain_that_may_be_none_is_not_sold_as_one() -> None:
-    assert (
-        "+0.05 of macro-AUROC (\N{MINUS SIGN}0.05 to +0.15, paired, not told apart from none)"
-        in comparison_sentence(training(gains=(0.05, 0.0)))
-    )
+    doubtful = comparison_sentence(training(gains=(0.05, 0.0))).replace("\N{MINUS SIGN}", "-")
+    assert "gains +0.05 of macro-AUROC over RMS alone (-0.05 to +0.15, paired)" in doubtful
+    assert "This gain cannot be distinguished from zero." in doubtful
     behind = comparison_sentence(training(gains=(-0.05, -0.1))).replace("\N{MINUS SIGN}", "-")
-    name = "gradient boosting on indicators, the best on validation specimens"
-    assert behind.startswith(f"RMS alone is not beaten by {name}: -0.05 of macro-AUROC")
+    name = "Gradient boosting on indicators"
+    assert behind.startswith(f"{name} does not beat RMS alone: its macro-AUROC differs by -0.05 (")
 
 
 def test_the_classifier_that_is_compared_is_the_best_on_validation_not_on_test() -> None:
     sentence = comparison_sentence(training(gains=(0.2, 0.4), validated=(0.8, 0.7)))
-    assert "gradient boosting on indicators, the best on validation specimens, gains +0.20" in sentence
+    assert sentence.startswith("Gradient boosting on indicators gains +0.20")
+    assert "It is the best classifier on the validation specimens." in sentence
 
 
 def test_without_validation_scores_no_classifier_is_called_the_best() -> None:
@@ -155,15 +163,16 @@ def test_a_set_without_network_has_no_word_about_it() -> None:
     alone = training(network=None)
     text = " ".join([scores_sentence(alone), comparison_sentence(alone), trust_sentence(alone)])
     assert "network" not in text
-    assert "gradient boosting on indicators 60\xa0% (50\xa0% to 70\xa0%, macro-AUROC 0.80) and RMS alone" in text
+    first = "Gradient boosting on indicators names the right state in 60\xa0% of records"
+    assert text.startswith(f"{first} (50\xa0% to 70\xa0%, macro-AUROC 0.80). RMS alone does so in 60\xa0% (")
 
 
 def test_one_test_specimen_has_no_interval_and_no_plural() -> None:
     single = training(specimens=1, network=(0.1, NAN, NAN))
     text = " ".join([scores_sentence(single), comparison_sentence(single), trust_sentence(single)])
-    assert "On 1\xa0record of 1\xa0test specimen" in text
+    assert "The test has 1\xa0record of 1\xa0specimen." in text
     assert "no interval from one specimen" in text
-    assert "From a single test specimen there are no intervals" in text
+    assert "A single test specimen gives no intervals" in text
     assert not re.search(r"\bnan\b|\b1\s\w+s\b", text)
 
 
@@ -180,19 +189,23 @@ def test_undefined_scores_are_called_undefined() -> None:
 def test_no_error_at_all_is_no_proof() -> None:
     sentence = certainty_sentence(training(share=1.0))
     # 1 - 0.05^(1/5): five specimens without an error
-    assert "up to 45\xa0% of specimens with errors" in sentence
+    assert "Up to 45\xa0% of specimens with errors" in sentence
 
 
-@pytest.mark.parametrize(("specimens", "verdict"), [(5, "few they are rough"), (40, "many they are meaningful")])
+@pytest.mark.parametrize(
+    ("specimens", "verdict"), [(5, "few specimens they are rough"), (40, "many specimens they are meaningful")]
+)
 def test_few_specimens_give_rough_intervals(specimens: int, verdict: str) -> None:
     assert verdict in certainty_sentence(training(specimens=specimens))
 
 
 def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> None:
     off = training()
-    assert "the scoring itself has no bias; against leakage no gearbox is in two splits" in control_sentence(off)
+    assert "the control shows no bias of the scoring. No gearbox is in two splits" in control_sentence(off)
     off.judged[0].permuted_auroc = np.array([0.7, 0.75, NAN])
-    assert "off chance (0.5) for gradient boosting on indicators" in control_sentence(off)
+    assert "too far from chance (0.5) for gradient boosting on indicators: the scoring is biased" in control_sentence(
+        off
+    )
     assert "2 runs" in control_sentence(off)
     for found in off.judged:
         found.permuted_auroc = np.array([])
@@ -200,15 +213,16 @@ def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> N
     assert "permuted" not in trust_sentence(off)
 
 
-def test_a_summary_with_scores_has_five_sentences_and_one_without_has_two() -> None:
+def test_a_summary_with_scores_has_five_findings_and_one_without_has_two_in_short_sentences() -> None:
     found = [indicator(0.8, 0.95)]
     config = {"manufacture": {"accuracy_class": 6}}
     for sentences, count in ((summary(config, training(), found), 5), (summary(config, None, found), 2)):
         assert len(sentences) == count
         for sentence in sentences:
             assert sentence.endswith(".")
-            # one sentence each: a full stop only inside numbers
-            assert not re.search(r"[.] [A-Z]", sentence)
+            # one thought a sentence: none has a semicolon or more than 40 words
+            assert ";" not in sentence
+            assert max(len(part.split()) for part in re.split(r"(?<=[.]) (?=[A-Z1])", sentence)) <= 40
 
 
 def test_words_for_numbers() -> None:
