@@ -35,7 +35,8 @@ def contact_notes(config: Config) -> tuple[str, ...]:
     notes = lubrication_notes(_united(healthy), "masjedi_khonsari", *fluid)
     if not (damage_is_geometry(config.dynamics) and any(state.damage is not None for state in config.states)):
         return notes
-    inside = lubrication_notes(_united(pitted), "masjedi_khonsari")
+    # Load, speed and material are those of the healthy flank: only the roughness is news.
+    inside = lubrication_notes(_united(pitted), "masjedi_khonsari", checked=("roughness",))
     return (*notes, *(f"lands inside damage: {note}" for note in inside if note not in notes))
 
 

@@ -17,7 +17,7 @@ def damage_notes(config: Config) -> tuple[str, ...]:
     if not all(parallel for parallel, _ in found) or not any(through for _, through in found):
         return ()
     return (
-        "all spalls are idealised: their edges are exactly parallel to the axis, so those through the face take the "
-        "whole contact line at once; edges of real spalls are skewed and wavy (damage kind: irregular, "
+        "all spalls are idealised: their edges are exactly parallel to the axis, so the whole contact line enters a "
+        "spall across the face at once; edges of real spalls are skewed and wavy (damage kind: irregular, "
         "docs/irregular_spalls.md)",
     )

@@ -45,13 +45,13 @@ def _reversals(config: Config) -> Iterator[str]:
     torque = config.variation.torque
     slow = RARE * bounds(torque.random_rms)[1]
     for body, number, then in (
-        ("load", torque.load_once, "the load drives then"),
-        ("motor", torque.line_ripple, "the motor brakes then"),
+        ("load", torque.load_once, "the load then drives"),
+        ("motor", torque.line_ripple, "the motor then brakes"),
     ):
         least = 1.0 - slow - bounds(number)[1]
         if least < 0.0:
             fall = f"{body} torque falls to {100.0 * least:.3g} % of its mean"
-            yield f"{fall}: {then}, and teeth may part or change flanks"
+            yield f"{fall}: {then}, and teeth may lose contact or touch on the other flank"
 
 
 def _forces(config: Config) -> Iterator[str]:
@@ -64,7 +64,7 @@ def _forces(config: Config) -> Iterator[str]:
 
 def _limits(config: Config) -> Iterator[str]:
     if config.variation.active and config.dynamics.rubbing == "mixed_ehl":
-        yield "the oil film stays that of the operating point's speed and torque while they vary"
+        yield "the oil film is that of the operating point; it does not follow the variation of speed and torque"
 
 
 def _some(number: Number) -> bool:

@@ -23,13 +23,16 @@ def test_torques_that_stay_positive_are_not_remarked(torque):
 
 def test_a_load_that_drives_is_remarked_with_its_least_torque():
     (note,) = reversals(load_once=1.5)
-    assert note == "load torque falls to -50 % of its mean: the load drives then, and teeth may part or change flanks"
+    assert note == (
+        "load torque falls to -50 % of its mean: the load then drives, and "
+        "teeth may lose contact or touch on the other flank"
+    )
 
 
 def test_the_largest_draw_decides_and_rare_random_values_count():
     often = {"kind": "uniform", "low": 0.1, "high": 1.2}
     (note,) = reversals(line_ripple=often)
-    assert note.startswith("motor torque falls to -20 % of its mean: the motor brakes then")
+    assert note.startswith("motor torque falls to -20 % of its mean: the motor then brakes")
     # Four standard deviations of 5 % beside a pulsation of 90 %.
     assert reversals(load_once=0.9) == []
     (note,) = reversals(load_once=0.9, random_rms=0.05)

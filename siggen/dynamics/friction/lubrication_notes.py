@@ -7,6 +7,8 @@ there.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from siggen.dynamics.friction.friction_coefficient import XU_KAHRAMAN_ROUGHEST_M
@@ -25,18 +27,22 @@ RANGES = {
 """Range of each group by formula; 'smooth film' stands for Dowson-Higginson, Dowson-Toyoda and Pan-Hamrock."""
 
 MEANINGS = {
-    "load": "load group F_l/(E' R_e)",
-    "speed": "speed group η_0 u_e/(E' R_e)",
-    "material": "material group α_pv E'",
+    "load": "the load group F_l/(E' R_e)",
+    "speed": "the speed group η_0 u_e/(E' R_e)",
+    "material": "the material group α_pv E'",
     "hardness": "hardness over E'",
     "roughness": "roughness over R_e",
 }
 
 
 def lubrication_notes(
-    groups: FilmGroups, formula: str = "masjedi_khonsari", fluid_friction: str = "constant", roughness_m: float = 0.0
+    groups: FilmGroups,
+    formula: str = "masjedi_khonsari",
+    fluid_friction: str = "constant",
+    roughness_m: float = 0.0,
+    checked: Collection[str] = tuple(MEANINGS),
 ) -> tuple[str, ...]:
-    """Return one sentence for each group that leaves the range of the formula, and for a misused friction formula.
+    """Return one sentence on all groups that leave the range of the formula, and one on a misused friction formula.
 
     Parameters
     ----------
@@ -49,6 +55,9 @@ def lubrication_notes(
     roughness_m : float
         Composite roughness of the roughest flank in question [m].
 
+    checked : collection of str
+        Names of the groups to compare with the range; by default all.
+
     Raises
     ------
     ValueError
@@ -56,24 +65,39 @@ def lubrication_notes(
     """
     if formula not in RANGES:
         raise ValueError(f"formula: received {formula!r}; allowed are {', '.join(RANGES)}")
-    notes = [
-        _outside(formula, MEANINGS[name], getattr(groups, name), low, high)
-        for name, (low, high) in RANGES[formula].items()
-    ]
+    notes = [_outside(formula, groups, checked)]
     if np.min(groups.load) < LOAD_FLOOR:
-        notes.append(f"load group below {LOAD_FLOOR:g}: films and asperity shares are held at their values there")
+        notes.append(
+            f"oil film: the load group falls below {LOAD_FLOOR:g}; film and asperity share keep their values from there"
+        )
     if fluid_friction == "xu_kahraman" and roughness_m > XU_KAHRAMAN_ROUGHEST_M:
         notes.append(
-            f"Xu-Kahraman friction: received a roughness of {roughness_m * 1e6:.3g} µm; it holds up to "
-            f"{XU_KAHRAMAN_ROUGHEST_M * 1e6:.3g} µm, so it is applied with the healthy flank's roughness only"
+            f"oil friction: the roughness of {roughness_m * 1e6:.3g} µm is above the limit of "
+            f"{XU_KAHRAMAN_ROUGHEST_M * 1e6:.3g} µm of the Xu-Kahraman formula; the formula is applied with the "
+            "healthy flank's roughness only"
         )
     return tuple(note for note in notes if note)
 
 
-def _outside(formula: str, meaning: str, values: object, low: float, high: float) -> str:
-    array = np.asarray(values, dtype=np.float64)
-    least, most = float(array.min()), float(array.max())
-    # A thousandth over the end is no news to a reader: the ends themselves are known to one digit.
-    if least >= low * 0.999 and most <= high * 1.001:
+def _outside(formula: str, groups: FilmGroups, checked: Collection[str]) -> str:
+    """Return one sentence for all groups outside the range, with how far they are outside; empty if none is."""
+    parts = []
+    for name, (low, high) in RANGES[formula].items():
+        if name not in checked:
+            continue
+        array = np.asarray(getattr(groups, name), dtype=np.float64)
+        least, most = float(array.min()), float(array.max())
+        # A thousandth over the end is no news to a reader: the ends themselves are known to one digit.
+        if least < low * 0.999:
+            parts.append(f"{MEANINGS[name]} is {_by(low / least)} below")
+        if most > high * 1.001:
+            parts.append(f"{MEANINGS[name]} is {_by(most / high)} above")
+    if not parts:
         return ""
-    return f"{formula}: {meaning} runs from {least:.2g} to {most:.2g}; fitted for {low:g} to {high:g}"
+    return (
+        f"oil film: {', '.join(parts)} the data behind the film formula ({formula}); the film thickness is extrapolated"
+    )
+
+
+def _by(ratio: float) -> str:
+    return "slightly" if ratio < 1.1 else f"up to {ratio:.2g} times"

@@ -52,13 +52,13 @@ def _gear_notes(which: str, gear: SpurGear, options: StiffnessOptions) -> Iterat
     if options.beam == "calibrated":
         # The factor was made against the extrapolated foundation, so the fit range is no limit of the product.
         for sentence in outside_calibration(gear):
-            yield f"{name}: {sentence}; the nearest calibrated gear's factor is used"
+            yield f"{name}: {sentence}; the factor of the nearest calibrated gear is used"
     elif options.foundation == "sainsot":
         for sentence in outside_foundation_fit(gear, options.root_reading):
-            yield f"{name}: {sentence}; the polynomials extrapolate"
+            yield f"{name}: {sentence}; the stiffness of the gear body is extrapolated"
     if options.coupling == "body" and options.beam != "calibrated":
         for sentence in outside_coupling(gear):
-            yield f"{name}: {sentence}; the local part of the nearest gear inside is used"
+            yield f"{name}: {sentence}; the local part of the nearest gear inside these limits is used"
     if options.shape != "rack_trochoid":
         yield from (f"{name}: {sentence}" for sentence in _misplaced_root(gear, options))
 
@@ -67,11 +67,11 @@ def _misplaced_root(gear: SpurGear, options: StiffnessOptions) -> Iterator[str]:
     gap_mm = 1e3 * (gear.root_radius_m - gear.base_radius_m)
     if options.beam == "base_circle" and gap_mm > 0.0:
         yield (
-            f"beam: base_circle starts {gap_mm:.3g} mm below the root circle and bends tooth that does not exist; "
-            f"root_circle, rack_trochoid and calibrated do not"
+            f"beam: base_circle starts {gap_mm:.3g} mm below the root circle; this part of the tooth does not exist, "
+            f"so the tooth is too soft; root_circle, rack_trochoid and calibrated avoid this"
         )
     if gear.undercut:
-        yield f"beam: {options.beam} does not know undercut; rack_trochoid does"
+        yield f"beam: {options.beam} ignores the undercut of this tooth; rack_trochoid includes it"
 
 
 def _pair(pair: GearPair, options: StiffnessOptions) -> Iterator[str]:

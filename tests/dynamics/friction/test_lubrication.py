@@ -104,6 +104,8 @@ def test_notes_name_what_leaves_the_range() -> None:
     inside = FilmGroups(1e-4, 5e-11, 5000.0, 5e-5, 0.02, 7e-3)
     assert lubrication_notes(inside) == ()
     assert "roughness over R_e" in "".join(lubrication_notes(inside._replace(roughness=np.array([1e-5, 1e-3]))))
+    (rough,) = lubrication_notes(inside._replace(roughness=np.array([1e-5, 6e-4])))
+    assert "roughness over R_e is up to 6 times above" in rough
     assert "speed group" in "".join(lubrication_notes(inside._replace(speed=2e-10)))
     assert len(lubrication_notes(inside._replace(load=1e-7))) == 2
     assert "Xu-Kahraman" in "".join(lubrication_notes(inside, fluid_friction="xu_kahraman", roughness_m=2e-6))
