@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 CURVES_SHOWN = 6
 PAGE, NUMBERS = "indicators.html", "indicators.json"
+MOST_DETAILED = 150
+"""Columns in the tables below the ranking: with all of 422 the page of a small set would have 1.3 MB."""
 HOW_TO_READ = (
     'Indicators are judged in two designs. "Other specimens" compares healthy with damaged records of all gearboxes. '
     'There an AUC of 0.5 is chance, and Cliff\'s delta is 2 AUC − 1. "Same specimen" compares each damaged record with '
@@ -228,6 +230,7 @@ def _write_page(
         return html.figure_grid([html.figure_block(*pictures[name]) for name in wanted if name in pictures])
 
     title = f"Indicators of {dataset.path.name}"
+    first = found[:MOST_DETAILED]
     undefined = indicator_tables.undefined_html(found, _left_out(table))
     parts = [
         html.heading(title, 1),
@@ -237,18 +240,19 @@ def _write_page(
         html.paragraph(HOW_TO_READ),
         indicator_tables.best_html(best_by_state(found, names)),
         indicator_tables.ranking_html(found, names),
+        *([html.paragraph(_detail_text(len(found)))] if len(found) > MOST_DETAILED else []),
         grid("separation", "sensitivity"),
-        *(indicator_tables.same_specimen_html(found, names), indicator_tables.p_value_html(found, names)),
+        *(indicator_tables.same_specimen_html(first, names), indicator_tables.p_value_html(first, names)),
         html.heading("Trend with severity, and the smallest damage found"),
         html.paragraph(_size_text(evaluated)),
-        indicator_tables.trend_html(found, names),
+        indicator_tables.trend_html(first, names),
         grid("severity", "noise", "detection"),
         html.heading("What changes indicators in healthy records"),
         html.paragraph(
             "The table gives the adjusted share of rank variance that each cause explains alone. Speed, load and "
             "signal-to-noise ratio are fitted as a parabola, sensor and specimen as groups. Causes may share variance."
         ),
-        indicator_tables.sensitivity_html(found),
+        indicator_tables.sensitivity_html(first),
         *([html.heading("Undefined values"), undefined] if undefined else []),
         html.heading("Definitions"),
         indicator_tables.definition_html(),
@@ -267,6 +271,13 @@ def _left_out(table: IndicatorTable) -> dict[str, float]:
         (p.record_id, channel) for p in table.problems for channel in ([p.channel] if p.channel else table.channels)
     }
     return {channel: sum(name == channel for _, name in lost) / rows for channel in table.channels}
+
+
+def _detail_text(count: int) -> str:
+    return (
+        f"The ranking has all {count} columns. The tables below it have the first {MOST_DETAILED} of the ranking, so "
+        "that the page opens quickly. The file evaluation.csv beside this page has every number of every column."
+    )
 
 
 def _size_text(evaluated: Evaluated) -> str:
