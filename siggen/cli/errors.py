@@ -14,12 +14,12 @@ def errors(
     ],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture of pitch and profiles to draw as well.")] = None,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[
         str | None, typer.Option("--state", help="Which state, where states have gears of their own.")
     ] = None,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as manufacture.accuracy_class=6.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as manufacture.accuracy_class=6.")
     ] = None,
 ) -> None:
     """Write pitch and profile deviations of every tooth, as a machine would measure them about the shaft's axis.

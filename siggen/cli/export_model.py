@@ -13,7 +13,7 @@ def export_model(
     record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
     out: Annotated[Path, typer.Option("--out", help="File to write: .npz.")],
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as duration_s=0.5.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as duration_s=0.5.")
     ] = None,
 ) -> None:
     """Write matrices, mesh law, start state and time grid of one record.

@@ -17,10 +17,10 @@ def flank(
     ],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[str | None, typer.Option("--state", help="Only this state; by default all with damage.")] = None,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as gears.module_mm=3.5.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
     """Write the damage of one specimen, and draw its damaged flanks to scale with the zones of contact.

@@ -19,9 +19,9 @@ def modes(
     ],
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as dynamics.model=casing.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as dynamics.model=casing.")
     ] = None,
 ) -> None:
     """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation.

@@ -19,9 +19,9 @@ def path(
     ],
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as housing.modal_mass_kg=30.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as housing.modal_mass_kg=30.")
     ] = None,
 ) -> None:
     """Print the transfer paths from bearing forces to channels: modes, damping and level.

@@ -13,7 +13,7 @@ def simulate(
     record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .parquet or .csv.")],
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as duration_s=0.5.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as duration_s=0.5.")
     ] = None,
     internals: Annotated[
         bool, typer.Option("--internals/--signals", help="With what no sensor sees, or what is stored alone.")

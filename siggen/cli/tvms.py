@@ -14,7 +14,7 @@ def tvms(
     ],
     out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet.")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Which gearbox of the set.")] = 0,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     pitches: Annotated[
         int | None,
         typer.Option(
@@ -43,7 +43,7 @@ def tvms(
         ),
     ] = False,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Override a key, such as gears.module_mm=3.5.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.")
     ] = None,
 ) -> None:
     """Write the mesh stiffness of every state against the pinion angle (0: the first damaged tooth enters contact).
