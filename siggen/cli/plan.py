@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from siggen.config import Config
 
 
-NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes")
+NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes", "shaft_notes")
 """Lists of sentences in the summary, in the order in which they are printed."""
 
 
@@ -53,6 +53,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.checks.contact_notes import contact_notes
     from siggen.checks.damage_notes import damage_notes
+    from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen.gears import model_notes
@@ -87,6 +88,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "lubrication_notes": list(contact_notes(config)),
         "torque_notes": list(reversal_notes(config)),
         "damage_notes": list(damage_notes(config)),
+        "shaft_notes": list(shaft_notes(config)),
     }
 
 

@@ -140,6 +140,9 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
+    if dynamics.mesh.law == "linear" and dynamics.mesh.contact != "slices":
+        allowed = "allowed: slices, or dynamics.mesh.law: pairs; the linear law knows no contact across the face"
+        yield Problem("dynamics.mesh.contact", f"'{dynamics.mesh.contact}'", allowed)
     if dynamics.mesh.damping == "asperity_share" and dynamics.rubbing != "mixed_ehl":
         allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
         yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)

@@ -13,11 +13,13 @@ from siggen.config.section import Section
 class Shaft(Section):
     """A round steel shaft of one diameter on two bearings, with its gear between them."""
 
-    bearing_span_mm: Annotated[Number, Within(above=0)] = Field(default=100.0, description="distance of the bearings")
+    bearing_span_mm: Annotated[Number, Within(above=0, most=2000)] = Field(
+        default=100.0, description="distance of the bearings"
+    )
     gear_position: Annotated[Number, Within(above=0, below=1)] = Field(
         default=0.5, description="middle of the gear from one bearing, as a share of the span"
     )
-    diameter_mm: Annotated[Number, Within(above=0)] = Field(default=25.0, description="of the shaft")
+    diameter_mm: Annotated[Number, Within(least=5)] = Field(default=25.0, description="of the shaft")
 
 
 class Shafts(Section):

@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.loading import load_config
+from siggen.checks.shaft_notes import shaft_notes
+from siggen.columns.record import RecordFailure
 from siggen.errors import ConfigError
+from siggen.record.simulation import simulate
 from tests.config.minimal import minimal
 
 
@@ -17,6 +20,8 @@ def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
     ("pinion", "key", "words"),
     [
         ({"bearing_span_mm": 0.0}, "bearing_span_mm", "above 0"),
+        ({"bearing_span_mm": 1e6}, "bearing_span_mm", "2000"),
+        ({"diameter_mm": 3.0}, "diameter_mm", "at least 5"),
         ({"bearing_span_mm": 15.0}, "bearing_span_mm", "bearings beside the gear"),
         ({"gear_position": 1.0}, "gear_position", "below 1"),
         ({"gear_position": 0.01}, "bearing_span_mm", "bearings beside the gear"),
@@ -43,3 +48,34 @@ def test_no_section_and_the_default_have_the_same_identity() -> None:
 def test_a_contact_that_feels_no_tilt_is_refused() -> None:
     with pytest.raises(ConfigError, match="no other contact feels a tilt"):
         load_config(minimal(dynamics={"model": "casing", "shafts": {}}))
+
+
+def test_plan_says_what_limits_shafts_and_misalignment() -> None:
+    assert shaft_notes(load_config(minimal())) == ()
+    told = shaft_notes(load_config(with_shafts()))
+    assert any("100 urad" in note for note in told)
+    assert any("several times too hard" in note for note in told)
+    misaligned = load_config(minimal(manufacture={"accuracy_class": 6, "lead_misalignment_um": 5.0}))
+    assert [note for note in shaft_notes(misaligned) if "several times too hard" in note]
+
+
+def test_the_linear_law_has_no_contact_across_the_face() -> None:
+    with pytest.raises(ConfigError, match=r"dynamics\.mesh\.contact"):
+        load_config(minimal(dynamics={"model": "8dof", "mesh": {"law": "linear", "contact": "face"}}))
+
+
+@pytest.mark.parametrize(
+    ("pinion", "reason"),
+    [
+        ({"diameter_mm": 20.0, "bearing_span_mm": 200.0, "gear_position": 0.3}, "the flanks tilt by"),
+        ({"diameter_mm": 10.0, "gear_position": 0.3}, "the flanks tilt by"),
+        ({"diameter_mm": 5.0, "bearing_span_mm": 400.0}, "a gear moves by"),
+    ],
+)
+def test_shafts_that_are_too_soft_end_a_record_with_a_reason(pinion: dict[str, float], reason: str) -> None:
+    config = load_config(with_shafts(**pinion) | {"fs_hz": 25600.0, "duration_s": 0.05})
+    (failure,) = simulate(config, [0])
+    assert isinstance(failure, RecordFailure)
+    assert failure.status == "outside_model"
+    assert reason in failure.reason
+    assert "dynamics.shafts" in failure.reason

@@ -25,6 +25,10 @@ from siggen.dynamics.time.equations import Equations, equations_about, external_
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
+LARGEST_TILT_RAD = 1e-4
+"""At which the expansion in the tilt errs by 2.4 % of the force (`python -m benchmarks.contact loop`)."""
+LARGEST_SHIFT = 0.02
+"""Of a base pitch: gears that shafts let move farther apart no longer mesh at their centre distance."""
 MOTION = ("approach_m", "approach_rate_m_s")
 ACROSS = ("mesh_tilt_rad", "mesh_moment_nm")
 
@@ -88,7 +92,15 @@ class PairMotion:
         self._speed_input = speed_input
 
     def start(self, pitches: float) -> FloatArray:
-        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
+        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction.
+
+        Raises
+        ------
+        ValueError
+            If shafts are so soft that gears tilt or move beyond the model.
+        """
+        if self.tilts:
+            self._refuse_soft_shafts()
         equations, p = self.equations, self.equations.mesh_vector
         approach = static_approach_m(self.law, equations.static_force, pitches)
         stiffness = equations.reference_stiffness
@@ -109,8 +121,29 @@ class PairMotion:
         return rate
 
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
-        """Return at how many states no pair carries."""
+        """Return at how many states no pair carries.
+
+        Raises
+        ------
+        ValueError
+            If the gears tilt beyond the expansion of the contact.
+        """
+        if self.structure.tilt_vector is not None:
+            n = self.structure.tilt_vector.size
+            tilt = self.pair_equations.static_tilt + states[:, :n] @ self.structure.tilt_vector
+            _refuse_tilt(float(np.abs(tilt).max(initial=0.0)), "in motion")
         return _steps_apart(self.pair_equations, self.law, self._pairs, states, pitches)
+
+    def _refuse_soft_shafts(self) -> None:
+        """Raise where the static deflection alone is beyond the model."""
+        _refuse_tilt(abs(self.pair_equations.static_tilt), "under the mean torque")
+        moved = dict(zip(self.structure.coordinates, self.equations.static_deflection, strict=True))
+        shift = max(abs(moved[name]) for name in ("x_1", "y_1", "x_2", "y_2"))
+        if not shift <= LARGEST_SHIFT * self.base_pitch_m:
+            raise ValueError(
+                f"dynamics.shafts: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
+                f"{1e3 * LARGEST_SHIFT * self.base_pitch_m:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
+            )
 
     def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
         """Return the table of pairs of every state (k, slots, COLUMNS), see `pair_law`; without inputs at Ω_0."""
@@ -134,6 +167,15 @@ class PairMotion:
             approach += [pairs[:, 0, TILT], pairs[:, :, MOMENT].sum(axis=1)]
         moved = states[:, :n] + self.equations.static_deflection
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
+
+
+def _refuse_tilt(tilt_rad: float, when: str) -> None:
+    if not tilt_rad <= LARGEST_TILT_RAD:
+        raise ValueError(
+            f"dynamics.shafts: the flanks tilt by {1e6 * tilt_rad:.3g} urad {when}; allowed: at most "
+            f"{1e6 * LARGEST_TILT_RAD:.0f}. Take thicker or shorter shafts, a gear nearer the middle, less "
+            "misalignment or a smaller torque"
+        )
 
 
 def _names(structure: Structure) -> tuple[str, ...]:

@@ -1,0 +1,22 @@
+"""Sentences about contact and tilt across the face, and what limits them."""
+
+from __future__ import annotations
+
+from siggen.config import Config, bounds
+
+
+def shaft_notes(config: Config) -> tuple[str, ...]:
+    """Return what to know where the contact is solved across the face, gears tilt or flanks are misaligned."""
+    mesh, notes = config.dynamics.mesh, []
+    if mesh.law == "pairs" and mesh.contact == "face":
+        notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.contact)")
+    if config.dynamics.shafts is not None:
+        notes.append("shafts bend and gears tilt (dynamics.shafts); more than 100 urad is outside_model")
+    lead = None if config.manufacture is None else config.manufacture.lead_misalignment_um
+    misaligned = lead is not None and (isinstance(lead, str) or bounds(lead)[1] > 0.0)
+    if misaligned or config.dynamics.shafts is not None:
+        notes.append(
+            "misalignment and tilt act several times too hard: teeth are rigid across the face, only their contact "
+            "gives way (docs/understand/contact_across_the_face.md)"
+        )
+    return tuple(notes)
