@@ -23,7 +23,7 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
 DISTRIBUTIONS = ("Uniform", "LogUniform", "Normal", "Choice")
 UNITS = {
-    "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad", "n_per_m": "N/m", "nm_per_rad": "N m/rad",
+    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad", "n_per_m": "N/m", "nm_per_rad": "N m/rad",
     "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz", "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
     "m_s": "m/s", "pa_s": "Pa s", "mm": "mm", "um": "µm", "deg": "°", "gpa": "GPa", "hz": "Hz", "us": "µs", "s": "s",
     "kg": "kg", "nm": "N m", "rad": "rad", "db": "dB", "n": "N", "c": "°C",
