@@ -21,7 +21,7 @@ from diagnostics.release.training_distance import TrainingDistance, calibrated_d
 from diagnostics.records.recording import recordings
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.training.training.splits import SpecimenSplit
+from diagnostics.training.splits import SpecimenSplit
 
 GEARBOXES = (12, 36, 96)
 DRAWS = 8

@@ -46,7 +46,7 @@ def high_order_kurtosis(average: np.ndarray, teeth: int) -> float:
 
 def probes(dataset: Any) -> dict[str, dict[int, float]]:
     """Return state -> gearbox -> kurtosis, the geometric mean over the channels."""
-    found: dict[str, dict[int, float]] = {state: {} for state in STATES}
+    found: dict[str, dict[int, float]] = {}
     for batch in dataset.records():
         for row in batch.to_pylist():
             tacho_s = np.asarray(row["tacho_s"])
@@ -56,7 +56,7 @@ def probes(dataset: Any) -> dict[str, dict[int, float]]:
                 )
                 for channel in dataset.channels
             ]
-            found[row["state"]][row["specimen_id"]] = float(np.exp(np.mean(np.log(values))))
+            found.setdefault(row["state"], {})[row["specimen_id"]] = float(np.exp(np.mean(np.log(values))))
     return found
 
 

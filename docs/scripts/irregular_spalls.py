@@ -2,9 +2,10 @@
 
 Makes runs/irregular (configs/bench.yaml with states of its own) where it is missing: healthy, and spalls of kind
 irregular through the whole face, 1 mm long about the pitch line, with both edges turned together by SKEWS over the
-face, and one with the default skews and waves. Prints the kurtosis of Teager's operator of the pinion's averaged
-residual, the geometric mean over the channels, gearbox by gearbox. Draws docs/figures/irregular_flanks.png: three
-severities of one spall on two gearboxes.
+face, and one with the default skews and waves. Prints two numbers, geometric means over the channels: the kurtosis of
+Teager's operator of the pinion's averaged residual (the best shipped indicator) and that of the average in high orders
+(`high_order_probe.py`, the stronger probe), each with its AUC against healthy records of other gearboxes. Draws
+docs/figures/irregular_flanks.png: three severities of one spall on two gearboxes.
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from typing import Any
 
 import numpy as np
 import yaml
+from high_order_probe import auc, probes
 
 import siggen
-from diagnostics.indicators.indicator_table import indicator_table
+from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
+from diagnostics.indicators.table import record_table
 from siggen.views.flank_figure import save_flank_figure
 from siggen.views.flank_views import flank_views
 
@@ -53,21 +56,37 @@ def draw_growth(raw: dict[str, Any]) -> None:
     save_flank_figure([view for specimen in range(2) for view in flank_views(config, specimen)], FIGURE)
 
 
+def teager(dataset: Any) -> dict[str, dict[int, float]]:
+    """Return state -> gearbox -> kurtosis of Teager's operator."""
+    matrix = feature_matrix(classifier_table(record_table(dataset)))
+    columns = [i for i, name in enumerate(matrix.names) if name.startswith(INDICATOR)]
+    value = np.exp(np.mean(np.log(matrix.values[:, columns]), axis=1))
+    found: dict[str, dict[int, float]] = {}
+    for state, specimen, each in zip(matrix.labels["state"], matrix.labels["specimen_id"], value, strict=True):
+        found.setdefault(str(state), {})[int(specimen)] = float(each)
+    return found
+
+
+def show(title: str, found: dict[str, dict[int, float]]) -> None:
+    """Print quantiles, AUC and the first gearboxes of every state."""
+    values = {state: np.array([by[k] for k in sorted(by)]) for state, by in found.items()}
+    for state, each in values.items():
+        spread = ", ".join(f"{q:.1f}" for q in np.quantile(each, (0.1, 0.5, 0.9)))
+        found_by = "" if state == "healthy" else f"; AUC {auc(values['healthy'], each, np.arange(each.size)):.2f}"
+        first = ", ".join(f"{value:.1f}" for value in each[:2])
+        print(f"{title}, {state}: {spread} (10 %, median, 90 %){found_by}; gearboxes 0 and 1: {first}")
+
+
 def main(gearboxes: int) -> None:
     """Draw the picture and print one row per state."""
     raw = yaml.safe_load(Path("configs/bench.yaml").read_text(encoding="utf-8"))
     draw_growth(raw)
     if not SET.exists():
         siggen.generate(siggen.load_config({**raw, "specimens": gearboxes, "states": states()}), SET, workers=1)
-    table = indicator_table(siggen.open(SET))
-    columns = [i for i, name in enumerate(table.matrix.names) if name.startswith(INDICATOR)]
-    value = np.exp(np.mean(np.log(table.matrix.values[:, columns]), axis=1))
-    state, specimen = (np.asarray(table.matrix.labels[name]) for name in ("state", "specimen_id"))
-    for name in dict.fromkeys(state.tolist()):
-        rows = np.flatnonzero(state == name)
-        text = ", ".join(f"{value[row]:.1f}" for row in rows[np.argsort(specimen[rows])])
-        print(f"{name}: {text}; median {np.median(value[rows]):.1f}")
+    dataset = siggen.open(SET)
+    show("Teager's operator", teager(dataset))
+    show("high orders", probes(dataset))
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 2)
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 12)

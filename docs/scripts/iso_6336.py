@@ -4,9 +4,9 @@ from math import radians
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.mesh_stiffness.mesh_stiffness import pair_stiffness
-from siggen.gears.stiffness.mesh_stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
 LINE_LOAD_N_PER_M = 300e3
