@@ -37,6 +37,8 @@ This page is printed by `python docs/scripts/yaml_reference.py` from `siggen sch
 
 * **Number** in the column "allowed" is a physical number. It may be a constant, or a distribution that siggen draws once
   per gearbox ([below](#distributions)).
+* **extends** names a preset or another file. Its values hold wherever this file gives none. Mappings are merged key by
+  key; numbers, lists, null, and distributions are replaced. The set's own `config.yaml` holds the result.
 * **required**: the key has no default. Where its section is optional, it is required only in that section.
 * **expert**: no shipped configuration sets the key. Its default serves, unless you know why it should not.
 * Units are part of the key names: mm, µm, degrees and GPa for gears, SI for the rest.
@@ -269,7 +271,7 @@ def table(schema: Schema, keys: list[Key], users: Mapping[str, list[str]], start
     for key in keys:
         shown = key.path.removeprefix(start)
         # What a section cannot do without is never for experts, as in `siggen schema`.
-        marks = "" if users[key.path] or default(key) == "required" else "expert"
+        marks = "" if users[key.path] or key.path == "extends" or default(key) == "required" else "expert"
         cells = (described(schema, key.schema), unit(key.path), allowed(schema, key.schema), default(key))
         yield row(f"`{shown}`", *cells, marks)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from siggen.config import Config, apply_overrides, config_file, parse, read_yaml
+from siggen.config import Config, apply_overrides, config_file, inherited, parse, read_yaml
 from siggen.errors import ConfigError
 
 
@@ -33,7 +33,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     else:
         file = config_file(source)
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
-    with_densities, unusable = with_density_files(apply_overrides(raw, overrides), folder)
+    with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     parsed = parse(filled)
     problems = [*parsed.problems, *physical_problems(parsed), *unread, *unusable, *response_problems(parsed.sections)]

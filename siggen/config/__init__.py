@@ -11,6 +11,7 @@ from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
+from siggen.config.inheritance import inherited
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
 from siggen.config.manufacture import FlankWaves, Manufacture
@@ -99,6 +100,7 @@ __all__ = [
     "constant",
     "corners",
     "draw",
+    "inherited",
     "parse",
     "parse_yaml",
     "read_yaml",
