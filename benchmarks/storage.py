@@ -17,6 +17,7 @@ from benchmarks.shipped import QUICKSTART, shipped
 from benchmarks.timing import Candidate, medians
 from siggen.columns.record import Record, channels, record_batch, signal_matrix
 from siggen.config import Config
+from siggen.dataset.checked_file import checksums, parquet_file
 from siggen.dataset.shard import write_table
 from siggen.dataset.storage import LocalFolder
 from siggen.planning.plan import record_ids_of, rows_per_group
@@ -45,12 +46,20 @@ class _Files:
             os.fsync(file.fileno())
 
     def read(self, name: str) -> None:
-        """Read all signals group by group, as `siggen.open(...).records()` does."""
+        """Read all signals group by group, unchecked."""
         with pq.ParquetFile(self.folder / name) as file:
-            for group in range(file.num_row_groups):
-                table = file.read_row_group(group, use_threads=False)
-                for channel in channels(self.config):
-                    signal_matrix(table[channel.column])
+            self._read_groups(file)
+
+    def read_checked(self, crc32_per_64_kib: str) -> None:
+        """Read siggen's file with every byte checked, as `siggen.open(...).records()` does."""
+        with parquet_file(LocalFolder(self.folder), OWN, crc32_per_64_kib) as file:
+            self._read_groups(file)
+
+    def _read_groups(self, file: pq.ParquetFile) -> None:
+        for group in range(file.num_row_groups):
+            table = file.read_row_group(group, use_threads=False)
+            for channel in channels(self.config):
+                signal_matrix(table[channel.column])
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
@@ -63,11 +72,17 @@ def rows(*, quick: bool) -> Iterator[Row]:
         written = {"own": Candidate(files.write_own), "default": Candidate(files.write_default)}
         written_s = medians(written, 3 if quick else 9, time.perf_counter)
         read = {"own": Candidate(lambda _: files.read(OWN)), "default": Candidate(lambda _: files.read(DEFAULT))}
+        with (Path(folder) / OWN).open("rb") as file:
+            crc32 = checksums(file).crc32_per_64_kib
+        read["checked"] = Candidate(lambda _: files.read_checked(crc32))
         read_s = medians(read, 3 if quick else 9, time.perf_counter)
         sizes = {name: (Path(folder) / name).stat().st_size / signals for name in (OWN, DEFAULT)}
     what = f"{signals} signals of {config.duration_s:g} s"
     yield _speed_row(f"{what} written", signals, written_s)
-    yield _speed_row(f"{what} read", signals, read_s)
+    yield _speed_row(f"{what} read unchecked", signals, read_s)
+    checked, unchecked = signals / read_s["checked"], signals / read_s["own"]
+    read_text = f"{checked:.0f} signals/s", f"unchecked: {unchecked:.0f} signals/s"
+    yield Row(f"{what} read with every byte checked", *read_text, checked / unchecked)
     own, default = sizes[OWN] / 1e3, sizes[DEFAULT] / 1e3
     yield Row("size per signal", f"{own:.1f} kB", f"pyarrow defaults: {default:.1f} kB", default / own)
     yield Row(

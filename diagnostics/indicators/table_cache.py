@@ -70,12 +70,11 @@ def _code_digest() -> str:
 
 
 def is_readable(path: Path) -> bool:
-    """Return whether a table lies there that can be read."""
+    """Return whether a table lies there as it was written; one that was changed since is computed again."""
     try:
-        pq.read_schema(path)
-    except (OSError, pa.ArrowException):
+        return _hash_file(path).read_text(encoding="ascii") == _sha256(path)
+    except (OSError, UnicodeDecodeError):
         return False
-    return True
 
 
 def keep_table(table: pa.Table, path: Path) -> str:
@@ -84,10 +83,21 @@ def keep_table(table: pa.Table, path: Path) -> str:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         pq.write_table(table, partial, compression="zstd")
+        _hash_file(path).write_text(_sha256(partial), encoding="ascii")
         partial.replace(path)
         for other in path.parent.glob("*-*.parquet"):
             if other.name.split("-")[0] != path.name.split("-")[0]:
                 other.unlink(missing_ok=True)
+                _hash_file(other).unlink(missing_ok=True)
     except OSError as error:
         return f"the table of indicators could not be kept ({error}); the next command computes it again"
     return ""
+
+
+def _hash_file(path: Path) -> Path:
+    return path.with_suffix(".sha256")
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

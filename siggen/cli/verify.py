@@ -34,6 +34,8 @@ def verify(
         again = f"{counted(len(found.records), 'record')} simulated again, compared "
         again = again if found.records else "records simulated again: "
         typer.echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
+        if not found.has_checksums:
+            typer.echo("its shards have no checksums: only this command sees a changed bit of a signal, no reader does")
         for line in problem_lines(found.mismatches):
             typer.echo(line, err=True)
         typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")

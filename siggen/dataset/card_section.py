@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from siggen.dataset.manifest import CARD, MANIFEST, read_manifest, sealed
+from siggen.dataset.manifest import CARD, MANIFEST, read_manifest
+from siggen.dataset.seal import sealed
 from siggen.dataset.storage import LocalFolder, sha256
 from siggen.errors import VerificationError
 

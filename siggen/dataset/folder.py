@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from siggen.config import parse, yaml_text
-from siggen.dataset.manifest import CONFIG, MANIFEST, check_schema, unsealed
+from siggen.dataset.manifest import CONFIG, MANIFEST, check_schema
+from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from siggen.columns.record import damage_schema, label_schema
+from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.manifest import DAMAGE_FOLDER, METADATA_FOLDER
 from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.sidecar import Sidecar
@@ -46,7 +46,7 @@ def write_damage(
 
 
 def _label_batches(storage: Storage, sidecar: Sidecar, columns: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    with storage.open(sidecar.data.name) as source, pq.ParquetFile(source) as file:
+    with parquet_file(storage, sidecar.data.name, sidecar.data.crc32_per_64_kib) as file:
         yield from file.read(columns=list(columns), use_threads=False).to_batches()
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 from siggen.columns.versions import FIRST_SIMULATION_VERSION, READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.sidecar import Sidecar, json_bytes
+from siggen.dataset.seal import unsealed
+from siggen.dataset.shard import FileFacts
+from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError
 
@@ -21,36 +22,12 @@ METADATA_FOLDER = "metadata"
 DAMAGE_FOLDER = "damage"
 SPLITS = ("train", "validation", "test")
 
-DIGEST = "digest"
-
-
-def sealed(content: Mapping[str, Any]) -> bytes:
-    """Return JSON that carries the SHA-256 of itself, so that any changed byte shows."""
-    return json_bytes({**content, DIGEST: hashlib.sha256(json_bytes(content)).hexdigest()})
-
-
-def unsealed(name: str, content: bytes) -> dict[str, Any]:
-    """Return the content of sealed JSON.
-
-    Raises
-    ------
-    VerificationError
-        If it is not JSON, carries another digest than its own, or is written otherwise than `sealed` writes it.
-    """
-    try:
-        found = dict(json.loads(content))
-    except (ValueError, TypeError) as error:
-        raise VerificationError(f"{name} is not readable as JSON ({error})") from error
-    digest = found.pop(DIGEST, None)
-    if sealed(found) != content:
-        raise VerificationError(f"{name} was changed: its content does not match its own digest {digest}")
-    return found
-
 
 def build_manifest(
     storage: Storage,
     facts: Mapping[str, Any],
     sidecars: Sequence[Sidecar],
+    tables: Sequence[FileFacts],
     written: Sequence[str],
 ) -> dict[str, Any]:
     """Return the manifest of a set whose other files are all stored.
@@ -62,11 +39,19 @@ def build_manifest(
         What the configuration says about the set: name, identity, channels, ...
     sidecars : sequence of Sidecar
         All shards, by split and number; their data files were hashed when they were committed or taken over.
+    tables : sequence of FileFacts
+        The tables of labels and of damage.
     written : sequence of str
-        Names of the files that are neither rows nor sidecars; hashed here.
+        Names of all other files but the sidecars; hashed here.
     """
     environments = sorted({json.dumps(dict(sidecar.environment), sort_keys=True) for sidecar in sidecars})
     files = {file.name: {"bytes": file.bytes, "sha256": file.sha256} for sidecar in sidecars for file in sidecar.files}
+    for table in tables:
+        files[table.name] = {
+            "bytes": table.bytes,
+            "sha256": table.sha256,
+            "crc32_per_64_kib": table.crc32_per_64_kib,
+        }
     for name in (*written, *(sidecar.name for sidecar in sidecars)):
         files[name] = {"bytes": storage.size(name), "sha256": sha256(storage, name)}
     return {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,9 @@ import yaml
 
 from siggen.columns.column import Column
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
+from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
+from siggen.dataset.promises import Promises
 from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.errors import DatasetError, UsageError, counted
@@ -47,12 +49,22 @@ class Dataset:
     fs_hz, duration_s : float
     internal_columns : tuple of Column
         Quantities that no sensor sees, in sets that store some (`internals` in the configuration).
+    has_checksums : bool
+        Whether every byte of signals and internal quantities is checked when it is read. Sets made before there were
+        checksums have none: there only `siggen verify` sees a changed bit. Labels and damage are checked in all sets.
+
+    Raises
+    ------
+    DatasetError
+        If there is no finished set, or a file does not have the size that the manifest promises.
     """
 
     def __init__(self, storage: Storage) -> None:
         self._storage = storage
         self.path = Path(storage.location)
         self.manifest: dict[str, Any] = read_manifest(storage)
+        self._promises = Promises(storage, self.manifest)
+        self._promises.check_sizes()
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in ("train", "validation", "test") if s in self.manifest["splits"])
         self.channels: tuple[Channel, ...] = tuple(Channel(**channel) for channel in self.manifest["channels"])
@@ -66,6 +78,11 @@ class Dataset:
         rows = ", ".join(f"{split}: {self.manifest['splits'][split]['rows']}" for split in self.splits)
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
+
+    @property
+    def has_checksums(self) -> bool:
+        """Whether signals and internal quantities are checked when they are read; see above."""
+        return self._promises.has_checksums
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.
@@ -218,17 +235,9 @@ class Dataset:
                 tables.append(file.read(columns=_as_list(columns), use_threads=False))
         return pa.concat_tables(tables)
 
-    @contextmanager
-    def _parquet(self, name: str) -> Iterator[pq.ParquetFile]:
+    def _parquet(self, name: str) -> AbstractContextManager[pq.ParquetFile]:
         """Open a file of the set; what makes it unreadable becomes a message that says how to go on."""
-        try:
-            with self._storage.open(name) as source, pq.ParquetFile(source) as file:
-                yield file
-        except (OSError, pa.ArrowException) as error:
-            raise DatasetError(
-                f"{self.path}/{name} cannot be read ({error}); `siggen verify {self.path}` finds all "
-                "damaged files; delete them, and `siggen generate` with the set's config.yaml makes them again"
-            ) from error
+        return parquet_file(self._storage, name, self._promises.crc32(name))
 
     def _splits(self, split: str | None) -> tuple[str, ...]:
         if split is None:
@@ -248,7 +257,7 @@ class Dataset:
 
     def _read_config(self) -> dict[str, Any]:
         try:
-            return dict(yaml.safe_load(self._storage.get(CONFIG)))
+            return dict(yaml.safe_load(self._promises.content(CONFIG)))
         except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 

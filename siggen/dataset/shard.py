@@ -10,7 +10,8 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from siggen.dataset.storage import Storage, file_sha256
+from siggen.dataset.checked_file import checksums
+from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, counted
 
 LIST_LEAF = ".list.element"
@@ -22,11 +23,12 @@ SPLIT_BYTES = "BYTE_STREAM_SPLIT"
 
 @dataclass(frozen=True, slots=True)
 class FileFacts:
-    """What a committed file promises."""
+    """What a committed file promises; `crc32_per_64_kib` are the checksums of its blocks (`checked_file`)."""
 
     name: str
     bytes: int
     sha256: str
+    crc32_per_64_kib: str
     rows: int
 
 
@@ -63,7 +65,7 @@ class TableFile:
         self.close()
         check_footer(self._path, self._schema, self._rows)
         with self._path.open("rb") as file:
-            return FileFacts(self._name, self._path.stat().st_size, file_sha256(file), self._rows)
+            return FileFacts(self._name, self._path.stat().st_size, *checksums(file), self._rows)
 
     def close(self) -> None:
         """Close the file, whole or not."""
@@ -110,6 +112,7 @@ def _options(schema: pa.Schema) -> dict[str, object]:
         "column_encoding": dict.fromkeys(numeric_lists, SPLIT_BYTES),
         "write_statistics": [leaves[field.name] for field in schema if not _is_series(field)],
         "write_page_index": True,
+        "write_page_checksum": True,
     }
 
 

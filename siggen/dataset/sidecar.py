@@ -8,9 +8,11 @@ from dataclasses import asdict, dataclass
 
 from siggen.columns.record import RecordFailure
 from siggen.columns.versions import FIRST_SIMULATION_VERSION, SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.dataset.checked_file import Checksums, checksums
+from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.shard import FileFacts
-from siggen.dataset.storage import Storage, sha256
-from siggen.errors import DatasetError
+from siggen.dataset.storage import Storage
+from siggen.errors import DatasetError, VerificationError
 
 FOLDER = "shards"
 DATA_FOLDER = "data"
@@ -84,17 +86,12 @@ def in_ranges(i: int, ranges: Sequence[Sequence[int]]) -> bool:
     return any(first <= i <= last for first, last in ranges)
 
 
-def json_bytes(content: Mapping[str, object]) -> bytes:
-    """Return the one way in which a set's JSON files are written."""
-    return (json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
-
-
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
     """Commit a shard whose rows are already stored."""
     content = {"schema_version": SCHEMA_VERSION, "simulation_version": SIMULATION_VERSION, **asdict(sidecar)}
     if sidecar.internals is None:
         del content["internals"]  # as in sets that were made before internals could be stored
-    storage.put(sidecar.name, json_bytes(content))
+    storage.put(sidecar.name, sealed(content))
 
 
 def read_sidecar(storage: Storage, shard: str) -> Sidecar:
@@ -103,17 +100,19 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
     Raises
     ------
     DatasetError
-        If the file is not a sidecar of this schema version.
+        If the file was changed, or is not a sidecar of this schema version.
     """
     name = sidecar_name(shard)
     try:
-        content = json.loads(storage.get(name))
+        stored = storage.get(name)
+        content = json.loads(stored)
         versions = (content["schema_version"], content.get("simulation_version", FIRST_SIMULATION_VERSION))
         if versions != (SCHEMA_VERSION, SIMULATION_VERSION):
             raise DatasetError(
                 f"{name}: received schema version {versions[0]} and simulation version {versions[1]}; "
                 f"allowed are {SCHEMA_VERSION} and {SIMULATION_VERSION}, which this siggen writes"
             )
+        content = unsealed(name, stored)
         return Sidecar(
             shard=content["shard"],
             split=content["split"],
@@ -126,7 +125,7 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
             environment=content["environment"],
             internals=FileFacts(**content["internals"]) if "internals" in content else None,
         )
-    except (ValueError, KeyError, TypeError) as error:
+    except (VerificationError, ValueError, KeyError, TypeError) as error:
         raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error!r})") from error
 
 
@@ -147,5 +146,7 @@ def committed(storage: Storage, shard: str, identity: str, specimens: Ranges) ->
 
 
 def _is_whole(storage: Storage, facts: FileFacts) -> bool:
-    has_size = storage.exists(facts.name) and storage.size(facts.name) == facts.bytes
-    return has_size and sha256(storage, facts.name) == facts.sha256
+    if not storage.exists(facts.name) or storage.size(facts.name) != facts.bytes:
+        return False
+    with storage.open(facts.name) as file:
+        return checksums(file) == Checksums(facts.sha256, facts.crc32_per_64_kib)

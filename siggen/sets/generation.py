@@ -19,7 +19,8 @@ from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.label_tables import write_damage, write_metadata
-from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest, sealed
+from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
+from siggen.dataset.seal import sealed
 from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import LocalFolder, Storage
@@ -232,15 +233,15 @@ class _Run:
 
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
         """Write tables, card and run.json; the manifest comes last and makes the set a finished one."""
-        written = [CONFIG, CARD]
+        tables = []
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
-                written.append(write_metadata(self.storage, self.config, split, of_split).name)
-                written.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows).name)
+                tables.append(write_metadata(self.storage, self.config, split, of_split))
+                tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
-        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, written)
+        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, tables, [CONFIG, CARD])
         self.storage.put(RUN, sealed(self._run_facts(taken_over)))
         self.storage.put(MANIFEST, sealed(manifest))
         return manifest

@@ -24,9 +24,10 @@ from siggen.dataset.manifest import (
     RUN,
     read_manifest,
     simulation_version,
-    unsealed,
 )
+from siggen.dataset.promises import has_checksums
 from siggen.dataset.reading import Dataset, as_internals, as_record
+from siggen.dataset.seal import unsealed
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
 from siggen.dataset.storage import LocalFolder, Storage, sha256
@@ -73,6 +74,8 @@ class Verification:
         How they were compared, or why none was.
     mismatches
         Empty for a set that is what it promises to be.
+    has_checksums
+        Whether a reader of signals checks every byte as well; sets made before there were checksums have none.
     """
 
     path: str
@@ -81,6 +84,7 @@ class Verification:
     records: tuple[int, ...]
     comparison: str
     mismatches: tuple[Mismatch, ...]
+    has_checksums: bool = True
 
 
 def verify(
@@ -129,7 +133,8 @@ def verify(
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
         mismatches += different
     total = sum(facts["bytes"] for facts in manifest["files"].values())
-    return Verification(storage.location, len(manifest["files"]) + 2, total, records, comparison, tuple(mismatches))
+    count, checked = len(manifest["files"]) + 2, has_checksums(manifest)
+    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked)
 
 
 def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import hashlib
+import zlib
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dataset.manifest import read_manifest, sealed, unsealed
+from siggen.dataset.manifest import read_manifest
+from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError, VerificationError
 from tests.dataset.fake_set import FAKE_FILES, fake_config, simulate_with_failures, write_fake_set
+
+
+def checksum(content: bytes) -> str:
+    """Return what the manifest says of a file of less than 64 KiB."""
+    return f"{zlib.crc32(content):08x}"
+
 
 SEALED = sealed({"rows": 3, "name": "größe", "nested": {"b": [1.5, None], "a": True}})
 
@@ -43,7 +51,8 @@ def test_the_manifest_promises_every_other_file_but_run_json(tmp_path: Path) -> 
     assert sorted(manifest["files"]) == [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")]
     for name, facts in manifest["files"].items():
         content = (tmp_path / name).read_bytes()
-        assert facts == {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+        blocks = {"crc32_per_64_kib": checksum(content)} if name.startswith(("metadata/", "damage/")) else {}
+        assert facts == {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest(), **blocks}
 
 
 def test_counts_are_per_split_and_state_and_failures_are_listed(tmp_path: Path) -> None:

@@ -15,7 +15,8 @@ from siggen.cli.app import app
 from siggen.columns.record import signal_matrix
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.config import parse, read_yaml
-from siggen.dataset.manifest import read_manifest, sealed, simulation_version, unsealed
+from siggen.dataset.manifest import read_manifest, simulation_version
+from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.sidecar import committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from siggen.dataset.manifest import unsealed
 from siggen.dataset.reading import open as open_set
+from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
 from siggen.errors import DatasetError, EngineError
 from siggen.sets.generation import generate, in_order

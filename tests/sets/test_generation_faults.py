@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from siggen.dataset.manifest import unsealed
+from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX
 from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
 from siggen.sets.generation import InterruptionError, generate

@@ -18,9 +18,10 @@ from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import table_notes
 from siggen.columns.record import Record
 from siggen.config import Config
-from siggen.dataset.manifest import sealed
+from siggen.dataset.seal import sealed
 from siggen.planning.plan import planned_record
 from tests.dataset.fake_set import fake_config, fake_record, write_fake_set
+from tests.dataset.resealed_set import reseal
 
 COMMANDS = {
     "features": ("--out", "out.parquet"),
@@ -67,6 +68,7 @@ def rewritten(folder: Path, change: Callable[[pa.Table], pa.Table], kinds: Itera
     for kind in kinds:
         for file in sorted((folder / kind).glob("*.parquet")):
             pq.write_table(change(pq.read_table(file)), file, row_group_size=2)
+    reseal(folder)
 
 
 def samples(change: Callable[[np.ndarray, np.ndarray], None]) -> Edit:
@@ -154,7 +156,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     ),
     "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ALL),
     "no rate": (at_no_rate, ("sampling rate: received None", "fs_hz"), ALL),
-    "truncated shard": (truncated, ("data/test-00000.parquet cannot be read", "siggen verify"), ALL),
+    "truncated shard": (truncated, ("data/test-00000.parquet is not the file", "siggen verify"), ALL),
     "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ALL),
     "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ALL),
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ALL),

@@ -129,7 +129,9 @@ def test_a_kept_table_is_read_back_until_set_or_settings_change(folder: Path, mo
 def test_a_damaged_or_unwritable_table_is_computed_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     record_table(reading.open(folder))
     (kept,) = folder.with_name("set_table").glob("*.parquet")
-    kept.write_bytes(b"no table")
+    content = bytearray(kept.read_bytes())
+    content[len(content) // 2] ^= 1
+    kept.write_bytes(content)
     calls = counted(monkeypatch)
     record_table(reading.open(folder))
     assert calls["resample_to_angle"]

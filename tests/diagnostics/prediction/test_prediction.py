@@ -23,7 +23,7 @@ from diagnostics.release.saved_models import save_models
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
-from siggen.dataset.manifest import sealed
+from siggen.dataset.seal import sealed
 from siggen.errors import UsageError
 
 FS_HZ = 12_800.0
