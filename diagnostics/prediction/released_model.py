@@ -14,7 +14,8 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
-from diagnostics.release.model_facts import FACTS_FILE, ModelFacts, read_accuracy, read_facts
+from diagnostics.release.model_facts import ModelFacts, read_accuracy, read_facts, read_hashes
+from diagnostics.release.model_seal import FACTS_FILE, check_files
 from diagnostics.release.release import REFERENCED
 from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.evaluation import Interval
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from diagnostics.training.cnn_files import NetworkFile
 
 NETWORK_FILE = "cnn.safetensors"
+UNHASHED = "this model has no hashes of its files, so a changed bit in one is not seen; train again to have them"
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +102,9 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         )
     if not (folder / FACTS_FILE).is_file():
         raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics train` wrote")
+    hashes = read_hashes(folder)
+    if hashes is not None:
+        check_files(folder, hashes)
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
     network, note = _network(folder, NETWORK in accuracy)
@@ -115,7 +120,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         referenced_distance=referenced,
         network=network,
         accuracy=accuracy,
-        note=note,
+        note="; ".join(text for text in (note, "" if hashes else UNHASHED) if text),
         own=_own_of(folder, classifiers, own),
     )
 

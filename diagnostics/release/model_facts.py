@@ -13,14 +13,16 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from diagnostics.release.model_seal import FACTS_FILE, file_hashes, sealed_text, unsealed_text
 from diagnostics.release.training_distance import TrainingDistance, distance_facts, distance_from_facts
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
-FACTS_FILE = "model.json"
-FORMAT = "siggen-diagnostics model 3"
+FORMAT = "siggen-diagnostics model 4"
+UNHASHED_FORMAT = "siggen-diagnostics model 3"
+"""Written before files had hashes; read, and said to have none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,15 +116,16 @@ def write_facts(
     scores: dict[str, Any],
     folder: Path,
 ) -> None:
-    """Write `model.json`."""
+    """Write `model.json` with the hashes of all files beside it, so it comes last."""
     content = {
         "format": FORMAT,
         "facts": asdict(facts),
         "scores": scores,
         "distance": distance_facts(distance),
         "referenced_distance": distance_facts(referenced) if referenced else None,
+        "files": file_hashes(folder),
     }
-    (folder / FACTS_FILE).write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (folder / FACTS_FILE).write_text(sealed_text(content), encoding="utf-8")
 
 
 def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:
@@ -135,9 +138,7 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
     """
     path = folder / FACTS_FILE
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        if content.get("format") != FORMAT:
-            raise ValueError(f"format {content.get('format')!r} instead of {FORMAT!r}")
+        content = _content(path)
         facts = {name: _tuples(value) for name, value in content["facts"].items()}
         referenced = content["referenced_distance"]
         return (
@@ -159,10 +160,38 @@ def read_accuracy(folder: Path) -> dict[str, Interval]:
     """
     path = folder / FACTS_FILE
     try:
-        tested = json.loads(path.read_text(encoding="utf-8"))["scores"]["test"]
+        tested = _content(path)["scores"]["test"]
         return {name: _interval(score["accuracy"]) for name, score in tested.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise _unusable(path, error) from error
+
+
+def read_hashes(folder: Path) -> dict[str, str] | None:
+    """Read the SHA-256 of every file of a model from `model.json`; None for a model from before there were any.
+
+    Raises
+    ------
+    UsageError
+        If it is missing or damaged.
+    """
+    path = folder / FACTS_FILE
+    try:
+        content = _content(path)
+        return None if content["format"] == UNHASHED_FORMAT else dict(content["files"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def _content(path: Path) -> dict[str, Any]:
+    """Return what `model.json` says, if it is whole and of a format that is read."""
+    text = path.read_text(encoding="utf-8")
+    content: dict[str, Any] = json.loads(text)
+    found = content.get("format")
+    if found == UNHASHED_FORMAT:
+        return content
+    if found != FORMAT:
+        raise ValueError(f"received format {found!r}; allowed are {FORMAT!r} and {UNHASHED_FORMAT!r}")
+    return unsealed_text(text)
 
 
 def _interval(numbers: dict[str, float | None]) -> Interval:

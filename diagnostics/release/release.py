@@ -161,13 +161,13 @@ def release_scores(training: Training, found: Release) -> dict[str, Any]:
 
 
 def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
-    """Write `model.json`, and the variant's classifier under names that begin with `referenced_`."""
+    """Write the variant's classifier under names that begin with `referenced_`, then `model.json` over all files."""
     from diagnostics.indicators.classifier_table import table_settings
     from diagnostics.training.classifier_file import save_classifier
 
     variant = found.referenced
+    if variant:
+        save_classifier(variant.classifier, table_settings(table), found.facts.identity, folder, REFERENCED)
     write_facts(
         found.facts, found.distance, variant.distance if variant else None, release_scores(training, found), folder
     )
-    if variant:
-        save_classifier(variant.classifier, table_settings(table), found.facts.identity, folder, REFERENCED)

@@ -8,16 +8,12 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import table_settings
 from diagnostics.release.model_card import model_card
+from diagnostics.release.model_seal import FACTS_FILE, MODEL_FILES
 from diagnostics.release.release import release, save_release
 from diagnostics.release.release_card import release_card
 from diagnostics.training.classifier_file import save_classifier
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
-
-MODEL_FILES = (
-    *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
-    *("model.json", "referenced_classifier.skops", "referenced_feature_names.json"),
-)
 
 
 def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: Path) -> list[str]:
@@ -35,7 +31,8 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
         Created where missing.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for name in MODEL_FILES:  # a network of an earlier run must not lie beside a card that does not know it
+    for name in (FACTS_FILE, *MODEL_FILES):
+        # a network of an earlier run must not lie beside a card that does not know it
         (folder / name).unlink(missing_ok=True)
     identity, notes = set_identity(dataset), []
     save_classifier(training.classifier, table_settings(table), identity, folder)
@@ -49,10 +46,10 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export failed: {error}")
     released = release(training, table, dataset)
-    save_release(training, released, table, folder)
     notes += [released.note] if released.note else []
     card = f"{model_card(training, dataset)}\n{release_card(released)}"
     (folder / "model_card.md").write_text(card, encoding="utf-8")
+    save_release(training, released, table, folder)
     return notes
 
 

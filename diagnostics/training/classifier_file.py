@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import zipfile
+import math
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -56,6 +56,7 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
     ------
     UsageError
         If the file is missing, damaged, or holds types that are not trusted, which are listed; it is then not loaded.
+        If the names beside it are of another schema, or hold values that cannot be.
     """
     import skops.io
 
@@ -63,20 +64,47 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
     try:
         found = untrusted_types(path)
         facts = _facts(folder, prefix)
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        if found:
+            raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
+        pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
+    except UsageError:
+        raise
+    except Exception as error:  # whatever a damaged archive makes its reader raise
         raise UsageError(f"{folder}: no readable {path.name} with {prefix}{NAMES_FILE} ({error})") from error
-    if found:
-        raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
-    pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
-    return FeatureClassifier(
-        pipeline=pipeline,
-        features=tuple(facts["features"]),
-        classes=tuple(facts["classes"]),
-        strength=float(facts["strength"]),
-        note=str(facts["note"]),
-        temperature=float(facts.get("temperature", 1.0)),
-        logarithms=tuple(facts.get("logarithms", ())),
-    )
+    return _classifier(folder / f"{prefix}{NAMES_FILE}", pipeline, facts)
+
+
+def _classifier(path: Path, pipeline: Any, facts: dict[str, Any]) -> FeatureClassifier:
+    """Return the classifier of a pipeline and what the names beside it say, if that can be."""
+    try:
+        found = FeatureClassifier(
+            pipeline=pipeline,
+            features=tuple(facts["features"]),
+            classes=tuple(facts["classes"]),
+            strength=float(facts["strength"]),
+            note=str(facts["note"]),
+            temperature=float(facts.get("temperature", 1.0)),
+            logarithms=tuple(facts.get("logarithms", ())),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise UsageError(f"{path}: received another schema ({error!r}); train again with this version") from error
+    if wrong := _impossible(found):
+        raise UsageError(f"{path}: received {wrong}; the folder is damaged or was edited: train again")
+    return found
+
+
+def _impossible(found: FeatureClassifier) -> str:
+    """Return which value of a classifier cannot be, with what is allowed; empty if all can."""
+    if not (math.isfinite(found.temperature) and found.temperature > 0.0):
+        return f"temperature {found.temperature}; allowed: finite and above 0"
+    if not math.isfinite(found.strength):
+        return f"strength {found.strength}; allowed: finite"
+    for what, names in (("features", found.features), ("classes", found.classes)):
+        if len(set(names)) < len(names) or not all(isinstance(name, str) for name in names):
+            return f"{what} that are no names or come twice; allowed: every name once"
+    if unknown := set(found.logarithms) - set(found.features):
+        return f"logarithms of {min(unknown)}, which is no feature; allowed: its features"
+    return ""
 
 
 def classifier_identity(folder: Path, prefix: str = "") -> str:

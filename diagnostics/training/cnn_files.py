@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import warnings
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -76,11 +77,24 @@ def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
         raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
     if metadata.get("format") != FORMAT:
         raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {FORMAT!r}")
-    facts = _facts(json.loads(metadata["facts"]))
-    network = WideKernelNetwork(len(facts.channels), len(facts.classes), facts.windows.samples_per_tooth)
-    network.load_state_dict(load_file(path))
+    try:
+        facts = _facts(json.loads(metadata["facts"]))
+        network = WideKernelNetwork(len(facts.channels), len(facts.classes), facts.windows.samples_per_tooth)
+        network.load_state_dict(load_file(path))
+    except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
+        text = str(error).splitlines()[0]
+        raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
+    _check_finite(path, network, facts)
     network.eval()
     return network, facts
+
+
+def _check_finite(path: Path, network: WideKernelNetwork, facts: NetworkFile) -> None:
+    infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
+    if infinite:
+        raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
+    if not (math.isfinite(facts.temperature) and facts.temperature > 0.0):
+        raise UsageError(f"{path}: received temperature {facts.temperature}; allowed: finite and above 0; train again")
 
 
 def _facts(found: dict[str, object]) -> NetworkFile:

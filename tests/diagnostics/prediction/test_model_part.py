@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from diagnostics.training.baselines import logistic_pipeline
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
 from siggen.errors import UsageError
+from tests.diagnostics.prediction.resealed_model import reseal
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +36,7 @@ def folder(trained: Path, tmp_path: Path) -> Path:
 
 def change(path: Path, **entries: Any) -> None:
     path.write_text(json.dumps(json.loads(path.read_text()) | entries))
+    reseal(path.parent)
 
 
 @pytest.mark.parametrize(
@@ -54,8 +57,9 @@ def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str,
 def test_features_of_other_channels_are_refused_with_exit_code_2(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    names = json.loads((folder / "feature_names.json").read_text())["features"]
-    change(folder / "feature_names.json", features=[name.replace("_vertical", "_axial") for name in names])
+    names = json.loads((folder / "feature_names.json").read_text())
+    renamed = {key: [name.replace("_vertical", "_axial") for name in names[key]] for key in ("features", "logarithms")}
+    change(folder / "feature_names.json", **renamed)
     monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), "run.csv", "--teeth", "18,47"])
     with pytest.raises(SystemExit) as stop:
         main()
@@ -68,6 +72,7 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
 
     pipeline = logistic_pipeline().fit([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]], [0, 1, 2, 3])
     skops.io.dump(pipeline, folder / "classifier.skops")
+    reseal(folder)
     with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* state 4 of 3"):
         load_model(folder)
 
@@ -85,6 +90,7 @@ def test_a_network_of_another_model_is_refused(folder: Path) -> None:
     for identity in ("f" * 64, "0" * 64):
         facts = NetworkFile(("healthy", "slight", "severe"), channels, windows, (0.0,) * 2, (1.0,) * 2, identity)
         save_network(network, facts, folder / "cnn.safetensors")
+        reseal(folder)
         if identity[0] == "f":
             with pytest.raises(UsageError, match=r"cnn\.safetensors: does not belong .*identity"):
                 load_model(folder)
@@ -95,5 +101,52 @@ def test_a_lost_network_that_was_scored_is_noted(folder: Path) -> None:
     assert load_model(folder).note == ""
     facts = json.loads((folder / "model.json").read_text())
     facts["scores"]["test"]["network"] = facts["scores"]["test"]["indicators"]
-    (folder / "model.json").write_text(json.dumps(facts))
+    reseal(folder, scores=facts["scores"])
     assert load_model(folder).note.startswith("network left out: model.json gives its scores, but cnn.safetensors is")
+
+
+@pytest.mark.parametrize("name", ["classifier.skops", "feature_names.json", "model.json", "model_card.md"])
+def test_a_flipped_bit_anywhere_in_a_file_is_refused(name: str, folder: Path) -> None:
+    whole, chance = (folder / name).read_bytes(), Random(name)
+    for _ in range(15):
+        broken = bytearray(whole)
+        broken[chance.randrange(len(whole))] ^= 1 << chance.randrange(8)
+        (folder / name).write_bytes(broken)
+        with pytest.raises(UsageError, match=name.replace(".", r"\.")):
+            load_model(folder)
+    (folder / name).write_bytes(whole)
+    assert load_model(folder).note == ""
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"temperature": float("nan")}, "received temperature nan; allowed: finite and above 0"),
+        ({"temperature": 0.0}, r"received temperature 0\.0"),
+        ({"strength": float("inf")}, "received strength inf"),
+        ({"features": ["rms__x", "rms__x"]}, "features that are no names or come twice"),
+        ({"logarithms": ["colour"]}, "logarithms of colour, which is no feature"),
+        ({"classes": None}, "received another schema"),
+    ],
+)
+def test_values_that_cannot_be_are_refused_even_under_fitting_hashes(
+    entry: dict[str, Any], message: str, folder: Path
+) -> None:
+    change(folder / "feature_names.json", **entry)
+    with pytest.raises(UsageError, match=message):
+        load_model(folder)
+
+
+def test_features_in_another_order_are_refused_by_the_hash(folder: Path) -> None:
+    path = folder / "feature_names.json"
+    facts = json.loads(path.read_text())
+    path.write_text(json.dumps(facts | {"features": facts["features"][::-1]}))
+    with pytest.raises(UsageError, match=r"feature_names\.json not as model\.json promises"):
+        load_model(folder)
+
+
+def test_a_model_from_before_the_hashes_is_read_and_said_to_have_none(folder: Path) -> None:
+    content = json.loads((folder / "model.json").read_text())
+    old = {name: value for name, value in content.items() if name not in ("files", "digest")}
+    (folder / "model.json").write_text(json.dumps(old | {"format": "siggen-diagnostics model 3"}))
+    assert "no hashes of its files" in load_model(folder).note

@@ -20,6 +20,7 @@ from diagnostics.release.saved_models import save_models
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
 from siggen.errors import UsageError
+from tests.diagnostics.prediction.resealed_model import reseal
 
 FS_HZ = 12_800.0
 
@@ -91,7 +92,6 @@ def test_a_single_piece_agrees_with_nobody(model: ReleasedModel, signals: dict[s
 def test_a_model_with_damaged_scores_is_refused(model: ReleasedModel, tmp_path: Path) -> None:
     for file in model.folder.iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
-    facts = json.loads((tmp_path / "model.json").read_text())
-    (tmp_path / "model.json").write_text(json.dumps(facts | {"scores": {"test": {"indicators": {}}}}))
+    reseal(tmp_path, scores={"test": {"indicators": {}}})
     with pytest.raises(UsageError, match=r"model\.json: cannot be used"):
         load_model(tmp_path)

@@ -155,3 +155,20 @@ def test_network_learns_a_plain_modulation(records: OrderRecords, target: np.nda
     found = network_predictions(trained, records, np.flatnonzero(split.test), target, specimen)
     assert scores(found, seed=0).accuracy.value > 0.8
     assert trained.best_epoch == int(np.argmin(trained.validation_loss)) + 1
+
+
+@pytest.mark.parametrize(("name", "message"), [("head.bias", r"head\.bias that is not finite"), ("", "another schema")])
+def test_weights_that_are_not_finite_or_of_another_schema_are_refused(name: str, message: str, tmp_path: Path) -> None:
+    import torch
+
+    from diagnostics.training.cnn import WideKernelNetwork
+    from diagnostics.training.cnn_files import NetworkFile, load_network, save_network
+
+    network = WideKernelNetwork(2, 3, WindowSettings(teeth=18).samples_per_tooth)
+    if name:
+        torch.nn.init.constant_(network.get_parameter(name), float("nan"))
+    channels = ("a", "b") if name else ("a", "b", "c")
+    facts = NetworkFile(("h", "s", "t"), channels, WindowSettings(teeth=18), (0.0,) * 2, (1.0,) * 2, "0" * 64)
+    save_network(network, facts, tmp_path / "cnn.safetensors")
+    with pytest.raises(UsageError, match=message):
+        load_network(tmp_path / "cnn.safetensors")
