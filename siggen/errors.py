@@ -13,6 +13,10 @@ EXIT_MISMATCH = 4
 EXIT_INTERRUPTED = 130
 
 
+LISTED_PROBLEMS = 100
+"""Of a configuration; the others are counted."""
+
+
 def counted(count: int, one: str, many: str = "") -> str:
     """Return a count with its noun for a message: "1 record", "2 records"; `many` where it is not `one` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"
@@ -45,9 +49,10 @@ class ConfigError(SiggenError):
     def __init__(self, problems: Sequence[Problem], source: str = "configuration") -> None:
         self.problems = tuple(sorted(problems, key=lambda p: p.path))
         self.source = source
-        super().__init__(
-            "\n".join([f"{source}: {counted(len(self.problems), 'problem')}", *(f"  {p}" for p in self.problems)])
-        )
+        more = len(self.problems) - LISTED_PROBLEMS
+        lines = [f"  {problem}" for problem in self.problems[:LISTED_PROBLEMS]]
+        lines += [f"  and {more} more"] if more > 0 else []
+        super().__init__("\n".join([f"{source}: {counted(len(self.problems), 'problem')}", *lines]))
 
 
 class UsageError(SiggenError):

@@ -58,12 +58,18 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
-    from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
+    from siggen.planning.plan import (
+        SPLITS,
+        estimated_bytes,
+        rows_per_group,
+        shard_count,
+        specimen_count,
+        specimens_per_shard,
+    )
     from siggen.specimen.gears import model_notes
     from siggen.views.stiffness_curves import table_error_text
 
-    shard_plans = {split: shards(config, split) for split in SPLITS}
-    specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
+    specimens = {split: specimen_count(config, split) for split in SPLITS}
     records = config.specimens * config.records_per_specimen
     raw_bytes = records * config.samples * 4 * len(config.channels)
     return {
@@ -79,7 +85,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "specimens_of_split": specimens,
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
-        "shards_of_split": {split: len(shard_plans[split]) for split in SPLITS},
+        "shards_of_split": {split: shard_count(config, split) for split in SPLITS},
         "specimens_per_full_shard": specimens_per_shard(config),
         "rows_per_group": rows_per_group(config),
         "raw_bytes": raw_bytes,

@@ -65,7 +65,9 @@ class Config(Section):
     mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
         default=5, description="highest mesh harmonic that the sampling rate must carry at the highest speed"
     )
-    repeats: Annotated[Whole, Field(ge=1)] = Field(default=1, description="records per state and operating point")
+    repeats: Annotated[Whole, Field(ge=1, le=1_000_000)] = Field(
+        default=1, description="records per state and operating point"
+    )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
     gears: Gears = Field(description="the gear pair")
     stiffness: Stiffness = Field(default=Stiffness(), description="model of the mesh stiffness")

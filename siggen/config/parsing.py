@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
-from siggen.config.problems import missing_key, section_problems, unknown_key
+from siggen.config.problems import missing_key, section_problems, unknown_keys
 from siggen.config.wording import models_in
 from siggen.errors import Problem
 
@@ -43,7 +43,8 @@ class ParsedConfig:
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
     """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
     sections: dict[str, Any] = {}
-    problems = [unknown_key(str(k), raw[k], list(Config.model_fields)) for k in raw if k not in Config.model_fields]
+    unknown = [(str(key), raw[key]) for key in raw if key not in Config.model_fields]
+    problems = unknown_keys(unknown, list(Config.model_fields))
     for name in Config.model_fields:
         value, found = (
             _entries(name, raw[name]) if name in LISTS and _is_filled_list(raw, name) else _section(name, raw)

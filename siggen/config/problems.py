@@ -11,10 +11,13 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from siggen.config.wording import allowed_text, models_in
-from siggen.errors import Problem
+from siggen.errors import Problem, counted
 
 REFUSAL = "refusal"
 MISSING = "nothing"
+LISTED_KEYS = 10
+"""Unknown keys of one mapping that are named; of the others only the number is told."""
+
 SHOWN_NUMBERS = 4
 """Lists of up to as many numbers are shown as they came."""
 
@@ -71,7 +74,17 @@ def nearest(word: str, known: Sequence[str]) -> str:
 
 def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], below: Location = ()) -> list[Problem]:
     """Translate pydantic's errors about something that lies `below` a section; paths begin at the section."""
-    return [p for error in errors if not _echoes(error) for p in _translated(model, (*below, *error["loc"]), error)]
+    found, unknown = [], dict[Location, list[tuple[str, object]]]()
+    for error in errors:
+        place: Location = (*below, *error["loc"])
+        if error["type"] == "extra_forbidden":
+            path = joined(*(part for part in place if part not in BRANCHES))
+            unknown.setdefault(place[:-1], []).append((path, error["input"]))
+        elif not _echoes(error):
+            found += _translated(model, place, error)
+    for place, keys in unknown.items():
+        found += unknown_keys(keys, list(_model_at(model, place).model_fields))
+    return found
 
 
 def _echoes(error: ErrorDetails) -> bool:
@@ -79,8 +92,19 @@ def _echoes(error: ErrorDetails) -> bool:
     return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
 
 
-def unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
+def unknown_keys(found: Sequence[tuple[str, object]], known: Sequence[str]) -> list[Problem]:
+    """Return the problems of keys, as (path, value), that do not exist at their place; of many, ten and a number."""
+    problems = [_unknown_key(path, value, known) for path, value in found[:LISTED_KEYS]]
+    more = len(found) - LISTED_KEYS
+    if more > 0:
+        path = _short_path(found[LISTED_KEYS][0])
+        problems.append(Problem(path, counted(more, "more unknown key"), f"known keys: {', '.join(known)}"))
+    return problems
+
+
+def _unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
     """Return the problem of a key that does not exist at its place."""
+    path = _short_path(path)
     key = path.rpartition(".")[2]
     hint = nearest(key, known) or ";"
     return Problem(path, received_text(value), f"there is no such key here{hint} known keys: {', '.join(known)}")
@@ -97,8 +121,6 @@ def _translated(model: type[BaseModel], location: Location, error: ErrorDetails)
     match error["type"]:
         case "refusal":
             return [Problem(joined(path, sub), received, allowed) for sub, received, allowed in context["problems"]]
-        case "extra_forbidden":
-            return [unknown_key(path, error["input"], list(_model_at(model, location[:-1]).model_fields))]
         case "union_tag_not_found" if isinstance(error["input"], Mapping):
             return [Problem(joined(path, "kind"), MISSING, f"allowed: one of {_kinds_at(model, location)}")]
         case "union_tag_invalid":
@@ -145,10 +167,14 @@ def _is_branch(model: type[BaseModel], tag: str) -> bool:
     return tag in get_args(kind.annotation) if kind else tag == getattr(model, "branch", "")
 
 
+def _short_path(path: str) -> str:
+    return path if len(path) <= 200 else f"{path[:197]}..."
+
+
 def _shortened(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _listed(names: Sequence[str]) -> str:
-    shown = ", ".join(names[:6])
+    shown = ", ".join(_shortened(name) for name in names[:6])
     return f"{shown}, ..." if len(names) > 6 else shown

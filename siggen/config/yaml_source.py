@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -22,6 +22,31 @@ BOOL = re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")
 NULL = re.compile(r"^(?:~|null|Null|NULL|)$")
 
 
+LARGEST_BYTES = 1 << 16
+"""Of a file: eight times the longest preset. Reading twice as much alone would take half a second."""
+
+DEEPEST = 32
+"""Mappings and lists within each other, aliases followed; a configuration needs eight."""
+
+MOST_VALUES = 40_000
+"""Keys and values of a file, those counted again that an alias repeats; without aliases no file holds as many."""
+
+
+class _Refusal(yaml.YAMLError):
+    """What YAML allows and a configuration does not."""
+
+    def __init__(self, mark: Any, received: str, allowed: str) -> None:
+        super().__init__(received)
+        self.problem = Problem(f"line {mark.line + 1}", received, allowed)
+
+
+class _Extent(NamedTuple):
+    """How many values a node stands for, and how many mappings and lists lie within each other in it."""
+
+    values: int
+    height: int
+
+
 class _Loader(yaml.SafeLoader):
     """SafeLoader with the numbers, booleans and nulls of YAML 1.2 and nothing else resolved."""
 
@@ -30,6 +55,43 @@ class _Loader(yaml.SafeLoader):
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self.problems: list[Problem] = []
+        self._extents: dict[yaml.Node, _Extent] = {}
+        self._depth = 0
+        self._values = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """Compose a node; refuses tags, aliases of what they stand in, and more or deeper values than are allowed."""
+        event = self.peek_event()  # type: ignore[no-untyped-call]
+        if isinstance(event, yaml.AliasEvent):
+            return self._repeated(super().compose_node(parent, index), event.start_mark)
+        if event.tag is not None:
+            raise _Refusal(event.start_mark, f"the tag {event.tag[:60]}", "allowed: plain values, without tags")
+        self._depth += 1
+        self._count(1, self._depth, event.start_mark)
+        before = self._values
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        if node is not None:
+            height = 1 + max((self._extents[child].height for child in _children(node)), default=0)
+            self._extents[node] = _Extent(1 + self._values - before, height)
+        return node
+
+    def _repeated(self, node: yaml.Node | None, mark: Any) -> yaml.Node | None:
+        """Return the node of an alias, counted with all that it stands for."""
+        if node not in self._extents:
+            raise _Refusal(mark, "an alias of the mapping or list that it stands in", "allowed: aliases that end")
+        extent = self._extents[node]
+        self._count(extent.values, self._depth + extent.height, mark)
+        return node
+
+    def _count(self, values: int, depth: int, mark: Any) -> None:
+        self._values += values
+        if depth > DEEPEST:
+            received = f"{depth} mappings or lists within each other"
+            raise _Refusal(mark, received, f"allowed: at most {DEEPEST}")
+        if self._values > MOST_VALUES:
+            received = f"{self._values} values, those repeated by aliases counted again"
+            raise _Refusal(mark, received, f"allowed: at most {MOST_VALUES}")
 
     def compose_mapping_node(self, anchor: Any) -> yaml.MappingNode:
         """Compose a mapping as it is written, noting keys that come twice or are no text."""
@@ -69,6 +131,12 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
+def _children(node: yaml.Node) -> list[yaml.Node]:
+    if isinstance(node, yaml.MappingNode):
+        return [part for pair in node.value for part in pair]
+    return node.value if isinstance(node, yaml.SequenceNode) else []
+
+
 def _tag(name: str) -> str:
     return f"tag:yaml.org,2002:{name}"
 
@@ -98,15 +166,22 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
     UsageError
         If the file cannot be read.
     ConfigError
-        If it is not YAML, has keys twice, or is no mapping; with line numbers.
+        If it is not YAML, has keys twice, is no mapping, or larger or deeper than allowed; with line numbers.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        with Path(path).open("rb") as file:
+            content = file.read(LARGEST_BYTES + 1)
+        if len(content) > LARGEST_BYTES:
+            line = content.count(b"\n") + 1
+            received = f"more than {LARGEST_BYTES} bytes"
+            raise ConfigError([Problem(f"line {line}", received, "allowed: smaller files")], str(path))
+        text = content.decode("utf-8")
     except OSError as error:
         raise UsageError(f"{path}: cannot be read ({error.strerror}); give the path of a YAML file") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: is no text in UTF-8; give the path of a YAML file") from None
-    return parse_yaml(text, source=str(path))
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UsageError(f"{path}: is no text in UTF-8 (line {line}); give the path of a YAML file") from None
+    return parse_yaml(text.removeprefix("\ufeff"), source=str(path))
 
 
 def parse_yaml(text: str, source: str = "configuration") -> dict[str, Any]:
@@ -115,7 +190,7 @@ def parse_yaml(text: str, source: str = "configuration") -> dict[str, Any]:
     if not isinstance(value, Mapping):
         received = "an empty file" if value is None else f"{type(value).__name__} at the top"
         raise ConfigError(
-            [Problem("the file", received, "allowed: a mapping with keys such as name, seed and gears")], source
+            [Problem("line 1", received, "allowed: a mapping with keys such as name, seed and gears")], source
         )
     return dict(value)
 
@@ -130,8 +205,12 @@ def yaml_value(text: str, source: str) -> Any:
         where = f"line {mark.line + 1}, column {mark.column + 1}" if mark else "the file"
         hint = "indent with spaces, not with tabs" if "'\\t'" in str(error.problem) else "allowed: valid YAML"
         raise ConfigError([Problem(where, f"what is no YAML ({error.problem})", hint)], source) from None
-    except yaml.YAMLError as error:
-        raise ConfigError([Problem("the file", str(error).splitlines()[0], "allowed: valid YAML")], source) from None
+    except _Refusal as error:
+        raise ConfigError([*loader.problems, error.problem], source) from None
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        received = f"the character #x{error.character:04x}"
+        raise ConfigError([Problem(f"line {line}", received, "allowed: text that can be printed")], source) from None
     if loader.problems:
         raise ConfigError(loader.problems, source)
     return value

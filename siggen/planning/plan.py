@@ -188,6 +188,19 @@ def shards(config: Config, split: str) -> tuple[ShardPlan, ...]:
     )
 
 
+def specimen_count(config: Config, split: str) -> int:
+    """Return the number of specimens of a split without listing them: a whole block holds its share exactly."""
+    blocks, rest = divmod(config.specimens, BLOCK)
+    first = blocks * BLOCK
+    tail = sum(split_of(config, specimen) == split for specimen in range(first, first + rest))
+    return blocks * int(config.splits.model_dump()[split]) + tail
+
+
+def shard_count(config: Config, split: str) -> int:
+    """Return the number of shards of a split without listing them."""
+    return -(-specimen_count(config, split) // specimens_per_shard(config))
+
+
 def specimens_per_shard(config: Config) -> int:
     """Return the number of specimens in a full shard, from the raw bytes of a specimen's signals."""
     specimen_bytes = _row_bytes(config) * len(config.channels) * config.records_per_specimen + _internal_bytes(config)

@@ -83,7 +83,7 @@ def test_keys_that_are_no_texts_are_refused(key):
         ("a: 1\n\tb: 2", "line 2", "spaces"),
         ("a: *unknown", "line 1", "valid YAML"),
         ("a: 1\n---\nb: 2", "line 2", "valid YAML"),
-        ("a: !!python/object/apply:os.getcwd []", "line 1", "valid YAML"),
+        ("a: !!python/object/apply:os.getcwd []", "line 1", "without tags"),
     ],
 )
 def test_what_is_no_yaml_is_refused_with_its_line(text, line, hint):

@@ -19,7 +19,9 @@ from siggen.planning.plan import (
     planned_record,
     record_ids_of,
     rows_per_group,
+    shard_count,
     shards,
+    specimen_count,
     specimens_per_shard,
     split_of,
 )
@@ -208,3 +210,14 @@ def test_row_groups_of_the_usual_records():
     # 16 to 32 records of 1 s and 2 or 3 of 10 s were measured to read well
     assert rows_per_group(config(duration_s=1.0)) == 32
     assert rows_per_group(config(duration_s=10.0)) == 2
+
+
+@pytest.mark.parametrize("specimens", [1, 7, 20, 39, 100, 401])
+@pytest.mark.parametrize(
+    "splits", [{}, {"train": 20, "validation": 0, "test": 0}, {"train": 7, "validation": 6, "test": 7}]
+)
+def test_counts_of_splits_and_shards_are_those_of_the_lists(specimens: int, splits: dict[str, int]) -> None:
+    made = config(specimens=specimens, **({"splits": splits} if splits else {}))
+    for split in SPLITS:
+        assert specimen_count(made, split) == len(plan(made).specimens_of(split))
+        assert shard_count(made, split) == len(shards(made, split))
