@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import open
     from siggen.planning.plan import plan
     from siggen.record.simulation import simulate
+    from siggen.sets.extension import extend
     from siggen.sets.generation import generate
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
+    "extend",
     "generate",
     "load_config",
     "mesh_stiffness_curves",
@@ -30,6 +32,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "extend": ("siggen.sets.extension", "extend"),
     "generate": ("siggen.sets.generation", "generate"),
     "load_config": ("siggen.checks.loading", "load_config"),
     "mesh_stiffness_curves": ("siggen.views.stiffness_curves", "mesh_stiffness_curves"),

@@ -39,7 +39,8 @@ OwnIndicators = Annotated[
     typer.Option(
         "--indicator",
         metavar="MODULE:FUNCTION",
-        help="Your own indicator: function(signal, tacho, gears) -> float. May be given several times.",
+        help="Your own indicator: function(signal, tacho, gears) -> float. May be given several times. "
+        "The module is imported and its code runs with your rights: name only code that you trust.",
         show_default=False,
     ),
 ]

@@ -10,6 +10,7 @@ import typer
 
 from siggen.cli.errors import errors
 from siggen.cli.export_model import export_model
+from siggen.cli.extend import extend
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
@@ -26,7 +27,10 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (init, plan, generate, verify, show, simulate, export_model, tvms, flank, errors, modes, path, schema)
+COMMANDS = (
+    *(init, plan, generate, extend, verify, show, simulate, export_model),
+    *(tvms, flank, errors, modes, path, schema),
+)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",

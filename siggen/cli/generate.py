@@ -46,16 +46,16 @@ def generate(
         typer.echo(f"implausible: {sentence}", err=True)
     if told := compilation_text():
         typer.echo(told, err=True)
-    with _progress() as show:
+    with progress_shown() as show:
         generation = generate_set(loaded, out, workers, show)
-    _report(generation)
+    report(generation)
     typer.echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[int, int], None] | None]:
+def progress_shown() -> Iterator[Callable[[int, int], None] | None]:
     """Show records, rate and time left on stderr; nothing where stderr is not a terminal."""
     from rich.console import Console
 
@@ -92,7 +92,7 @@ def _progress() -> Iterator[Callable[[int, int], None] | None]:
         yield show
 
 
-def _report(generation: Generation) -> None:
+def report(generation: Generation) -> None:
     """Say on stderr what was done and what failed."""
     from siggen.errors import counted
 

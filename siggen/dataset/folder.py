@@ -77,7 +77,7 @@ def _refuse_other_set(storage: Storage, config: Config) -> None:
         before, now = differences[0][1:]
         raise DatasetError(
             f"{storage.location} holds this set with {before} specimens, asked for are {now}; "
-            f"a set cannot be changed in place: generate the {now} into a new folder "
+            f"`siggen extend {storage.location} --specimens {now}` adds to a finished set; fewer need a new folder "
             f"(its first {min(before, now)} specimens will be the same)"
         )
     listed = [f"  {path}: {before} there, {now} asked for" for path, before, now in differences[:NAMED_DIFFERENCES]]

@@ -5,9 +5,11 @@ Nothing here is drawn except the order of splits within a few specimens, so a se
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from itertools import pairwise
 from typing import overload
 
 from siggen.config import BLOCK, Config, Splits
@@ -178,10 +180,22 @@ def _even_sequence(splits: Splits) -> tuple[str, ...]:
     return tuple(sequence)
 
 
-def shards(config: Config, split: str) -> tuple[ShardPlan, ...]:
-    """Return the shards of a split; all are full but the last, so a larger set has the same full shards."""
+def shards(config: Config, split: str, earlier: Sequence[int] = ()) -> tuple[ShardPlan, ...]:
+    """Return the shards of a split; all are full but the last, so a larger set has the same full shards.
+
+    Parameters
+    ----------
+    config : Config
+    split : str
+    earlier : sequence of int
+        Numbers of specimens, ascending, that the set had before it was extended: shards never hold specimens from
+        both sides of one, so that those of the smaller set stay as they are.
+    """
     members, size = plan(config).specimens_of(split), specimens_per_shard(config)
-    groups = [members[start : start + size] for start in range(0, len(members), size)]
+    groups: list[tuple[int, ...]] = []
+    for first, end in pairwise((0, *earlier, config.specimens)):
+        own = members[bisect_left(members, first) : bisect_left(members, end)]
+        groups += [own[start : start + size] for start in range(0, len(own), size)]
     return tuple(
         ShardPlan(split, number, group, tuple(i for specimen in group for i in record_ids_of(config, specimen)))
         for number, group in enumerate(groups)

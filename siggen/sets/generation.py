@@ -17,6 +17,7 @@ from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
+from siggen.dataset.extensions import EXTENSIONS, earlier_specimens
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.label_tables import write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
@@ -27,7 +28,7 @@ from siggen.dataset.storage import LocalFolder, Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.errors import EXIT_INTERRUPTED, SiggenError
-from siggen.planning.plan import ShardPlan, plan, record_ids_of, rows_per_group, shards
+from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
 
@@ -109,25 +110,45 @@ def generate(
         storage.delete_leftovers()
         chosen = engine_of(engine, workers)
         with Interruption() as interruption:
-            physics = contents.physics()
-            run = _Run(config, storage, chosen, physics, physics.stored(config), progress or _silent, interruption)
-            try:
-                return run.finish()
-            except KeyboardInterrupt:
-                raise InterruptionError(_how_to_continue(storage, run)) from None
-
-
-def _shards(config: Config) -> list[ShardPlan]:
-    return [shard for split in SPLITS for shard in shards(config, split)]
+            earlier = earlier_specimens(storage, config)
+            return set_run(config, storage, chosen, progress, interruption, earlier).finish()
 
 
 def _silent(done: int, total: int) -> None:
     """Show nothing."""
 
 
+def set_run(
+    config: Config,
+    storage: Storage,
+    engine: Engine,
+    progress: Progress | None,
+    interruption: Interruption,
+    earlier: Sequence[int] = (),
+) -> SetRun:
+    """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
+    physics = contents.physics()
+    quantities = physics.stored(config)
+    planned = planned_shards(config, earlier)
+    run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned)
+    run.total = sum(len(shard.record_ids) for shard in planned)
+    return run
+
+
+def planned_shards(config: Config, earlier: Sequence[int] = ()) -> list[ShardPlan]:
+    """Return the shards of a set in the order in which they are made; `earlier` as for `plan.shards`."""
+    return [shard for split in SPLITS for shard in shards(config, split, earlier)]
+
+
 @dataclass(slots=True)
-class _Run:
-    """One call of `generate` on a set that is not finished."""
+class SetRun:
+    """One call of `generate` or its kin on a set that is not finished.
+
+    Attributes
+    ----------
+    planned
+        All shards of the set.
+    """
 
     config: Config
     storage: Storage
@@ -136,6 +157,7 @@ class _Run:
     quantities: tuple[Column, ...]
     progress: Progress
     interruption: Interruption
+    planned: Sequence[ShardPlan]
     started_s: float = field(default_factory=time.perf_counter)
     environment: dict[str, str] = field(default_factory=environment)
     sidecars: dict[str, Sidecar] = field(default_factory=dict)
@@ -144,15 +166,33 @@ class _Run:
     total: int = 0
 
     def finish(self) -> Generation:
-        """Make what is missing, from the first shard to the manifest."""
-        planned = _shards(self.config)
-        self.total = plan(self.config).count
-        self.storage.put(CONFIG, config_bytes(self.config))
+        """Make what is missing, from the first shard to the manifest.
+
+        Raises
+        ------
+        InterruptionError
+            After SIGINT or SIGTERM.
+        """
+        try:
+            if not self.storage.exists(CONFIG):
+                self.storage.put(CONFIG, config_bytes(self.config))
+            taken_over = self.make(self.planned)
+            return self.conclude(taken_over)
+        except KeyboardInterrupt:
+            raise InterruptionError(self._how_to_continue()) from None
+
+    def make(self, wanted: Sequence[ShardPlan]) -> int:
+        """Make those of the wanted shards that no earlier run committed; return how many one did."""
+        self.total = sum(len(shard.record_ids) for shard in wanted)
         self._advance(0)
-        self._take_over(planned)
+        self.take_over(wanted)
         taken_over = len(self.sidecars)
-        self._make([shard for shard in planned if shard.key not in self.sidecars])
-        sidecars = [self.sidecars[shard.key] for shard in planned]
+        self._make([shard for shard in wanted if shard.key not in self.sidecars])
+        return taken_over
+
+    def conclude(self, taken_over: int) -> Generation:
+        """Write tables, card and manifest over all shards, which are there."""
+        sidecars = [self.sidecars[shard.key] for shard in self.planned]
         manifest = self._conclude(sidecars, taken_over)
         return Generation(
             path=Path(self.storage.location),
@@ -163,9 +203,9 @@ class _Run:
             seconds=time.perf_counter() - self.started_s,
         )
 
-    def _take_over(self, planned: Sequence[ShardPlan]) -> None:
+    def take_over(self, wanted: Sequence[ShardPlan]) -> None:
         """Find the shards that earlier runs committed."""
-        for shard in planned:
+        for shard in (shard for shard in wanted if shard.key not in self.sidecars):
             self.interruption.check()
             sidecar = committed(self.storage, shard.key, self.config.identity, id_ranges(shard.specimens))
             if sidecar is not None:
@@ -232,7 +272,8 @@ class _Run:
         return table_draft(self.storage, internals_name(shard.key), schema, rows)
 
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
-        """Write tables, card and run.json; the manifest comes last and makes the set a finished one."""
+        """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
+        self.storage.put(CONFIG, config_bytes(self.config))
         tables = []
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
@@ -241,7 +282,8 @@ class _Run:
                 tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
-        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, tables, [CONFIG, CARD])
+        written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
+        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, tables, written)
         self.storage.put(RUN, sealed(self._run_facts(taken_over)))
         self.storage.put(MANIFEST, sealed(manifest))
         return manifest
@@ -261,6 +303,12 @@ class _Run:
             "host": host_facts(),
             "environment": self.environment,
         }
+
+    def _how_to_continue(self) -> str:
+        return (
+            f"stopped: {len(self.sidecars)} of {len(self.planned)} shards of {self.storage.location} are finished and "
+            "stay; the same command continues from there"
+        )
 
     def _advance(self, records: int) -> None:
         self.done += records
@@ -296,11 +344,3 @@ def _unchanged(storage: Storage) -> Generation:
     manifest = read_manifest(storage)
     failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
     return Generation(Path(storage.location), manifest["rows"], failures, was_finished=True)
-
-
-def _how_to_continue(storage: Storage, run: _Run) -> str:
-    planned = len(_shards(run.config))
-    return (
-        f"stopped: {len(run.sidecars)} of {planned} shards of {storage.location} are finished and stay; "
-        "the same command continues from there"
-    )

@@ -60,7 +60,7 @@ def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
 
 def test_more_specimens_in_place_are_refused_with_the_way_out(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
-    with pytest.raises(DatasetError, match=r"with 5 specimens, asked for are 7.*into a new folder \(its first 5"):
+    with pytest.raises(DatasetError, match=r"with 5 specimens, asked for are 7; `siggen extend \S+ --specimens 7`"):
         write_fake_set(tmp_path, fake_config(specimens=7))
 
 

@@ -27,6 +27,10 @@ FIRST = Path(__file__).parent / "schema_1"
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
 
 
+SECOND = Path(__file__).parent / "schema_2"
+"""Two gearboxes in two states, generated as one and extended by one when there was nothing after version 2."""
+
+
 def say(folder: Path, **facts: object) -> None:
     """Change what a manifest says about its set, and seal it again."""
     manifest = folder / "manifest.json"
@@ -50,6 +54,22 @@ def test_a_set_of_version_1_opens_and_its_records_are_read() -> None:
     assert dataset.damage().num_rows == 1
 
 
+def test_an_extended_set_of_version_2_opens_and_every_byte_of_it_is_checked() -> None:
+    dataset = siggen.open(SECOND)
+    assert (dataset.manifest["schema_version"], dataset.has_checksums) == ("2", True)
+    assert [shard["specimens"] for shard in dataset.manifest["shards"]] == [[[0, 0]], [[1, 1]]]
+    assert dataset.labels()["record_id"].to_pylist() == [0, 1, 2, 3]
+    signals = np.concatenate([signal_matrix(batch.column("accel_lid_vertical_m_s2")) for batch in dataset.records()])
+    assert signals.shape == (4, 1600)
+    # a spall in every second record, where the same gearbox hums when it is healthy
+    assert (signals.std(axis=1)[[1, 3]] > 2.0 * signals.std(axis=1)[[0, 2]]).all()
+    forces = np.stack([dataset.record_internals(i)["mesh_force_n"] for i in range(4)])  # type: ignore[index]
+    assert forces.shape == (4, 1600)
+    assert (forces.mean(axis=1) > 0.0).all()
+    found = verify(SECOND, 0)
+    assert (found.mismatches, found.has_checksums) == ((), True)
+
+
 def test_its_hashes_are_verified_and_a_flipped_byte_shows(tmp_path: Path) -> None:
     assert verify(FIRST).mismatches == ()
     folder = Path(shutil.copytree(FIRST, tmp_path / "set"))
@@ -64,6 +84,13 @@ def test_its_identity_is_still_that_of_its_configuration() -> None:
     config = parse(read_yaml(FIRST / "config.yaml")).config
     assert config is not None
     assert config.identity == siggen.open(FIRST).manifest["identity"]
+
+
+@pytest.mark.slow
+def test_the_records_of_version_2_are_still_what_this_version_simulates() -> None:
+    found = verify(SECOND, 4, workers=0)
+    assert found.records == (0, 1, 2, 3)
+    assert found.mismatches == ()
 
 
 @pytest.mark.slow

@@ -1,0 +1,40 @@
+"""`siggen extend`: more specimens for a finished set."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def extend(
+    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    specimens: Annotated[
+        str, typer.Option("--specimens", help="+N for N more gearboxes, or how many in all.", metavar="+N")
+    ],
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
+    ] = None,
+) -> None:
+    """Add gearboxes to a finished set; the same command continues an interrupted extension.
+
+    Shards that are there keep their bytes, new ones come behind them. Tables, card and manifest are written again; a
+    measured section in the card is left out, since it was measured on fewer gearboxes. Every record is the one that a
+    set generated at once would have.
+
+    Exit codes: 0 done, 2 no finished set or a wrong number, 3 done but some records failed, 130 interrupted.
+
+    Example: siggen extend sets/quickstart --specimens +100
+    """
+    from siggen.cli.generate import progress_shown, report
+    from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.sets.extension import extend as extend_set
+
+    with progress_shown() as show:
+        generation = extend_set(folder, specimens, workers, show)
+    report(generation)
+    typer.echo(str(generation.path))
+    if generation.failures:
+        raise typer.Exit(EXIT_RECORDS_FAILED)

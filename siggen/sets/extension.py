@@ -1,0 +1,123 @@
+"""A finished set made larger: new shards behind the last ones, everything that is there stays as it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from siggen.dataset.extensions import put_extensions, read_extensions
+from siggen.dataset.manifest import CONFIG, read_manifest
+from siggen.dataset.promises import has_checksums
+from siggen.dataset.storage import LocalFolder, Storage
+from siggen.engines.protocol import Engine
+from siggen.engines.registry import engine_of
+from siggen.errors import ConfigError, DatasetError, UsageError
+from siggen.sets.generation import Generation, Progress, SetRun, set_run
+from siggen.sets.interruption import Interruption
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+
+def extend(
+    path: Path | str,
+    specimens: int | str,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    *,
+    engine: Engine | str | None = None,
+) -> Generation:
+    """Add specimens to a finished set, or continue an extension that was interrupted.
+
+    Every record equals the one that a set generated at once would have. Shards that are there keep their bytes; tables,
+    card, configuration and manifest are written again. Until the new manifest is there, the old set stays readable
+    while new shards are made.
+
+    Parameters
+    ----------
+    path : path
+        A finished set.
+    specimens : int or str
+        How many it shall have in all, or '+N' for N more.
+    workers, progress, engine
+        As for `generate`.
+
+    Raises
+    ------
+    UsageError
+        If the number is none, or not above what the set has.
+    DatasetError
+        If there is no finished set, its shards are of an earlier version, or one of them is damaged.
+    InterruptionError
+        After SIGINT or SIGTERM; the same call continues.
+    """
+    storage = LocalFolder(path)
+    read_manifest(storage)  # a folder without a set must not be created by the lock
+    with storage.writing():
+        manifest = read_manifest(storage)
+        there = int(manifest["specimens"])
+        wanted = _wanted(specimens, there)
+        _check_begun(storage, there, wanted)
+        config = _config(storage, wanted)
+        if config.identity != manifest["identity"]:
+            raise DatasetError(f"{storage.location}/{CONFIG} is not the configuration of this set; nothing was changed")
+        if not has_checksums(manifest):
+            raise _of_earlier_version(storage, wanted)
+        storage.delete_leftovers()
+        earlier = [*(count for count in read_extensions(storage) if count < there), there]
+        with Interruption() as interruption:
+            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, earlier)
+            _check_shards(run, there)
+            put_extensions(storage, [*earlier, wanted])
+            return run.finish()
+
+
+def _wanted(specimens: int | str, there: int) -> int:
+    text = str(specimens).strip()
+    if not text.removeprefix("+").isdecimal() or not text.isascii() or len(text) > 18:
+        raise UsageError(f"--specimens: received {text[:40]!r}; allowed: +N for N more, or a number above {there}")
+    wanted = there + int(text[1:]) if text.startswith("+") else int(text)
+    if wanted <= there:
+        raise UsageError(f"--specimens: received {text}; the set has {there} specimens: allowed are more, such as +100")
+    return wanted
+
+
+def _check_begun(storage: Storage, there: int, wanted: int) -> None:
+    """Refuse to change the aim of an extension that was begun: its last shard may be a partial one."""
+    begun = max(read_extensions(storage), default=0)
+    if begun > there and begun != wanted:
+        raise UsageError(
+            f"{storage.location}: an extension to {begun} specimens was begun; complete it first: "
+            f"siggen extend {storage.location} --specimens {begun}"
+        )
+
+
+def _config(storage: Storage, specimens: int) -> Config:
+    from siggen.config import parse, parse_yaml
+
+    source = f"{storage.location}/{CONFIG}"
+    parsed = parse({**parse_yaml(storage.get(CONFIG).decode(), source), "specimens": specimens})
+    if parsed.config is None:
+        raise ConfigError(parsed.problems, source)
+    return parsed.config
+
+
+def _check_shards(run: SetRun, there: int) -> None:
+    """Find the shards of the set as it is, each of which has to be whole."""
+    old = [shard for shard in run.planned if shard.specimens[-1] < there]
+    run.take_over(old)
+    if lost := [shard.key for shard in old if shard.key not in run.sidecars]:
+        where = run.storage.location
+        raise DatasetError(
+            f"{where}: {len(lost)} of its {len(old)} shards are missing, damaged or of another version of siggen "
+            f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}); `siggen verify {where}` names what is wrong. "
+            "Only whole sets of this version are extended"
+        )
+
+
+def _of_earlier_version(storage: Storage, wanted: int) -> DatasetError:
+    return DatasetError(
+        f"{storage.location} was written before shards had checksums; such a set is read and verified, not extended. "
+        "Generate one into a new folder: "
+        f"siggen generate {storage.location}/{CONFIG} --set specimens={wanted} --out NEW"
+    )
