@@ -17,6 +17,7 @@ from siggen.cli.init import init
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
+from siggen.cli.publish import publish
 from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
@@ -28,7 +29,7 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (
-    *(init, plan, generate, extend, verify, show, simulate, export_model),
+    *(init, plan, generate, extend, verify, publish, show, simulate, export_model),
     *(tvms, flank, errors, modes, path, schema),
 )
 

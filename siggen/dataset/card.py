@@ -20,7 +20,6 @@ from siggen.errors import counted
 if TYPE_CHECKING:
     from siggen.config import Config
 
-LICENSE = "cc-by-4.0"
 TAGS = (
     "synthetic",
     "vibration",
@@ -76,7 +75,6 @@ def _front_matter(config: Config, splits: Sequence[str], rows: int, *, with_inte
     internals = [_view("internals", {split: f"internals/{split}-*.parquet" for split in splits})]
     facts = {
         "pretty_name": f"{config.name}: synthetic gearbox vibration with tooth pitting",
-        "license": LICENSE,
         "tags": list(TAGS),
         "size_categories": [next((size for limit, size in SIZE_LIMITS if rows < limit), LARGEST_SIZE)],
         "configs": [

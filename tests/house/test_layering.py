@@ -16,7 +16,8 @@ SIGGEN_ROOMS = (
     "errors", "seeding", "arrays", "config", "planning",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
-    "sensing", "specimen", "checks", "rig", "columns", "record", "dataset", "engines", "sets", "views", "cli",
+    "sensing", "specimen", "checks", "rig", "columns", "record", "dataset", "engines", "sets", "views",
+    "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "loader", "training", "release", "recordings", "page",

@@ -1,0 +1,44 @@
+"""`siggen publish`: a finished set as a folder that is ready to be uploaded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def publish(
+    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    to: Annotated[Path | None, typer.Option("--to", help="New or empty folder to write.", metavar="PATH")] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Check all, list what would be written.")] = False,
+    facts: Annotated[
+        Path | None,
+        typer.Option("--facts", help="YAML file with licence, authors, citation; without it a template is printed."),
+    ] = None,
+    audit: Annotated[
+        Path | None, typer.Option("--audit", help="Folder of the audit to quote. Default: DIR_audit, if it is there.")
+    ] = None,
+) -> None:
+    """Make a folder for the Hugging Face hub, Zenodo and a DOI; the set itself is not touched, nothing is uploaded.
+
+    The folder holds the set's files, a card with class labels, what physics is on and where every number comes from,
+    croissant.json, datacite.json and previews. It opens and verifies like the set.
+
+    Exit codes: 0 done, 2 no finished set, a licence that is unset, or a folder that is not empty.
+
+    Example: siggen publish sets/quickstart --to upload --facts publication.yaml
+    """
+    from siggen.errors import UsageError, counted
+    from siggen.publication.publish import publication
+    from siggen.publication.publish import publish as publish_set
+
+    if (to is None) != dry_run:
+        raise UsageError("publish: received both or neither of --to and --dry-run; allowed: one of the two")
+    made = publication(folder, facts, audit) if to is None else publish_set(folder, to, facts, audit)
+    typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
+    for name, content in made.texts.items():
+        typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)
+    quoted = f"quotes {made.audit}" if made.audit else "says that there is no audit (siggen-diagnostics audit)"
+    typer.echo(f"the card {quoted}", err=True)
+    typer.echo("nothing was written" if to is None else str(to))

@@ -1,0 +1,1 @@
+"""A finished set as a folder that repositories take: card, metadata, licence, previews."""

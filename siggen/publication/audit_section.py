@@ -1,0 +1,64 @@
+"""Section of a published card: what an audit found that tells the states apart all too easily."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from siggen.errors import UsageError
+
+AUDIT = "audit.json"
+UNAUDITED = """## Audit
+
+Nobody has looked for what makes this set trivially separable: no audit was found when it was published. Do not take a
+score on it as a score on gearboxes before `siggen-diagnostics audit` has run.
+"""
+
+
+def audit_section(identity: str, file: Path | None) -> str:
+    """Return the section from the file that `siggen-diagnostics audit` left; without one it says so.
+
+    Raises
+    ------
+    UsageError
+        If the file is no audit, or one of another set.
+    """
+    if file is None:
+        return UNAUDITED
+    try:
+        found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        of, best = found["identity"], found["best_single_indicator"]
+        sentences, attackers = _sentences(found["verdict"], found["summary"]), _attackers(best)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"{file}: is no {AUDIT} of siggen-diagnostics ({error!r}); run the audit again") from error
+    if of != identity:
+        raise UsageError(f"{file}: is the audit of another set (identity {str(of)[:12]} instead of {identity[:12]})")
+    return f"## Audit\n\n{sentences}\n\n{attackers}"
+
+
+def _sentences(verdict: object, summary: object) -> str:
+    texts = summary if isinstance(summary, list) else [summary]
+    return " ".join(str(text) for text in (f"Verdict: {verdict}.", *texts))
+
+
+def _attackers(best: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return a table of the single indicator that separates each state best, the strongest first."""
+    if not best:
+        return "No state could be judged by single indicators.\n"
+    rows = sorted(best.items(), key=lambda entry: -(entry[1]["auc_chosen_on_other_gearboxes"] or 0.0))
+    lines = [
+        f"| {state} | `{entry['indicator']}` | {_number(entry['auc_chosen_on_other_gearboxes'])} | {entry['tried']} |"
+        for state, entry in rows
+    ]
+    head = (
+        "The strongest attacker of each state is the single indicator that separates it best from healthy. A "
+        "classifier that scores no better has learnt no more than this number:\n"
+    )
+    table = ["| state | indicator | AUC, chosen on other gearboxes | indicators tried |", "|---|---|---|---|"]
+    return "\n".join([head, *table, *lines, ""])
+
+
+def _number(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.3f}"

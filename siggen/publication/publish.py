@@ -1,0 +1,222 @@
+"""A finished set as a folder that the Hugging Face hub and Zenodo take: its files, a card, metadata, previews."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+
+from siggen.dataset.card import TAGS
+from siggen.dataset.manifest import CARD, MANIFEST
+from siggen.dataset.reading import Dataset
+from siggen.dataset.reading import open as open_set
+from siggen.dataset.seal import sealed
+from siggen.dataset.storage import LocalFolder
+from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.publication.audit_section import AUDIT, audit_section
+from siggen.publication.croissant import FOLDERS, croissant
+from siggen.publication.datacite import datacite_fields
+from siggen.publication.dataset_info import dataset_info
+from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
+from siggen.publication.published_card import published_card
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+CROISSANT, DATACITE, PREVIEWS = "croissant.json", "datacite.json", "previews"
+
+
+@dataclass(frozen=True, slots=True)
+class Publication:
+    """What is, or would be, written.
+
+    Attributes
+    ----------
+    texts
+        Files made for publication by name.
+    copied
+        Names of the set's own files that go along unchanged.
+    bytes
+        Of all copied files.
+    audit
+        The audit that the card quotes, or None.
+    """
+
+    texts: Mapping[str, bytes]
+    copied: tuple[str, ...]
+    bytes: int
+    audit: Path | None
+
+
+def publication(path: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
+    """Return what `publish` would write, after all checks but those of the target.
+
+    Parameters
+    ----------
+    path : path
+        A finished set.
+    facts_file : Path or None
+        The authors' YAML file.
+    audit : Path or None
+        The file `audit.json`, or its folder; default: `DIR_audit` beside the set, if it is there.
+
+    Raises
+    ------
+    UsageError, ConfigError
+        If the authors' file is missing, or anything in it is unset or wrong; if the audit is of another set.
+    DatasetError
+        If the set is not finished, or its configuration is not one of this version.
+    """
+    dataset = open_set(path)
+    facts = _facts(Path(path), facts_file)
+    found = _audit_file(Path(path), audit)
+    config = _config(dataset)
+    files = dataset.manifest["files"]
+    copied = tuple(name for name in files if name not in (CARD, CROISSANT, DATACITE) and not name.startswith(PREVIEWS))
+    size = sum(int(files[name]["bytes"]) for name in copied)
+    return Publication(_texts(dataset, config, facts, found, size), copied, size, found)
+
+
+def publish(path: Path | str, to: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
+    """Write a folder that is ready to be uploaded; it is a set that `siggen.open` and `siggen verify` read.
+
+    Parameters
+    ----------
+    to : path
+        A new or empty folder.
+
+    Raises
+    ------
+    UsageError, ConfigError, DatasetError
+        As of `publication`, or if the target is not empty.
+    """
+    made = publication(path, facts_file, audit)
+    source, target = LocalFolder(path), LocalFolder(to)
+    if target.path.resolve() == source.path.resolve() or target.names():
+        raise UsageError(f"{to} is not empty; name a new or empty folder (nothing is deleted)")
+    dataset = open_set(path)
+    with target.writing():
+        for name in made.copied:
+            with target.draft(name) as part:
+                shutil.copyfile(source.path / name, part)
+        own = {**made.texts, **_previews(dataset)}
+        for name, content in own.items():
+            target.put(name, content)
+        files = {name: dataset.manifest["files"][name] for name in made.copied}
+        files |= {name: {"bytes": len(text), "sha256": hashlib.sha256(text).hexdigest()} for name, text in own.items()}
+        target.put(MANIFEST, sealed({**dataset.manifest, "files": files}))
+    return made
+
+
+def _facts(path: Path, file: Path | None) -> PublicationFacts:
+    if file is None:
+        raise UsageError(
+            f"{path}: license is unset, and so are authors and citation: siggen cannot know them. Save this as "
+            f"publication.yaml, fill it in, and give it with --facts publication.yaml:\n\n{TEMPLATE}"
+        )
+    return read_publication_facts(file)
+
+
+def _audit_file(path: Path, given: Path | None) -> Path | None:
+    if given is not None:
+        file = given / AUDIT if given.is_dir() else given
+        if not file.is_file():
+            raise UsageError(f"{given}: holds no {AUDIT}; give the folder that `siggen-diagnostics audit` wrote")
+        return file
+    beside = path.resolve().with_name(f"{path.resolve().name}_audit") / AUDIT
+    return beside if beside.is_file() else None
+
+
+def _config(dataset: Dataset) -> Config:
+    from siggen.config import parse
+
+    parsed = parse(dataset.config)
+    if parsed.config is None:
+        raise ConfigError(parsed.problems, f"{dataset.path}/config.yaml")
+    if parsed.config.identity != dataset.manifest["identity"]:
+        raise DatasetError(
+            f"{dataset.path}: this version of siggen reads its configuration otherwise; publish with its own"
+        )
+    return parsed.config
+
+
+def _texts(
+    dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None, size: int
+) -> dict[str, bytes]:
+    rows = dataset.manifest["rows"]
+    description = (
+        f"{counted(rows, 'labelled acceleration record')} of a simulated spur gear pair with tooth pitting, "
+        f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "
+        "Computed by siggen, not measured."
+    )
+    limits = "Simulated: a model trained on it has to be tested on measurements before it is trusted on them."
+    schemas = _schemas(dataset)
+    info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
+    card = published_card(
+        LocalFolder(dataset.path).get(CARD).decode(), config, facts, info, audit_section(config.identity, audit)
+    )
+    return {
+        CARD: card.encode(),
+        CROISSANT: _json(croissant(facts, description, TAGS, schemas, limits)),
+        DATACITE: _json(datacite_fields(facts, description, TAGS, size)),
+    }
+
+
+def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:
+    """Return the columns of each view as they are in the files, which may be of an earlier version."""
+    if not dataset.manifest["rows"]:
+        raise DatasetError(f"{dataset.path} has no rows: there is nothing to publish")
+    found = {
+        "signals": next(dataset.records(batch_rows=1)).schema,
+        "labels": dataset.labels(dataset.splits[0]).schema,
+        "damage": dataset.damage(dataset.splits[0]).schema,
+    }
+    internals = next(dataset.internals(batch_rows=1), None) if dataset.internal_columns else None
+    return found if internals is None else {**found, "internals": internals.schema}
+
+
+def _counts(dataset: Dataset, views: tuple[str, ...]) -> dict[str, dict[str, tuple[int, int]]]:
+    """Return view -> split -> (rows, bytes)."""
+    found: dict[str, dict[str, tuple[int, int]]] = {}
+    for view in views:
+        found[view] = {}
+        for split in dataset.splits:
+            begin = (f"{FOLDERS[view]}/{split}.", f"{FOLDERS[view]}/{split}-")
+            size = sum(int(file["bytes"]) for name, file in dataset.manifest["files"].items() if name.startswith(begin))
+            found[view][split] = (_rows(dataset, view, split), size)
+    return found
+
+
+def _rows(dataset: Dataset, view: str, split: str) -> int:
+    if view == "damage":
+        return int(dataset.damage(split).num_rows)
+    if view == "internals":
+        return sum(batch.num_rows for batch in dataset.internals(split, ["record_id"]))
+    return int(dataset.manifest["splits"][split]["rows"])
+
+
+def _previews(dataset: Dataset) -> dict[str, bytes]:
+    """Return a picture of the first record of every state."""
+    from io import BytesIO
+
+    from siggen.views.record_figure import record_figure
+
+    labels = dataset.labels(columns=["record_id", "state"]).to_pylist()
+    first = {row["state"]: row["record_id"] for row in reversed(labels)}
+    pictures = {}
+    for state, record_id in sorted(first.items()):
+        stream = BytesIO()
+        figure = record_figure(dataset.record(record_id), dataset.channels[0], dataset.fs_hz)
+        figure.savefig(stream, format="png", dpi=90, metadata={"Software": None})
+        pictures[f"{PREVIEWS}/{state}.png"] = stream.getvalue()
+    return pictures
+
+
+def _json(content: dict[str, Any]) -> bytes:
+    return (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode()
