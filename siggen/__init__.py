@@ -17,12 +17,15 @@ if TYPE_CHECKING:
     from siggen.record.simulation import simulate
     from siggen.sets.extension import extend
     from siggen.sets.generation import generate
+    from siggen.sets.parts import generate_part, merge
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
     "extend",
     "generate",
+    "generate_part",
     "load_config",
+    "merge",
     "mesh_stiffness_curves",
     "mesh_stiffness_meaning",
     "open",
@@ -32,6 +35,8 @@ __all__ = [
 ]
 
 _HOMES = {
+    "generate_part": ("siggen.sets.parts", "generate_part"),
+    "merge": ("siggen.sets.parts", "merge"),
     "extend": ("siggen.sets.extension", "extend"),
     "generate": ("siggen.sets.generation", "generate"),
     "load_config": ("siggen.checks.loading", "load_config"),

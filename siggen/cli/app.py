@@ -14,6 +14,7 @@ from siggen.cli.extend import extend
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
+from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
@@ -29,7 +30,7 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (
-    *(init, plan, generate, extend, verify, publish, show, simulate, export_model),
+    *(init, plan, generate, merge, extend, verify, publish, show, simulate, export_model),
     *(tvms, flank, errors, modes, path, schema),
 )
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from siggen.sets.generation import Generation
+    from siggen.sets.set_run import Generation
 
 LISTED_FAILURES = 10
 
@@ -24,12 +24,19 @@ def generate(
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
     ] = None,
+    part: Annotated[
+        str | None,
+        typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
+    ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
     ] = None,
 ) -> None:
     """Generate a data set; the same command continues an interrupted one.
+
+    With --part i/N every job makes its shards in a folder of its own, knowing nothing of the others; `siggen merge`
+    puts the parts together.
 
     Exit codes: 0 done, 2 wrong configuration or folder, 3 done but some records failed, 130 interrupted.
 
@@ -40,15 +47,20 @@ def generate(
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
+    from siggen.sets.parts import generate_part, part_of
 
     loaded = load_config(config, overrides or ())
     for sentence in implausible(loaded):
         typer.echo(f"implausible: {sentence}", err=True)
     if told := compilation_text():
         typer.echo(told, err=True)
+    chosen = None if part is None else part_of(part)
     with progress_shown() as show:
-        generation = generate_set(loaded, out, workers, show)
-    report(generation)
+        if chosen is None:
+            generation = generate_set(loaded, out, workers, show)
+        else:
+            generation = generate_part(loaded, out, chosen, workers, show)
+    report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}")
     typer.echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)
@@ -92,7 +104,7 @@ def progress_shown() -> Iterator[Callable[[int, int], None] | None]:
         yield show
 
 
-def report(generation: Generation) -> None:
+def report(generation: Generation, what: str = "the set") -> None:
     """Say on stderr what was done and what failed."""
     from siggen.errors import counted
 
@@ -101,11 +113,11 @@ def report(generation: Generation) -> None:
             f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)", err=True
         )
     else:
-        rate = generation.records_made / generation.seconds
+        rate = generation.records_made / max(generation.seconds, 1e-9)
         taken = generation.shards_taken_over
         taken_over = f", {counted(taken, 'shard was', 'shards were')} there" if taken else ""
         made = f"{counted(generation.records_made, 'record')} in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
-        typer.echo(f"{counted(generation.rows, 'record')} in the set; this run: {made}", err=True)
+        typer.echo(f"{counted(generation.rows, 'record')} in {what}; this run: {made}", err=True)
     for failure in generation.failures[:LISTED_FAILURES]:
         typer.echo(f"record {failure.record_id} failed: {failure.status} ({failure.reason})", err=True)
     if generation.failures:

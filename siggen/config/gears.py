@@ -17,7 +17,9 @@ class Wheel(Section):
     profile_shift: Annotated[Number, Within(least=-1, most=1.5)] = Field(
         default=0.0, description="profile shift in modules, positive away from the centre"
     )
-    bore_radius_mm: Annotated[Number, Within(above=0)] = Field(description="radius of the bore (the shaft's radius)")
+    bore_radius_mm: Annotated[Number, Within(least=0.01, most=10_000)] = Field(
+        description="radius of the bore (the shaft's radius)"
+    )
 
 
 class Gears(Section):

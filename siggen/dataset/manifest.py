@@ -146,5 +146,5 @@ def _why_no_manifest(storage: Storage) -> str:
         return f"{where}: not a siggen data set (it has neither {MANIFEST} nor {CONFIG})"
     return (
         f"{where}: the data set is not finished (no {MANIFEST}). The same command that began it completes it: "
-        f"siggen generate {where}/{CONFIG} --out {where}"
+        f"siggen generate {where}/{CONFIG} --out {where}; parts of a set are put together by `siggen merge`"
     )

@@ -12,8 +12,8 @@ from siggen.dataset.storage import LocalFolder, Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.errors import ConfigError, DatasetError, UsageError
-from siggen.sets.generation import Generation, Progress, SetRun, set_run
 from siggen.sets.interruption import Interruption
+from siggen.sets.set_run import Generation, Progress, SetRun, set_run
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -20,7 +20,8 @@ from siggen.config import Config, parse
 from siggen.planning import plan
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.sets import physics
-from siggen.sets.generation import Generation, generate
+from siggen.sets.generation import generate
+from siggen.sets.set_run import Generation
 from siggen.sets.verification import Verification, verify
 
 STEP_M_S2 = 2.0**-6

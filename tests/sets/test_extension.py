@@ -14,7 +14,7 @@ from siggen.dataset.reading import open as open_set
 from siggen.errors import ConfigError, DatasetError, EngineError, UsageError
 from siggen.planning import plan
 from siggen.sets.extension import extend
-from siggen.sets.generation import Generation
+from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (
     fake_config,
     fake_physics,

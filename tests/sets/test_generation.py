@@ -11,7 +11,8 @@ from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
 from siggen.errors import DatasetError, EngineError
-from siggen.sets.generation import generate, in_order
+from siggen.sets.generation import generate
+from siggen.sets.set_run import in_order
 from tests.dataset.fake_set import (
     FAKE_FILES,
     fake_config,

@@ -15,7 +15,8 @@ import pytest
 from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX
 from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
-from siggen.sets.generation import InterruptionError, generate
+from siggen.sets.generation import generate
+from siggen.sets.set_run import InterruptionError
 from tests.dataset.fake_set import (
     fake_config,
     fake_physics,

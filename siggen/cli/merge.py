@@ -1,0 +1,32 @@
+"""`siggen merge`: the parts of a set put together."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def merge(
+    parts: Annotated[
+        list[Path], typer.Argument(help="Folders that `siggen generate --part i/N` wrote.", metavar="PART...")
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
+) -> None:
+    """Put the parts of a set together, every file as if it had been generated at once; the parts are only read.
+
+    Exit codes: 0 done, 2 parts of different sets or shards that are missing, 3 done but some records failed.
+
+    Example: siggen merge parts/1 parts/2 parts/3 --out sets/quickstart
+    """
+    from siggen.cli.generate import progress_shown, report
+    from siggen.errors import EXIT_RECORDS_FAILED
+    from siggen.sets.parts import merge as merge_parts
+
+    with progress_shown() as show:
+        generation = merge_parts(parts, out, show)
+    report(generation)
+    typer.echo(str(generation.path))
+    if generation.failures:
+        raise typer.Exit(EXIT_RECORDS_FAILED)

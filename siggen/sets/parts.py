@@ -1,0 +1,161 @@
+"""A set made in parts by machines that know nothing of each other, and the parts put together.
+
+Part i of N makes every N-th shard, from the i-th on, in a folder of its own. Which shards there are follows from the
+configuration alone, so nothing has to be coordinated; a part that is lost is made again by the same command.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from siggen.dataset.folder import config_bytes, is_finished
+from siggen.dataset.manifest import CONFIG
+from siggen.dataset.sidecar import read_sidecar, sidecar_name
+from siggen.dataset.storage import LocalFolder
+from siggen.engines.protocol import Engine
+from siggen.engines.registry import engine_of
+from siggen.engines.serial import SerialEngine
+from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.sets.interruption import Interruption
+from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+
+class Part(NamedTuple):
+    """Part `number`, from 1, of `of`."""
+
+    number: int
+    of: int
+
+
+def part_of(text: str) -> Part:
+    """Return the part that a text such as '3/16' names.
+
+    Raises
+    ------
+    UsageError
+        If it is of another form, or the number is not from 1 to the count.
+    """
+    form = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
+    found = Part(int(form[1]), int(form[2])) if form else Part(0, 0)
+    if not 1 <= found.number <= found.of:
+        raise UsageError(f"--part: received {text[:40]!r}; allowed: i/N with i from 1 to N, such as 3/16")
+    return found
+
+
+def generate_part(
+    config: Config,
+    out: Path | str,
+    part: Part | tuple[int, int],
+    workers: int | None = None,
+    progress: Progress | None = None,
+    *,
+    engine: Engine | str | None = None,
+) -> Generation:
+    """Make the shards of one part of a set in a folder of its own; the same call continues an interrupted one.
+
+    Parameters
+    ----------
+    part : (int, int)
+        Number of the part, from 1, and count of all parts. A part may have no shard, where there are fewer than parts.
+    config, out, workers, progress, engine
+        As for `generate`.
+
+    Raises
+    ------
+    DatasetError, UsageError, InterruptionError, EngineError
+        As of `generate`.
+    """
+    chosen = Part(*part)
+    storage = LocalFolder(out)
+    with storage.writing():
+        if is_finished(storage, config):
+            return unchanged(storage)
+        storage.delete_leftovers()
+        with Interruption() as interruption:
+            run = set_run(config, storage, engine_of(engine, workers), progress, interruption)
+            return run.finish_some(run.planned[chosen.number - 1 :: chosen.of])
+
+
+def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | None = None) -> Generation:
+    """Put the parts of a set together: every file as if it had been generated at once. The parts are only read.
+
+    Parameters
+    ----------
+    parts : sequence of path
+        Folders that `generate_part` wrote, all of one configuration, in any order.
+    out : path
+        A new or empty folder, or one that holds a part of this set, one of `parts` for example.
+    progress : callable, optional
+        Called with (records done, records of the set).
+
+    Raises
+    ------
+    DatasetError
+        If the folders are of different sets, or a shard is whole in none of them; names the shards.
+    InterruptionError
+        After SIGINT or SIGTERM; the same call continues.
+    """
+    sources = [LocalFolder(part) for part in parts]
+    config = _common_config(sources)
+    target = LocalFolder(out)
+    with target.writing():
+        if is_finished(target, config):
+            return unchanged(target)
+        target.delete_leftovers()
+        with Interruption() as interruption:
+            run = set_run(config, target, SerialEngine(), progress, interruption)
+            target.put(CONFIG, config_bytes(config))
+            run.take_over(run.planned)
+            _copy_missing(run, sources, target)
+            run.take_over(run.planned)
+            _check_complete(run)
+            return run.finish()
+
+
+def _common_config(sources: Sequence[LocalFolder]) -> Config:
+    from siggen.config import parse, parse_yaml
+
+    found: list[Config] = []
+    for source in sources:
+        name = f"{source.location}/{CONFIG}"
+        if not source.exists(CONFIG):
+            raise DatasetError(f"{source.location}: is no part of a set (it has no {CONFIG})")
+        parsed = parse(parse_yaml(source.get(CONFIG).decode(), name))
+        if parsed.config is None:
+            raise ConfigError(parsed.problems, name)
+        found.append(parsed.config)
+        if (found[-1].identity, found[-1].specimens) != (found[0].identity, found[0].specimens):
+            raise DatasetError(f"{source.location} is a part of another set than {sources[0].location}")
+    if not found:
+        raise UsageError("received no parts; allowed: the folders that `siggen generate --part i/N` wrote")
+    return found[0]
+
+
+def _copy_missing(run: SetRun, sources: Sequence[LocalFolder], target: LocalFolder) -> None:
+    """Copy the shards that the target has not, the sidecar last; what was copied is hashed afterwards."""
+    for shard in run.planned:
+        run.interruption.check()
+        source = next((one for one in sources if one.exists(sidecar_name(shard.key))), None)
+        if shard.key in run.sidecars or source is None:
+            continue
+        sidecar = read_sidecar(source, shard.key)
+        for name in (*(file.name for file in sidecar.files), sidecar.name):
+            with target.draft(name) as copy:
+                shutil.copyfile(source.path / name, copy)
+
+
+def _check_complete(run: SetRun) -> None:
+    lost = [shard.key for shard in run.planned if shard.key not in run.sidecars]
+    if lost:
+        raise DatasetError(
+            f"{run.storage.location}: {counted(len(lost), 'shard')} of {len(run.planned)} "
+            f"{'is' if len(lost) == 1 else 'are'} missing or damaged in all parts ({', '.join(lost[:3])}"
+            f"{', ...' if len(lost) > 3 else ''}); run those parts again with the same command, then merge again"
+        )

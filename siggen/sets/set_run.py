@@ -1,0 +1,326 @@
+"""What makes a set: shards that are missing, then tables, card and manifest; what such a run did."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from siggen.columns.column import Column
+from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
+from siggen.columns.record import RecordFailure, channels, record_schema
+from siggen.dataset.card import card
+from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
+from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
+from siggen.dataset.extensions import EXTENSIONS
+from siggen.dataset.folder import config_bytes
+from siggen.dataset.label_tables import write_damage, write_metadata
+from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
+from siggen.dataset.seal import sealed
+from siggen.dataset.shard import TableFile, table_draft
+from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
+from siggen.dataset.storage import Storage
+from siggen.engines.protocol import Engine
+from siggen.errors import EXIT_INTERRUPTED, SiggenError
+from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shards
+from siggen.sets import physics as contents
+from siggen.sets.interruption import Interruption
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+Progress = Callable[[int, int], None]
+"""(records done, records of the set); called after every chunk."""
+
+
+class InterruptionError(SiggenError):
+    """Generation was stopped by Ctrl-C or SIGTERM; the same call continues it."""
+
+    exit_code = EXIT_INTERRUPTED
+
+
+@dataclass(frozen=True, slots=True)
+class Generation:
+    """What a call of `generate` did.
+
+    Attributes
+    ----------
+    path
+        The finished set.
+    records_made, shards_taken_over
+        Work of this call, and of earlier ones.
+    was_finished
+        The set was there already; nothing was written.
+    rows, failures
+        Of the whole set.
+    """
+
+    path: Path
+    rows: int
+    failures: tuple[RecordFailure, ...]
+    records_made: int = 0
+    shards_taken_over: int = 0
+    seconds: float = 0.0
+    was_finished: bool = False
+
+
+def _silent(done: int, total: int) -> None:
+    """Show nothing."""
+
+
+def set_run(
+    config: Config,
+    storage: Storage,
+    engine: Engine,
+    progress: Progress | None,
+    interruption: Interruption,
+    earlier: Sequence[int] = (),
+) -> SetRun:
+    """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
+    physics = contents.physics()
+    quantities = physics.stored(config)
+    planned = planned_shards(config, earlier)
+    run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned)
+    run.total = sum(len(shard.record_ids) for shard in planned)
+    return run
+
+
+def planned_shards(config: Config, earlier: Sequence[int] = ()) -> list[ShardPlan]:
+    """Return the shards of a set in the order in which they are made; `earlier` as for `plan.shards`."""
+    return [shard for split in SPLITS for shard in shards(config, split, earlier)]
+
+
+@dataclass(slots=True)
+class SetRun:
+    """One call of `generate` or its kin on a set that is not finished.
+
+    Attributes
+    ----------
+    planned
+        All shards of the set.
+    """
+
+    config: Config
+    storage: Storage
+    engine: Engine
+    physics: contents.Physics
+    quantities: tuple[Column, ...]
+    progress: Progress
+    interruption: Interruption
+    planned: Sequence[ShardPlan]
+    started_s: float = field(default_factory=time.perf_counter)
+    environment: dict[str, str] = field(default_factory=environment)
+    sidecars: dict[str, Sidecar] = field(default_factory=dict)
+    done: int = 0
+    made: int = 0
+    total: int = 0
+
+    def finish(self) -> Generation:
+        """Make what is missing, from the first shard to the manifest.
+
+        Raises
+        ------
+        InterruptionError
+            After SIGINT or SIGTERM.
+        """
+        try:
+            if not self.storage.exists(CONFIG):
+                self.storage.put(CONFIG, config_bytes(self.config))
+            taken_over = self.make(self.planned)
+            return self.conclude(taken_over)
+        except KeyboardInterrupt:
+            raise InterruptionError(self._how_to_continue()) from None
+
+    def finish_some(self, wanted: Sequence[ShardPlan]) -> Generation:
+        """Make some shards and nothing else; `rows` and `failures` are theirs.
+
+        Raises
+        ------
+        InterruptionError
+            After SIGINT or SIGTERM.
+        """
+        try:
+            if not self.storage.exists(CONFIG):
+                self.storage.put(CONFIG, config_bytes(self.config))
+            taken_over = self.make(wanted)
+        except KeyboardInterrupt:
+            raise InterruptionError(self._how_to_continue()) from None
+        sidecars = [self.sidecars[shard.key] for shard in wanted]
+        return Generation(
+            path=Path(self.storage.location),
+            rows=sum(sidecar.data.rows for sidecar in sidecars),
+            failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
+            records_made=self.made,
+            shards_taken_over=taken_over,
+            seconds=time.perf_counter() - self.started_s,
+        )
+
+    def make(self, wanted: Sequence[ShardPlan]) -> int:
+        """Make those of the wanted shards that no earlier run committed; return how many one did."""
+        self.total = sum(len(shard.record_ids) for shard in wanted)
+        self._advance(0)
+        self.take_over(wanted)
+        taken_over = len(self.sidecars)
+        self._make([shard for shard in wanted if shard.key not in self.sidecars])
+        return taken_over
+
+    def conclude(self, taken_over: int) -> Generation:
+        """Write tables, card and manifest over all shards, which are there."""
+        sidecars = [self.sidecars[shard.key] for shard in self.planned]
+        manifest = self._conclude(sidecars, taken_over)
+        return Generation(
+            path=Path(self.storage.location),
+            rows=manifest["rows"],
+            failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
+            records_made=self.made,
+            shards_taken_over=taken_over,
+            seconds=time.perf_counter() - self.started_s,
+        )
+
+    def take_over(self, wanted: Sequence[ShardPlan]) -> None:
+        """Find the shards that earlier runs committed."""
+        for shard in (shard for shard in wanted if shard.key not in self.sidecars):
+            self.interruption.check()
+            sidecar = committed(self.storage, shard.key, self.config.identity, id_ranges(shard.specimens))
+            if sidecar is not None:
+                self.sidecars[shard.key] = sidecar
+                self._advance(sum(last - first + 1 for first, last in sidecar.records))
+
+    def _make(self, missing: Sequence[ShardPlan]) -> None:
+        """Simulate and write shards one after the other, from one stream of chunks."""
+        work = {shard.key: self._chunks(shard) for shard in missing}
+        tasks = (chunk for pieces in work.values() for chunk in pieces)
+        function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
+        with closing(self.engine.map(function, tasks)) as results:
+            ordered = in_order(results)
+            for shard in missing:
+                self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
+
+    def _chunks(self, shard: ShardPlan) -> list[Chunk]:
+        config = self.config
+        specimens = [record_ids_of(config, specimen) for specimen in shard.specimens]
+        rows = internals_group_rows(config, self.quantities) if self.quantities else rows_per_group(config)
+        return list(chunks(shard.key, specimens, min(rows, rows_per_group(config))))
+
+    def _write(self, shard: ShardPlan, results: Iterator[tuple[Chunk, ChunkResult]]) -> None:
+        """Write the rows of a shard as they come, then commit it with its sidecar."""
+        failures: list[RecordFailure] = []
+        rows_per_state = dict.fromkeys((state.name for state in self.config.states), 0)
+        with self._data(shard) as data, self._internals(shard) as internals:
+            for chunk, result in results:
+                self.interruption.check()
+                batch = result.batch()
+                failures.extend(result.failures)
+                for state in batch.column("state").to_pylist():
+                    rows_per_state[state] += 1
+                data.add(batch)
+                if internals is not None and (inner := result.internals_batch()) is not None:
+                    internals.add(inner)
+                self.made += len(chunk.records)
+                self._advance(len(chunk.records))
+            facts = data.finish()
+            internal_facts = None if internals is None else internals.finish()
+        self.sidecars[shard.key] = Sidecar(
+            shard=shard.key,
+            split=shard.split,
+            identity=self.config.identity,
+            data=facts,
+            internals=internal_facts,
+            specimens=id_ranges(shard.specimens),
+            records=id_ranges(shard.record_ids),
+            rows_per_state=rows_per_state,
+            failures=tuple(failures),
+            environment=self.environment,
+        )
+        put_sidecar(self.storage, self.sidecars[shard.key])
+
+    def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
+        schema, rows = record_schema(self.config), rows_per_group(self.config)
+        return table_draft(self.storage, data_name(shard.key), schema, rows)
+
+    def _internals(self, shard: ShardPlan) -> AbstractContextManager[TableFile | None]:
+        if not self.quantities:
+            return nullcontext()
+        schema = internals_schema(self.config, self.quantities)
+        rows = internals_group_rows(self.config, self.quantities)
+        return table_draft(self.storage, internals_name(shard.key), schema, rows)
+
+    def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
+        """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
+        self.storage.put(CONFIG, config_bytes(self.config))
+        tables = []
+        for split in SPLITS:
+            of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
+            if of_split:
+                tables.append(write_metadata(self.storage, self.config, split, of_split))
+                tables.append(write_damage(self.storage, self.config, split, of_split, self.physics.damage_rows))
+            self.interruption.check()
+        self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
+        written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
+        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, tables, written)
+        self.storage.put(RUN, sealed(self._run_facts(taken_over)))
+        self.storage.put(MANIFEST, sealed(manifest))
+        return manifest
+
+    def _run_facts(self, taken_over: int) -> dict[str, Any]:
+        seconds = time.perf_counter() - self.started_s
+        return {
+            "finished_at": datetime.now(UTC).isoformat(timespec="seconds"),
+            "seconds": round(seconds, 3),
+            "workers": self.engine.workers,
+            "records_made": self.made,
+            "records_per_s": round(self.made / seconds, 3),
+            "signal_s_per_s": round(self.made * self.config.duration_s / seconds, 3),
+            "shards_taken_over": taken_over,
+            "bytes": sum(file.bytes for sidecar in self.sidecars.values() for file in sidecar.files),
+            "peak_memory_bytes": peak_memory_bytes(),
+            "host": host_facts(),
+            "environment": self.environment,
+        }
+
+    def _how_to_continue(self) -> str:
+        return (
+            f"stopped: {len(self.sidecars)} of {len(self.planned)} shards of {self.storage.location} are finished and "
+            "stay; the same command continues from there"
+        )
+
+    def _advance(self, records: int) -> None:
+        self.done += records
+        self.progress(self.done, self.total)
+
+
+def in_order(results: Iterator[tuple[int, ChunkResult]]) -> Iterator[ChunkResult]:
+    """Yield results by position; the engine's window bounds how many wait for a slow one."""
+    waiting: dict[int, ChunkResult] = {}
+    following = 0
+    for index, result in results:
+        waiting[index] = result
+        while following in waiting:
+            yield waiting.pop(following)
+            following += 1
+
+
+def _facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
+    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in quantities]
+    return {
+        **({"internals": internals} if internals else {}),
+        "name": config.name,
+        "identity": config.identity,
+        "seed": config.seed,
+        "specimens": config.specimens,
+        "fs_hz": float(config.fs_hz),
+        "duration_s": float(config.duration_s),
+        "channels": [asdict(channel) for channel in channels(config)],
+    }
+
+
+def unchanged(storage: Storage) -> Generation:
+    """Return what a call did that found the set finished."""
+    manifest = read_manifest(storage)
+    failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
+    return Generation(Path(storage.location), manifest["rows"], failures, was_finished=True)
