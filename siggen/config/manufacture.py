@@ -89,7 +89,7 @@ class Manufacture(Section):
     helix_waves: Annotated[Number, Within(above=0, most=5)] = Field(
         default=Uniform(low=0.7, high=2.0), description="cycles of the helix form over the face (assumed)"
     )
-    lead_misalignment_um: Annotated[Number | str, Within(least=0, words=("iso_1328",))] = Field(
+    lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
         description="by how much the flanks are apart at one end of the face, either end; iso_1328: what the helix "
         "slopes of both gears make together, each drawn within tolerance_share of its class",
