@@ -24,7 +24,9 @@ def tvms(
     parts: Annotated[
         bool,
         typer.Option(
-            "--parts", help="Add the compliances that the damaged tooth's pair is made of: contact and tooth."
+            "--parts",
+            help="Add the compliances that the damaged tooth's pair is made of: contact and tooth. With "
+            "dynamics.mesh.contact: face the contact is that of the pair alone under the torque, sink included.",
         ),
     ] = False,
     torque_nm: Annotated[
