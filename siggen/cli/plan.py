@@ -60,7 +60,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen.gears import model_notes
-    from siggen.views.stiffness_curves import table_error_text
+    from siggen.views.table_error import table_error_text
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}

@@ -63,9 +63,9 @@ def tvms(
         static_torque_nm,
         stiffness_curves,
         stiffness_meaning,
-        table_error_text,
     )
     from siggen.views.stiffness_figure import check_picture_file, save_stiffness_figure
+    from siggen.views.table_error import table_error_text
 
     check_table_file(out)
     if png is not None:

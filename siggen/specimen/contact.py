@@ -48,6 +48,11 @@ def damage_is_geometry(dynamics: Dynamics) -> bool:
     return dynamics.mesh.law == "pairs" and dynamics.mesh.damage != "stiffness"
 
 
+def solves_across_the_face(dynamics: Dynamics) -> bool:
+    """Whether the contact is solved across the face rather than in slices that do not feel each other."""
+    return dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face"
+
+
 def tooth_tables(
     dynamics: Dynamics,
     pair: GearPair,
@@ -68,7 +73,7 @@ def tooth_tables(
     """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
-    if dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face":
+    if solves_across_the_face(dynamics):
         return _across_the_face(dynamics, pair, damage, options, points, largest_force_n, lead_m, coupling)
     # Misaligned faces need slices in the healthy state too: states must not differ by it.
     if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):

@@ -18,7 +18,6 @@ from siggen.errors import UsageError
 from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
-from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
@@ -206,36 +205,6 @@ def curve_table(curves: list[StiffnessCurve], *, parts: bool = False, potential_
             for name, values in curve.parts_m_per_n.items():
                 columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
-
-
-def worst_table_error(config: Config, specimen_id: int = 0) -> float:
-    """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
-
-    Where damage acts through the contact's slices, which have tables of their own, that of healthy teeth.
-
-    Source: `siggen.gears.stiffness.mesh_tables.table_error`, half-way between the points of the tables that simulations
-    use.
-    """
-    specimen = draw_specimen(config, specimen_id)
-    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    damages: dict[Damage, None] = {(): None}
-    if not damage_is_geometry(specimen.dynamics):
-        damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
-    points = specimen.stiffness.table_points
-    return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
-
-
-def table_error_text(config: Config, specimen_id: int = 0) -> str:
-    """Return in words how exactly the tables of one specimen's stiffness are interpolated."""
-    whose = "healthy teeth" if damage_is_geometry(config.dynamics) else "teeth in all states"
-    try:
-        error = f"within {100.0 * worst_table_error(config, specimen_id):.2g} %"
-    except ValueError as refusal:
-        error = f"nowhere: {refusal}"
-    return (
-        f"tables of {config.stiffness.table_points} points, as simulations use them, interpolate the stiffness of "
-        f"{whose} of specimen {specimen_id} {error}"
-    )
 
 
 def mesh_stiffness_curves(
