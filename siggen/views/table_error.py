@@ -56,8 +56,8 @@ def table_error_text(config: Config, specimen_id: int = 0) -> str:
 def worst_contact_table_error(config: Config, specimen_id: int = 0) -> tuple[ContactTableError, tuple[str, ...]]:
     """Return the errors of one specimen's contact tables over the force of its first operating point, and the states.
 
-    The worst of the last `STATES` states that no other one grows from, whose damage holds the others'; healthy teeth
-    where there are none.
+    The worst of sound teeth, which err at the ends of the path, where tips are near, and of the last `STATES` states
+    that no other one grows from, whose damage holds the others'.
 
     Raises
     ------
@@ -71,15 +71,16 @@ def worst_contact_table_error(config: Config, specimen_id: int = 0) -> tuple[Con
     milder = {config.grown_from(index) for index in range(len(config.states))}
     damaged = [i for i, state in enumerate(config.states) if state.damage is not None and i not in milder]
     found = []
-    for index in damaged[-STATES:] or [0]:
-        damage = tuple(one for one in state_damage(config, specimen_id, pair, index) if has_extent(one))
-        errors = specimen_errors(config, pair, specimen_id, index)
+    for index in (None, *damaged[-STATES:]):
+        drawn = () if index is None else state_damage(config, specimen_id, pair, index)
+        damage = tuple(one for one in drawn if has_extent(one))
+        errors = specimen_errors(config, pair, specimen_id, index or 0)
         slices = face_slices(pair, options)
         lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
         table = contact_table(pair, damage, teeth, options, specimen.stiffness.table_points, lead)
         found.append(contact_table_error(pair, damage, teeth, options, table, force_n, PLACES, lead))
     worst = ContactTableError(*(max(values) for values in zip(*found, strict=True)))
-    return worst, tuple(config.states[index].name for index in damaged[-STATES:]) or ("healthy teeth",)
+    return worst, ("sound teeth", *(config.states[index].name for index in damaged[-STATES:]))
 
 
 def _contact_text(config: Config, specimen_id: int) -> str:
