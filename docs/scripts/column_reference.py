@@ -19,7 +19,8 @@ from siggen.checks.quantity_names import available_quantities
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "transfer_path.yaml"
-ADDED = {"manufacture": "manufacture={accuracy_class: 6}", "variation": "variation.speed.random_rms=0.001"}
+MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
+ADDED = {"manufacture": MADE, "variation": "variation.speed.random_rms=0.001"}
 """With these a configuration that has every part with columns of its own."""
 SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")
 NAMES = {
@@ -72,6 +73,9 @@ def needs(full: pa.Schema) -> dict[str, str]:
     found: dict[str, str] = {}
     for section in ADDED:
         found |= {name: f"`{section}`" for name in set(full.names) - set(schema(without=section).names)}
+    for key, off in (("helix", "off"), ("crowning_um", "0")):
+        less = schema([f"manufacture.{key}={off}"])
+        found |= {name: f"`manufacture.{key}`" for name in set(full.names) - set(less.names)}
     silent = schema(["housing.force_noise=null"])
     found |= {name: "`housing.force_noise`" for name in set(full.names) - set(silent.names)}
     sensors = len(siggen.load_config(FULL).sensors)

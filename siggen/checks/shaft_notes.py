@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from siggen.config import Config, bounds
+from siggen.config import Config
 
 
 def shaft_notes(config: Config) -> tuple[str, ...]:
@@ -12,11 +12,10 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
         notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.contact)")
     if config.dynamics.shafts is not None:
         notes.append("shafts bend and gears tilt (dynamics.shafts); more than 100 urad is outside_model")
-    lead = None if config.manufacture is None else config.manufacture.lead_misalignment_um
-    misaligned = lead is not None and (isinstance(lead, str) or bounds(lead)[1] > 0.0)
-    if misaligned or config.dynamics.shafts is not None:
+    uneven = config.manufacture is not None and not config.manufacture.even_face
+    if uneven or config.dynamics.shafts is not None:
         notes.append(
-            "misalignment and tilt act several times too hard: teeth are rigid across the face, only their contact "
-            "gives way (docs/understand/contact_across_the_face.md)"
+            "misalignment, helix, crowning and tilt act several times too hard: teeth are rigid across the face, only "
+            "their contact gives way (docs/understand/contact_across_the_face.md)"
         )
     return tuple(notes)

@@ -60,7 +60,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen.gears import model_notes
-    from siggen.views.stiffness_curves import table_error_text
+    from siggen.views.table_error import table_error_text
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
@@ -110,7 +110,11 @@ def _manufacture(config: Config) -> str:
     if section is None:
         return "perfect gears"
     owner = {"specimen": "the same in all states of a gearbox", "state": "drawn anew for each state"}[section.draw]
-    return f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}; {owner}"
+    across = "; helix slope and form" if section.has_helix else ""
+    across += "; crowned" if section.has_crowning else ""
+    return (
+        f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}{across}; {owner}"
+    )
 
 
 def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, Any]]:
