@@ -1,4 +1,4 @@
-"""What users of torch's own DataLoader may expect: epochs, batch sizes, workers, labels, transforms, numbered windows."""
+"""What users of a torch DataLoader may expect: epochs, batch sizes, workers, labels, transforms, windows by number."""
 
 from __future__ import annotations
 
