@@ -1,4 +1,4 @@
-"""False alarms and hits of `siggen-diagnostics check` by number of references: `python docs/scripts/check_rates.py FOLDER`.
+"""False alarms and hits of `check` by number of references: `python docs/scripts/check_rates.py FOLDER`.
 
 One simulated machine, measured 26 times healthy and 26 times with a spall of 1 mm through the face, at one speed and
 load; FOLDER is where the set is made, or was made before. References are drawn from the healthy recordings.
@@ -11,7 +11,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from diagnostics.release.log_features import log_values
 
 import siggen
 from diagnostics.base.progress import silent_stage
@@ -19,6 +18,7 @@ from diagnostics.machine.change_score import change_score
 from diagnostics.machine.healthy_state import healthy_state, piece_medians, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.training.log_features import log_values
 
 REPEATS, DRAWS = 26, 400
 SPALL = {
