@@ -14,7 +14,7 @@ from diagnostics.machine.change_score import FEWEST, ChangeScore, attainable_rat
 from diagnostics.machine.healthy_state import piece_medians, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.release.log_features import log_values
+from diagnostics.training.log_features import log_values
 from siggen.errors import UsageError
 
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"

@@ -1,4 +1,4 @@
-"""False alarms and hits of `siggen-diagnostics check` by number of references: `python docs/scripts/check_rates.py FOLDER`.
+"""False alarms and hits of `check` by number of references: `python docs/scripts/check_rates.py FOLDER`.
 
 One simulated machine, measured 26 times healthy and 26 times with a spall of 1 mm through the face, at one speed and
 load; FOLDER is where the set is made, or was made before. References are drawn from the healthy recordings.
@@ -18,17 +18,25 @@ from diagnostics.machine.change_score import change_score
 from diagnostics.machine.healthy_state import healthy_state, piece_medians, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
-from diagnostics.release.log_features import log_values
+from diagnostics.training.log_features import log_values
 
 REPEATS, DRAWS = 26, 400
-SPALL = {"kind": "spall", "shape": "rectangle", "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2}
+SPALL = {
+    "kind": "spall",
+    "gear": "pinion",
+    "teeth": 1,
+    "shape": "rectangle",
+    "face_length_mm": 20.0,
+    "profile_length_mm": 1.0,
+    "depth_mm": 0.2,
+}
 MACHINE = {
     "extends": "quickstart",
     "name": "one_machine",
     "specimens": 1,
     "repeats": REPEATS,
     "operating_points": [{"speed_hz": 35.0, "torque_nm": 40.0}],
-    "states": [{"name": "healthy"}, {"name": "spalled", "severity": "severe", "damage": {"gear": "pinion", "teeth": 1, **SPALL}}],
+    "states": [{"name": "healthy"}, {"name": "spalled", "severity": "severe", "damage": SPALL}],
 }
 
 
