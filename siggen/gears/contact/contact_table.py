@@ -31,6 +31,7 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import SolverRoom, solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_faces
+from siggen.gears.contact.pair_rest import PairRest, pair_rest
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -96,7 +97,7 @@ class KindRow(NamedTuple):
 
     position_m: FloatArray
     gaps: FaceGaps
-    rest_m_per_n: FloatArray
+    rest: PairRest
     edge_radius_m: float
 
 
@@ -190,16 +191,17 @@ def kind_row(
         for which, _, of_tooth in members
     ]
     # What shows on no flank acts through the tooth alone, as in `slice_law`.
-    rest = [
+    teeth = [
         tooth_compliance(
             pair, which, roll, stiffness, tuple(d for d in damage if options.section_loss or d.outline is None)
-        ).total
+        )
         for which, roll, damage in members
     ]
+    rest = pair_rest(pair, rolls_at(pair, position), (teeth[0], teeth[1]))
     stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
     stated = stated[stated > 0.0]
     edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
-    return KindRow(position, face_gaps(pair, chords[0], chords[1], position), np.add(*rest), edge_radius)
+    return KindRow(position, face_gaps(pair, chords[0], chords[1], position), rest, edge_radius)
 
 
 def table_solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, lead_m: FloatArray) -> TableSolver:
@@ -294,7 +296,7 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
         solver.pair,
         FaceGaps(*(array[chosen] for array in row.gaps)),
         row.position_m[chosen],
-        row.rest_m_per_n[chosen],
+        PairRest(*(array[chosen] for array in row.rest)),
         FaceOptions(typical, row.edge_radius_m, options.coupled),
         solver.lead_m,
     )

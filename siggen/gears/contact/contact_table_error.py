@@ -25,6 +25,7 @@ from siggen.gears.contact.contact_table import (
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -81,7 +82,10 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
 
     place = np.array([2 * cell + 1])
     here = KindRow(
-        row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place], row.edge_radius_m
+        row.position_m[place],
+        FaceGaps(*(a[place] for a in row.gaps)),
+        PairRest(*(a[place] for a in row.rest)),
+        row.edge_radius_m,
     )
     only = np.zeros(1, dtype=np.int64)
     approach = float(first_touch(solver, here, only)[0]) + np.array(APPROACHES) * table.reach_m

@@ -1,10 +1,12 @@
-"""Product and solution of a matrix that is a diagonal plus a sum of decaying exponentials of the distance.
+"""Product and solution of a symmetric matrix that is a diagonal plus sums of decaying terms of the distance.
 
-A_ij = d_i for i = j, Σ_m s_m r_m^|i-j| otherwise. Both take a number of steps proportional to the size: such a matrix
-is semiseparable, and its factors L D Lᵀ stay so (Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real
-exponentials). Rows that are not chosen are left out; distances count through them.
+A_ij = d_i for i = j, Σ_m s_m r_m^|i-j| + Σ_t p_it Π_{j < k <= i} q_kt for i > j: exponentials of the distance, and
+terms whose strength p and decay q belong to the rows (free ends make them so, see `tooth_kernel`). Product and solution
+take a number of steps proportional to the size: such a matrix is semiseparable, and its factors L D Lᵀ stay so
+(Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are left
+out; distances count through them.
 
-The numbers of exponentials and of right sides are constants of the module: compiled loops over them are unrolled.
+The numbers of terms and of right sides are constants of the module: compiled loops over them are unrolled.
 """
 
 from __future__ import annotations
@@ -15,7 +17,10 @@ from numba import njit
 from siggen.arrays import FloatArray, IntArray
 
 EXPONENTIALS = 5
-SIDES = 4
+ROW_TERMS = 2
+"""Terms whose strength and decay belong to the rows."""
+TERMS = EXPONENTIALS + ROW_TERMS
+SIDES = 5
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
@@ -27,7 +32,7 @@ def products(
     out: FloatArray,
     slope_out: FloatArray,
 ) -> None:
-    """Write the off-diagonal products with `strength` and with `slope` (m,) in place of s, (n,) each."""
+    """Write the off-diagonal products of the exponentials with `strength` and with `slope` (m,) as s, (n,) each."""
     count = vector.size
     run = np.zeros(EXPONENTIALS)
     out[0] = 0.0
@@ -52,9 +57,27 @@ def products(
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
+def add_row_products(row_strength: FloatArray, row_decay: FloatArray, vector: FloatArray, out: FloatArray) -> None:
+    """Add the off-diagonal products of the terms of the rows, p and q (n, ROW_TERMS), to `out` (n,)."""
+    count = vector.size
+    run = np.zeros(ROW_TERMS)
+    for i in range(1, count):
+        for t in range(ROW_TERMS):
+            run[t] = row_decay[i, t] * (run[t] + vector[i - 1])
+            out[i] += row_strength[i, t] * run[t]
+    run[:] = 0.0
+    for i in range(count - 2, -1, -1):
+        for t in range(ROW_TERMS):
+            run[t] = row_decay[i + 1, t] * (run[t] + row_strength[i + 1, t] * vector[i + 1])
+            out[i] += run[t]
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
 def solve_rows(
     decay: FloatArray,
     strength: FloatArray,
+    row_strength: FloatArray,
+    row_decay: FloatArray,
     diagonal: FloatArray,
     rows: IntArray,
     count: int,
@@ -67,53 +90,76 @@ def solve_rows(
     Parameters
     ----------
     decay, strength : (EXPONENTIALS,)
+    row_strength, row_decay : (n, ROW_TERMS)
     diagonal : (n,)
     rows : (>= count,)
         The chosen rows, ascending.
     right : (n, SIDES)
         b at the chosen rows; x afterwards.
-    steps : (n, EXPONENTIALS)
+    steps : (n, TERMS)
         Room: decay from the row before.
-    work : (n, EXPONENTIALS + 1)
+    work : (n, TERMS + 1)
         Room: the factors.
     """
-    inner = np.zeros((EXPONENTIALS, EXPONENTIALS))
-    run = np.zeros((EXPONENTIALS, SIDES))
+    inner = np.zeros((TERMS, TERMS))
+    run = np.zeros((TERMS, SIDES))
+    own = np.zeros(TERMS)
+    for m in range(EXPONENTIALS):
+        own[m] = strength[m]
     for n in range(count):
         i = rows[n]
         pivot = diagonal[i]
+        for t in range(ROW_TERMS):
+            own[EXPONENTIALS + t] = row_strength[i, t]
         if n > 0:
-            _carry_on(decay, rows[n - 1], i, right, steps, work, inner, run)
-        for m in range(EXPONENTIALS):
+            _carry_on(decay, row_decay, rows[n - 1], i, right, steps, work, inner, run)
+        for m in range(TERMS):
             product = 0.0
-            for k in range(EXPONENTIALS):
-                product += strength[k] * inner[k, m]
+            for k in range(TERMS):
+                product += own[k] * inner[k, m]
             work[i, m] = 1.0 - product
-            pivot -= product * strength[m]
+            pivot -= product * own[m]
             for side in range(SIDES):
-                right[i, side] -= strength[m] * run[m, side]
+                right[i, side] -= own[m] * run[m, side]
         if pivot <= 0.0:
             return False
-        work[i, EXPONENTIALS] = pivot
-        for m in range(EXPONENTIALS):
+        work[i, TERMS] = pivot
+        for m in range(TERMS):
             work[i, m] /= pivot
-    run[:] = 0.0
+    _substitute(own, row_strength, rows, count, right, steps, work)
+    return True
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
+def _substitute(
+    own: FloatArray,
+    row_strength: FloatArray,
+    rows: IntArray,
+    count: int,
+    right: FloatArray,
+    steps: FloatArray,
+    work: FloatArray,
+) -> None:
+    """Go back from the last row to the first; `own` (TERMS,) holds the strengths of the exponentials."""
+    run = np.zeros((TERMS, SIDES))
     for n in range(count - 1, -1, -1):
         i = rows[n]
         for side in range(SIDES):
-            right[i, side] /= work[i, EXPONENTIALS]
+            right[i, side] /= work[i, TERMS]
         if n < count - 1:
             after = rows[n + 1]
-            for m in range(EXPONENTIALS):
+            for t in range(ROW_TERMS):
+                own[EXPONENTIALS + t] = row_strength[after, t]
+            for m in range(TERMS):
                 for side in range(SIDES):
-                    run[m, side] = steps[after, m] * (run[m, side] + strength[m] * right[after, side])
+                    run[m, side] = steps[after, m] * (run[m, side] + own[m] * right[after, side])
                     right[i, side] -= work[i, m] * run[m, side]
-    return True
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
 def _carry_on(
     decay: FloatArray,
+    row_decay: FloatArray,
     before: int,
     i: int,
     right: FloatArray,
@@ -123,13 +169,17 @@ def _carry_on(
     run: FloatArray,
 ) -> None:
     """Carry the sums of all rows before from row `before` on to row i."""
-    last = work[before, EXPONENTIALS]
+    last = work[before, TERMS]
     for m in range(EXPONENTIALS):
         steps[i, m] = decay[m]
         for _ in range(i - before - 1):
             steps[i, m] *= decay[m]
-    for m in range(EXPONENTIALS):
-        for k in range(EXPONENTIALS):
+    for t in range(ROW_TERMS):
+        steps[i, EXPONENTIALS + t] = 1.0
+        for k in range(before + 1, i + 1):
+            steps[i, EXPONENTIALS + t] *= row_decay[k, t]
+    for m in range(TERMS):
+        for k in range(TERMS):
             inner[m, k] = steps[i, m] * steps[i, k] * (inner[m, k] + last * work[before, m] * work[before, k])
         for side in range(SIDES):
             run[m, side] = steps[i, m] * (run[m, side] + work[before, m] * right[before, side])

@@ -25,6 +25,7 @@ class ForceCurve(NamedTuple):
     moment_n_m: FloatArray
     stiffness_n_per_m: FloatArray
     turning_n: FloatArray
+    tilting_n_m: FloatArray
     carrying_m: FloatArray
     on_damage: FloatArray
 
@@ -50,7 +51,7 @@ def force_curve(
         If an approach cannot be solved.
     """
     count = approach_m.size
-    out = np.zeros((7, count))
+    out = np.zeros((8, count))
     before = np.zeros(loads_m.size)
     last = np.zeros(loads_m.size)
     for j in range(count):
@@ -71,6 +72,7 @@ def force_curve(
         out[2, j] = answer.moment_n_m
         out[3, j] = answer.stiffness_n_per_m
         out[4, j] = answer.turning_n
-        out[5, j] = answer.carrying_m
-        out[6, j] = answer.on_damage
-    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6])
+        out[5, j] = answer.tilting_n_m
+        out[6, j] = answer.carrying_m
+        out[7, j] = answer.on_damage
+    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7])

@@ -11,6 +11,8 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.contact.pair_rest import PairRest
+from siggen.gears.contact.tooth_kernel import tooth_kernel
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
 
@@ -36,7 +38,7 @@ def pair_faces(
     pair: GearPair,
     gaps: FaceGaps,
     position_m: FloatArray,
-    rest_m_per_n: FloatArray,
+    rest: PairRest,
     options: FaceOptions,
     lead_m: FloatArray | None = None,
 ) -> list[FaceSlices]:
@@ -48,8 +50,8 @@ def pair_faces(
     gaps : FaceGaps
         At these positions, (k, n).
     position_m : (k,)
-    rest_m_per_n : (k,)
-        Compliance C of the pair without its contact.
+    rest : PairRest
+        Compliance of the pair without its contact, (k,).
     options : FaceOptions
     lead_m : (n,) or None
         Missing material across the face, of any sign; None: none.
@@ -60,9 +62,9 @@ def pair_faces(
         If the arrays do not fit.
     """
     count = gaps.left_m.shape[1]
-    if gaps.left_m.shape[0] != position_m.size or rest_m_per_n.shape != position_m.shape:
+    if gaps.left_m.shape[0] != position_m.size or rest.rigid_m_per_n.shape != position_m.shape:
         raise ValueError(
-            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest_m_per_n.size} positions; "
+            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest.rigid_m_per_n.size} positions; "
             f"allowed: as many as positions ({position_m.size})"
         )
     lead = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
@@ -90,10 +92,11 @@ def pair_faces(
             lead_m=lead,
             face_m=face,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
+            teeth=tooth_kernel(count, pair.face_width_m, rest.length_m[i], rest.tooth_m_per_n[i], kappa),
             radius_m=float(radius[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
-            compliance_m_per_n=float(rest_m_per_n[i]),
+            compliance_m_per_n=float(rest.rigid_m_per_n[i]),
             carrying_m=carrying_length(here.left_m, here.right_m, here.floor_m, lead, cell, float(radius[i]), load),
         )
         out.append(slices)

@@ -27,6 +27,7 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
+from siggen.gears.contact.pair_rest import pair_rest
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import Spall
@@ -94,9 +95,11 @@ def slices_at(damage: Damage, place: float) -> FaceSlices:
         flank_chords(pair.member(which), of_tooth, pair.face_width_m, 200)
         for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
     ]
-    rest = sum(
-        tooth_compliance(pair, which, roll, STIFFNESS).total
-        for which, roll in zip(("pinion", "gear"), rolls_at(pair, position), strict=True)
+    rolls = rolls_at(pair, position)
+    rest = pair_rest(
+        pair,
+        rolls,
+        (tooth_compliance(pair, "pinion", rolls[0], STIFFNESS), tooth_compliance(pair, "gear", rolls[1], STIFFNESS)),
     )
     options = FaceOptions(TYPICAL, OPTIONS.edge_radius_m)
     return pair_faces(pair, face_gaps(pair, *chords, position), position, rest, options)[0]

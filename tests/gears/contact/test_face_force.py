@@ -15,10 +15,11 @@ from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
+from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.contact.stored_energy import energy_nodes, stored_energy
 from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from tests.gears.builders import pair_18_47
-from tests.gears.contact.faces import REST, WIDTH, approach_under, face, solve, spall
+from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face, solve, spall
 
 
 def land(pair, slices=50) -> FaceGaps:
@@ -31,7 +32,8 @@ def land(pair, slices=50) -> FaceGaps:
 def test_full_land_without_coupling_is_weber_and_banaschek(force):
     pair = pair_18_47(module_m=3e-3)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, 5)
-    rest = np.full(5, REST)
+    # half of it in teeth that bend across the face: under an even load they are rigid
+    rest = PairRest(np.full(5, 0.5 * REST), np.full((5, 2), 0.25 * REST), np.full((5, 2), 3e-3))
     faces = pair_faces(pair, land(pair), position, rest, FaceOptions(60e3, coupled=False))
     rolls = position / pair.pinion.base_radius_m, (pair.line_of_action_m - position) / pair.gear.base_radius_m
     expected = weber_banaschek_compliance(pair, *rolls, np.full(5, pair.face_width_m), force)
@@ -93,6 +95,7 @@ FACES = {
     "skewed spall through the face": partial(spall, 0.01e-3, half=WIDTH, skew=0.02),
     "rounded edges and a lead": partial(spall, 0.4e-3, half=3e-3, rounding=0.1e-3, lead=np.linspace(0.0, 4e-6, 200)),
     "floor that carries": partial(spall, 0.0, half=WIDTH, depth=8e-6),
+    "teeth that bend across the face": partial(spall, 0.3e-3, skew=0.03, teeth=BENDING, rest=0.5 * REST),
 }
 
 
