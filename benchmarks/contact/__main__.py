@@ -95,8 +95,9 @@ def loop_table() -> Iterator[str]:
 def face_table() -> Iterator[str]:
     """Lines of the table that the time loop reads, on the gearbox and damages of bench; the first state compiles."""
     from benchmarks.contact.case import bench_damages
-    from siggen.gears.contact.contact_table import TableOptions, contact_table
+    from siggen.gears.contact.contact_table import contact_table
     from siggen.gears.contact.contact_table_error import contact_table_error
+    from siggen.gears.contact.table_columns import TableOptions
 
     options = TableOptions(largest_force_n=4000.0)
     pair, teeth, damages = bench_damages(("slight", "face_40", "face_80", "through_060", "through_100"))

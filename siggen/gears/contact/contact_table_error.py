@@ -7,11 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.contact_table import (
+from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.force_curve import force_curve
+from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.pair_rest import PairRest
+from siggen.gears.contact.table_columns import (
     FORCE,
     NO_ENERGY,
     SLOPE,
-    ContactTable,
     KindRow,
     TableOptions,
     TableSolver,
@@ -22,10 +26,6 @@ from siggen.gears.contact.contact_table import (
     row_faces,
     table_solver,
 )
-from siggen.gears.contact.face_gaps import FaceGaps
-from siggen.gears.contact.force_curve import force_curve
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
