@@ -15,7 +15,7 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
-from siggen.gears.contact.tooth_kernel import tooth_kernel
+from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -33,10 +33,10 @@ def half_width(line_load_n_per_m: float) -> float:
 
 
 class Teeth(NamedTuple):
-    """Lengths (2,) [m] and compliances (2,) [m/N] of the teeth that bend across the face; the rest stays rigid."""
+    """Length [m] and compliance [m/N] of the teeth that bend across the face; the rest stays rigid."""
 
-    length_m: tuple[float, float] = (np.inf, np.inf)
-    compliance_m_per_n: tuple[float, float] = (0.0, 0.0)
+    length_m: float = np.inf
+    compliance_m_per_n: float = 0.0
 
 
 RIGID = Teeth()
@@ -56,11 +56,11 @@ def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray, teeth:
         lead_m=none,
         face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
         kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
-        teeth=tooth_kernel(count, FACE_M, np.array(teeth.length_m), np.array(teeth.compliance_m_per_n), KAPPA),
+        teeth=tooth_kernel(unit_tooth(count, FACE_M, teeth.length_m), teeth.compliance_m_per_n, FACE_M, KAPPA),
         radius_m=RADIUS_M,
         rounding_m=0.0,
         kappa_per_pa=KAPPA,
-        compliance_m_per_n=REST_M_PER_N - sum(teeth.compliance_m_per_n),
+        compliance_m_per_n=REST_M_PER_N - teeth.compliance_m_per_n,
         carrying_m=carrying_length(left_m, right_m, depth_m, none, cell, RADIUS_M, KAPPA * 60e3),
     )
 

@@ -11,7 +11,6 @@ from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.pair_rest import PairRest
 from siggen.gears.contact.table_columns import (
     FORCE,
     NO_ENERGY,
@@ -84,7 +83,7 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     here = KindRow(
         row.position_m[place],
         FaceGaps(*(a[place] for a in row.gaps)),
-        PairRest(*(a[place] for a in row.rest)),
+        row.rest.at(place),
         row.edge_radius_m,
     )
     only = np.zeros(1, dtype=np.int64)

@@ -1,10 +1,10 @@
 """Product and solution of a symmetric matrix that is a diagonal plus sums of decaying terms of the distance.
 
-A_ij = d_i for i = j, Σ_m s_m r_m^|i-j| + Σ_t p_it Π_{j < k <= i} q_kt for i > j: exponentials of the distance, and
-terms whose strength p and decay q belong to the rows (free ends make them so, see `tooth_kernel`). Product and solution
-take a number of steps proportional to the size: such a matrix is semiseparable, and its factors L D Lᵀ stay so
-(Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are left
-out; distances count through them.
+A_ij = d_i for i = j, Σ_m s_m r_m^|i-j| + p_i Π_{j < k <= i} q_k for i > j: exponentials of the distance, and one term
+whose strength p and decay q belong to the rows (free ends make them so, see `tooth_kernel`). Product and solution take
+a number of steps proportional to the size: such a matrix is semiseparable, and its factors L D Lᵀ stay so
+(Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are left out; distances
+count through them.
 
 The numbers of terms and of right sides are constants of the module: compiled loops over them are unrolled.
 """
@@ -17,9 +17,8 @@ from numba import njit
 from siggen.arrays import FloatArray, IntArray
 
 EXPONENTIALS = 5
-ROW_TERMS = 2
-"""Terms whose strength and decay belong to the rows."""
-TERMS = EXPONENTIALS + ROW_TERMS
+TERMS = EXPONENTIALS + 1
+"""With the term whose strength and decay belong to the rows, the last one."""
 SIDES = 5
 
 
@@ -58,18 +57,16 @@ def products(
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
 def add_row_products(row_strength: FloatArray, row_decay: FloatArray, vector: FloatArray, out: FloatArray) -> None:
-    """Add the off-diagonal products of the terms of the rows, p and q (n, ROW_TERMS), to `out` (n,)."""
+    """Add the off-diagonal products of the term of the rows, p and q (n,), to `out` (n,)."""
     count = vector.size
-    run = np.zeros(ROW_TERMS)
+    run = 0.0
     for i in range(1, count):
-        for t in range(ROW_TERMS):
-            run[t] = row_decay[i, t] * (run[t] + vector[i - 1])
-            out[i] += row_strength[i, t] * run[t]
-    run[:] = 0.0
+        run = row_decay[i] * (run + vector[i - 1])
+        out[i] += row_strength[i] * run
+    run = 0.0
     for i in range(count - 2, -1, -1):
-        for t in range(ROW_TERMS):
-            run[t] = row_decay[i + 1, t] * (run[t] + row_strength[i + 1, t] * vector[i + 1])
-            out[i] += run[t]
+        run = row_decay[i + 1] * (run + row_strength[i + 1] * vector[i + 1])
+        out[i] += run
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
@@ -90,7 +87,7 @@ def solve_rows(
     Parameters
     ----------
     decay, strength : (EXPONENTIALS,)
-    row_strength, row_decay : (n, ROW_TERMS)
+    row_strength, row_decay : (n,)
     diagonal : (n,)
     rows : (>= count,)
         The chosen rows, ascending.
@@ -109,8 +106,7 @@ def solve_rows(
     for n in range(count):
         i = rows[n]
         pivot = diagonal[i]
-        for t in range(ROW_TERMS):
-            own[EXPONENTIALS + t] = row_strength[i, t]
+        own[EXPONENTIALS] = row_strength[i]
         if n > 0:
             _carry_on(decay, row_decay, rows[n - 1], i, right, steps, work, inner, run)
         for m in range(TERMS):
@@ -148,8 +144,7 @@ def _substitute(
             right[i, side] /= work[i, TERMS]
         if n < count - 1:
             after = rows[n + 1]
-            for t in range(ROW_TERMS):
-                own[EXPONENTIALS + t] = row_strength[after, t]
+            own[EXPONENTIALS] = row_strength[after]
             for m in range(TERMS):
                 for side in range(SIDES):
                     run[m, side] = steps[after, m] * (run[m, side] + own[m] * right[after, side])
@@ -174,10 +169,9 @@ def _carry_on(
         steps[i, m] = decay[m]
         for _ in range(i - before - 1):
             steps[i, m] *= decay[m]
-    for t in range(ROW_TERMS):
-        steps[i, EXPONENTIALS + t] = 1.0
-        for k in range(before + 1, i + 1):
-            steps[i, EXPONENTIALS + t] *= row_decay[k, t]
+    steps[i, EXPONENTIALS] = row_decay[i]
+    for k in range(before + 1, i):
+        steps[i, EXPONENTIALS] *= row_decay[k]
     for m in range(TERMS):
         for k in range(TERMS):
             inner[m, k] = steps[i, m] * steps[i, k] * (inner[m, k] + last * work[before, m] * work[before, k])

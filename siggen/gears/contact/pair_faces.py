@@ -12,7 +12,7 @@ from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.pair_rest import PairRest
-from siggen.gears.contact.tooth_kernel import tooth_kernel
+from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
 
@@ -78,6 +78,7 @@ def pair_faces(
     depth = np.sqrt(first * second)
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
     kappa = contact_kappa(pair)
+    unit = unit_tooth(count, pair.face_width_m, rest.length_m)
     family = kernel_family(count, cell, float(np.median(depth)))
     out = []
     for i in range(position_m.size):
@@ -92,7 +93,7 @@ def pair_faces(
             lead_m=lead,
             face_m=face,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
-            teeth=tooth_kernel(count, pair.face_width_m, rest.length_m[i], rest.tooth_m_per_n[i], kappa),
+            teeth=tooth_kernel(unit, float(rest.tooth_m_per_n[i]), pair.face_width_m, kappa),
             radius_m=float(radius[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,

@@ -104,7 +104,7 @@ def kind_row(
         )
         for which, roll, damage in members
     ]
-    rest = pair_rest(pair, rolls_at(pair, position), (teeth[0], teeth[1]))
+    rest = pair_rest(pair, (teeth[0], teeth[1]), stiffness)
     stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
     stated = stated[stated > 0.0]
     edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
@@ -150,7 +150,7 @@ def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceS
         solver.pair,
         FaceGaps(*(array[chosen] for array in row.gaps)),
         row.position_m[chosen],
-        PairRest(*(array[chosen] for array in row.rest)),
+        row.rest.at(chosen),
         FaceOptions(typical, row.edge_radius_m, options.coupled),
         solver.lead_m,
     )

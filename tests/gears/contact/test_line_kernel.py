@@ -17,7 +17,7 @@ from siggen.gears.contact.line_kernel import (
     reckoned_width,
     strengths,
 )
-from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix
+from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
 
 CELL, DEPTH, CELLS = 0.1e-3, 2.2e-3, 200
 
@@ -78,7 +78,7 @@ def test_rows_are_solved_like_a_full_matrix():
     kernel = line_kernel(kernel_family(CELLS, CELL, DEPTH), DEPTH, 0.3)
     strength, slope = np.zeros(EXPONENTIALS), np.zeros(EXPONENTIALS)
     strengths(kernel, 67e-6, strength, slope)
-    teeth = tooth_kernel(CELLS, CELLS * CELL, np.array([2e-3, 5e-3]), np.array([1e-9, 2e-9]), 5.6e-12)
+    teeth = tooth_kernel(unit_tooth(CELLS, CELLS * CELL, 4e-3), 3e-9, CELLS * CELL, 5.6e-12)
     matrix = fitted(67e-6) + tooth_matrix(teeth)
     own = np.diag(matrix) + rng.random(CELLS)
     np.fill_diagonal(matrix, own)

@@ -5,36 +5,45 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix
+from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
 from tests.gears.contact.faces import BENDING, KAPPA, REST, WIDTH, face, solve, spall
 
-LENGTHS, COMPLIANCES = np.array([3e-3, 5e-3]), np.array([1e-9, 2e-9])
+LENGTH, COMPLIANCE = 4e-3, 3e-9
 
 
 def test_the_kernel_is_greens_function_of_a_tooth_with_free_ends() -> None:
     cells, fine = 50, 40
     y = (np.arange(cells * fine) + 0.5) * WIDTH / (cells * fine)
-    low, high = np.minimum(y[:, None], y), np.maximum(y[:, None], y)
-    expected = sum(
-        c * WIDTH / KAPPA * WIDTH / cells * np.cosh(low / n) * np.cosh((WIDTH - high) / n) / (n * np.sinh(WIDTH / n))
-        for c, n in zip(COMPLIANCES, LENGTHS, strict=True)
-    )
+    low, high = np.minimum(y[:, None], y) / LENGTH, np.maximum(y[:, None], y) / LENGTH
+    face = WIDTH / LENGTH
+    expected = face / cells * np.cosh(low) * np.cosh(face - high) / np.sinh(face)
     means = expected.reshape(cells, fine, cells, fine).mean(axis=(1, 3))
-    found = tooth_matrix(tooth_kernel(cells, WIDTH, LENGTHS, COMPLIANCES, KAPPA))
+    found = tooth_matrix(unit_tooth(cells, WIDTH, LENGTH))
     # midpoints at the bend of the diagonal: 1/fine² of a cell's share
     np.testing.assert_allclose(found, means, atol=5e-5 * means.max())
+    scaled = tooth_kernel(unit_tooth(cells, WIDTH, LENGTH), COMPLIANCE, WIDTH, KAPPA)
+    np.testing.assert_allclose(tooth_matrix(scaled), COMPLIANCE * WIDTH / KAPPA * found, rtol=1e-12)
 
 
 @pytest.mark.parametrize("length", [1e-5, 0.5e-3, 3e-3, 1.0, np.inf])
 def test_an_even_load_deflects_the_tooth_evenly_whatever_its_length(length: float) -> None:
-    kernel = tooth_kernel(100, WIDTH, np.full(2, length), COMPLIANCES, KAPPA)
-    rows = tooth_matrix(kernel).sum(axis=1)
-    np.testing.assert_allclose(rows, COMPLIANCES.sum() * WIDTH / KAPPA, rtol=1e-13)
-    assert np.linalg.eigvalsh(tooth_matrix(kernel)).min() > -1e-12 * kernel.sum
+    matrix = tooth_matrix(unit_tooth(100, WIDTH, length))
+    np.testing.assert_allclose(matrix.sum(axis=1), 1.0, rtol=1e-13)
+    assert np.linalg.eigvalsh(matrix).min() > -1e-12
+
+
+@pytest.mark.parametrize("length", [1e-3, 4.8e-3, 1e-1])
+def test_a_wave_across_the_face_decays_by_its_length(length: float) -> None:
+    # the cosine modes of free ends: 1/(1 + (n pi l/b)²); cells average the wave twice, (n pi/400)²/3 = 5e-4
+    y, matrix = (np.arange(200) + 0.5) / 200, tooth_matrix(unit_tooth(200, WIDTH, length))
+    for number in (1, 2, 5):
+        wave = np.cos(number * np.pi * y)
+        expected = 1.0 / (1.0 + (number * np.pi * length / WIDTH) ** 2)
+        np.testing.assert_allclose(matrix @ wave, expected * wave, atol=6e-4)
 
 
 def test_a_tooth_without_end_in_its_length_is_rigid_across_the_face() -> None:
-    soft = spall(0.1e-3, skew=0.05, teeth=((np.inf, np.inf), (0.2 * REST, 0.3 * REST)), rest=0.5 * REST)
+    soft = spall(0.1e-3, skew=0.05, teeth=(np.inf, 0.75 * REST), rest=0.25 * REST)
     stiff = spall(0.1e-3, skew=0.05)
     for tilt in (0.0, 0.1e-3):
         one, two = solve(soft, 14e-6, tilt)[0], solve(stiff, 14e-6, tilt)[0]
@@ -44,10 +53,10 @@ def test_a_tooth_without_end_in_its_length_is_rigid_across_the_face() -> None:
 
 def test_the_pair_carries_as_a_full_matrix_of_line_and_teeth_does() -> None:
     lead = np.linspace(0.0, 40e-6, 200)
-    slices = face(lead=lead, teeth=BENDING, rest=0.5 * REST)
+    slices = face(lead=lead, teeth=BENDING, rest=0.25 * REST)
     answer, loads = solve(slices, 14e-6, 0.2e-3)
     deflection = _line(slices, loads) + tooth_matrix(slices.teeth) @ loads
-    wanted = 14e-6 + 0.2e-3 * slices.face_m - lead - 0.5 * REST * answer.force_n
+    wanted = 14e-6 + 0.2e-3 * slices.face_m - lead - 0.25 * REST * answer.force_n
     touching = loads > 0.0
     assert 0.1 < touching.mean() < 0.9
     np.testing.assert_allclose(deflection[touching], wanted[touching], atol=1e-13)
@@ -72,7 +81,7 @@ def _line(slices, loads: np.ndarray) -> np.ndarray:
 
 
 def test_teeth_that_bend_give_way_to_a_tilt_and_shed_less_under_a_short_gap() -> None:
-    stiff, soft = face(), face(teeth=BENDING, rest=0.5 * REST)
+    stiff, soft = face(), face(teeth=BENDING, rest=0.25 * REST)
     one, two = (solve(s, 8e-6, 0.05e-3)[0] for s in (stiff, soft))
     assert two.force_n == pytest.approx(one.force_n, rel=0.02)
     assert two.tilting_n_m < 0.5 * one.tilting_n_m
