@@ -97,7 +97,7 @@ def face_table() -> Iterator[str]:
     from benchmarks.contact.case import bench_damages
     from siggen.gears.contact.contact_table import contact_table
     from siggen.gears.contact.contact_table_error import contact_table_error
-    from siggen.gears.contact.table_columns import TableOptions
+    from siggen.gears.contact.table_options import TableOptions
 
     options = TableOptions(largest_force_n=4000.0)
     pair, teeth, damages = bench_damages(("slight", "face_40", "face_80", "through_060", "through_100"))

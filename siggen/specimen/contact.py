@@ -11,7 +11,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
 from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_columns import TableOptions, face_slices
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling

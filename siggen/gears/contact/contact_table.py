@@ -26,27 +26,14 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.contact.face_gaps import FaceGaps
-from siggen.gears.contact.table_columns import (
-    FORCE,
-    KindRow,
-    TableOptions,
-    TableSolver,
-    column_curves,
-    face_slices,
-    first_touch,
-    half_width,
-    kind_row,
-    pits_of_kind,
-    table_solver,
-)
+from siggen.gears.contact.kind_row import KindRow, felt, first_touch, kind_row, pits_of_kind, touch_along
+from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, table_solver
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-FELT_HALF_WIDTHS = 4.0
-"""Gaps farther from the contact than this many Hertz half widths are not felt."""
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
 BEND = 2e-3
@@ -106,8 +93,8 @@ def contact_table(
     parts = [(healthy.touch_m[0], healthy.column[0], healthy.gain[0], healthy.curves)]
     for kind in pair_kinds(pair, damage)[1:]:
         first = sum(len(curves) for *_, curves in parts)
-        damaged = kind_row(pair, stiffness, options, points, pits_of_kind(damage, kind))
-        parts.append(_damaged(solver, damaged, row.gaps, healthy, first))
+        damaged = kind_row(pair, stiffness, options, points, pits_of_kind(damage, kind), row)
+        parts.append(_damaged(solver, damaged, row, healthy, first))
     touch, column, gain, curves = (list(values) for values in zip(*parts, strict=True))
     joined = np.concatenate(curves)
     table = ContactTable(np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()))
@@ -121,25 +108,22 @@ def _healthy(
     pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, points: int, lead_m: tuple[float, ...]
 ) -> tuple[ContactTable, KindRow]:
     solver = table_solver(pair, stiffness, options, np.array(lead_m))
-    row = kind_row(pair, stiffness, options, points, ((), ()))
+    row = kind_row(pair, stiffness, options, points)
     chosen = np.round(np.linspace(0, points - 1, min(options.healthy_columns, points))).astype(np.int64)
     curves = column_curves(solver, row, chosen)
     at = np.interp(np.arange(points), chosen, np.arange(chosen.size))
-    touch = first_touch(solver, row, np.arange(points))
+    touch = first_touch(pair, row, np.arange(points), solver.lead_m)
     return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[-1])), row
 
 
 def _damaged(
-    solver: TableSolver, row: KindRow, healthy_gaps: FaceGaps, healthy: ContactTable, first: int
+    solver: TableSolver, row: KindRow, healthy_row: KindRow, healthy: ContactTable, first: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return touch (points,), column and gain (points - 1,) and the curves of one kind, numbered from `first`."""
-    other = (row.gaps.left_m != healthy_gaps.left_m) | (row.gaps.right_m != healthy_gaps.right_m)
-    away = -np.minimum(row.gaps.left_m, row.gaps.right_m)
-    reach = FELT_HALF_WIDTHS * half_width(solver.pair, row.position_m, solver.options.largest_force_n)
-    felt = np.any(other & (away < reach[:, None]), axis=1) | solver.options.section_loss
+    differs = felt(solver.pair, row, healthy_row, solver.options.largest_force_n)
     column, gain = healthy.column[0].copy(), healthy.gain[0].copy()
     parts = [np.zeros((0, *healthy.curves.shape[1:]))]
-    for run in _runs(np.flatnonzero(felt[1:] | felt[:-1])):
+    for run in _runs(np.flatnonzero(differs[1:] | differs[:-1])):
         ends, curves = _refined(solver, row, run)
         intervals = np.arange(run[0], run[-1] + 1)
         starts = np.interp(intervals, ends, np.arange(ends.size))
@@ -147,7 +131,7 @@ def _damaged(
         gain[intervals] = np.interp(intervals + 1, ends, np.arange(ends.size)) - starts
         parts.append(curves)
         first += ends.size
-    return first_touch(solver, row, np.arange(row.position_m.size)), column, gain, np.concatenate(parts)
+    return touch_along(solver.pair, row, healthy.touch_m[0], solver.lead_m), column, gain, np.concatenate(parts)
 
 
 def _runs(intervals: IntArray) -> list[IntArray]:

@@ -3,8 +3,8 @@
 A_ij = d_i for i = j, Σ_m s_m r_m^|i-j| + p_i Π_{j < k <= i} q_k for i > j: exponentials of the distance, and one term
 whose strength p and decay q belong to the rows (free ends make them so, see `tooth_kernel`). Product and solution take
 a number of steps proportional to the size: such a matrix is semiseparable, and its factors L D Lᵀ stay so
-(Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are left out; distances
-count through them.
+(Foreman-Mackey et al. 2017, Astron. J. 154, 220, section 5.1, for real exponentials). Rows that are not chosen are
+left out; distances count through them.
 
 The numbers of terms and of right sides are constants of the module: compiled loops over them are unrolled.
 """

@@ -10,7 +10,7 @@ from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, sta
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_columns import TableOptions
+from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage

@@ -18,7 +18,7 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_columns import TableOptions, face_slices
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage

@@ -25,9 +25,8 @@ from siggen.gears.contact.table_columns import (
     SLOPE,
     TURNING,
     TURNING_SLOPE,
-    TableOptions,
-    face_slices,
 )
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import Spall
