@@ -96,34 +96,62 @@ def solve_rows(
     steps : (n, TERMS)
         Room: decay from the row before.
     work : (n, TERMS + 1)
-        Room: the factors.
+        Room: the factors, and the pivots' inverse.
     """
-    inner = np.zeros((TERMS, TERMS))
-    run = np.zeros((TERMS, SIDES))
-    own = np.zeros(TERMS)
-    for m in range(EXPONENTIALS):
-        own[m] = strength[m]
+    # The sums of all rows before, of which `inner` is symmetric and kept below its diagonal; b and w are those of the
+    # row before. Numbers are read once, since the compiler must take arrays to overlap.
+    inner, run = np.zeros((TERMS, TERMS)), np.zeros((TERMS, SIDES))
+    own, step, w = np.zeros(TERMS), np.zeros(TERMS), np.zeros(TERMS)
+    product, b = np.zeros(TERMS), np.zeros(SIDES)
+    own[:EXPONENTIALS] = strength
+    last = 0.0
     for n in range(count):
         i = rows[n]
         pivot = diagonal[i]
         own[EXPONENTIALS] = row_strength[i]
         if n > 0:
-            _carry_on(decay, row_decay, rows[n - 1], i, right, steps, work, inner, run)
+            _steps(decay, row_decay, rows[n - 1], i, step)
+            for m in range(TERMS):
+                here, factor = step[m], w[m]
+                steps[i, m] = here
+                for k in range(m + 1):
+                    inner[m, k] = here * step[k] * (inner[m, k] + last * factor * w[k])
+                for side in range(SIDES):
+                    run[m, side] = here * (run[m, side] + factor * b[side])
+        product[:] = 0.0
         for m in range(TERMS):
-            product = 0.0
-            for k in range(TERMS):
-                product += own[k] * inner[k, m]
-            work[i, m] = 1.0 - product
-            pivot -= product * own[m]
+            here = own[m]
+            total = here * inner[m, m]
+            for k in range(m):
+                total += own[k] * inner[m, k]
+                product[k] += here * inner[m, k]
+            product[m] += total
+        b[:] = right[i]
+        for m in range(TERMS):
+            pivot -= product[m] * own[m]
             for side in range(SIDES):
-                right[i, side] -= own[m] * run[m, side]
+                b[side] -= own[m] * run[m, side]
         if pivot <= 0.0:
             return False
-        work[i, TERMS] = pivot
+        last = pivot
         for m in range(TERMS):
-            work[i, m] /= pivot
+            w[m] = (1.0 - product[m]) / pivot
+            work[i, m] = w[m]
+        work[i, TERMS] = 1.0 / pivot
+        right[i] = b
     _substitute(own, row_strength, rows, count, right, steps, work)
     return True
+
+
+@njit(cache=True, inline="always")
+def _steps(decay: FloatArray, row_decay: FloatArray, before: int, i: int, step: FloatArray) -> None:
+    """Write the decays (TERMS,) from row `before` to row i."""
+    step[:EXPONENTIALS] = decay
+    step[EXPONENTIALS] = row_decay[i]
+    for k in range(before + 1, i):
+        for m in range(EXPONENTIALS):
+            step[m] *= decay[m]
+        step[EXPONENTIALS] *= row_decay[k]
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
@@ -137,43 +165,19 @@ def _substitute(
     work: FloatArray,
 ) -> None:
     """Go back from the last row to the first; `own` (TERMS,) holds the strengths of the exponentials."""
-    run = np.zeros((TERMS, SIDES))
+    run, x, ahead = np.zeros((TERMS, SIDES)), np.zeros(SIDES), np.zeros(SIDES)
     for n in range(count - 1, -1, -1):
         i = rows[n]
         for side in range(SIDES):
-            right[i, side] /= work[i, TERMS]
+            x[side] = right[i, side] * work[i, TERMS]
         if n < count - 1:
             after = rows[n + 1]
             own[EXPONENTIALS] = row_strength[after]
             for m in range(TERMS):
+                step, here, factor = steps[after, m], own[m], work[i, m]
                 for side in range(SIDES):
-                    run[m, side] = steps[after, m] * (run[m, side] + own[m] * right[after, side])
-                    right[i, side] -= work[i, m] * run[m, side]
-
-
-@njit(cache=True, fastmath={"contract", "reassoc"})
-def _carry_on(
-    decay: FloatArray,
-    row_decay: FloatArray,
-    before: int,
-    i: int,
-    right: FloatArray,
-    steps: FloatArray,
-    work: FloatArray,
-    inner: FloatArray,
-    run: FloatArray,
-) -> None:
-    """Carry the sums of all rows before from row `before` on to row i."""
-    last = work[before, TERMS]
-    for m in range(EXPONENTIALS):
-        steps[i, m] = decay[m]
-        for _ in range(i - before - 1):
-            steps[i, m] *= decay[m]
-    steps[i, EXPONENTIALS] = row_decay[i]
-    for k in range(before + 1, i):
-        steps[i, EXPONENTIALS] *= row_decay[k]
-    for m in range(TERMS):
-        for k in range(TERMS):
-            inner[m, k] = steps[i, m] * steps[i, k] * (inner[m, k] + last * work[before, m] * work[before, k])
+                    moved = step * (run[m, side] + here * ahead[side])
+                    run[m, side] = moved
+                    x[side] -= factor * moved
         for side in range(SIDES):
-            run[m, side] = steps[i, m] * (run[m, side] + work[before, m] * right[before, side])
+            right[i, side] = ahead[side] = x[side]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi
 from typing import NamedTuple
 
@@ -79,7 +80,7 @@ def pair_faces(
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
     kappa = contact_kappa(pair)
     unit = unit_tooth(count, pair.face_width_m, rest.length_m)
-    family = kernel_family(count, cell, float(np.median(depth)))
+    family = kernel_family(count, cell, _typical_depth(pair))
     out = []
     for i in range(position_m.size):
         here = FaceGaps(*(np.ascontiguousarray(array[i]) for array in gaps))
@@ -102,6 +103,17 @@ def pair_faces(
         )
         out.append(slices)
     return out
+
+
+@lru_cache(maxsize=8)
+def _typical_depth(pair: GearPair) -> float:
+    """Return Weber and Banaschek's depth in the middle of the path [m]."""
+    middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
+    rolls = {
+        "pinion": middle / pair.pinion.base_radius_m,
+        "gear": (pair.line_of_action_m - middle) / pair.gear.base_radius_m,
+    }
+    return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
 
 
 def carrying_length(
