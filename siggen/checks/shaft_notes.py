@@ -11,12 +11,15 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
     if mesh.law == "pairs" and mesh.contact == "face":
         notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.contact)")
     if config.dynamics.shafts is not None:
-        notes.append("shafts bend and gears tilt (dynamics.shafts); more than 100 urad is outside_model")
+        notes.append(
+            "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
+            "the largest approach (about 100 urad for 20 mm) is outside_model"
+        )
     lead = None if config.manufacture is None else config.manufacture.lead_misalignment_um
     misaligned = lead is not None and (isinstance(lead, str) or bounds(lead)[1] > 0.0)
-    if misaligned or config.dynamics.shafts is not None:
+    if misaligned and mesh.contact != "face":
         notes.append(
-            "misalignment and tilt act several times too hard: teeth are rigid across the face, only their contact "
-            "gives way (docs/understand/contact_across_the_face.md)"
+            "misalignment acts several times too hard: with dynamics.mesh.contact: slices teeth are rigid across the "
+            "face; with face they give way (docs/understand/contact_across_the_face.md)"
         )
     return tuple(notes)

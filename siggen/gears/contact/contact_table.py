@@ -10,9 +10,9 @@ Where gears tilt, the energy is expanded about no tilt, W = W_0(d) + M(d) θ + �
 
     F = W_0' + M' θ + ½ M_θ' θ²,   moment = M + M_θ θ,
 
-are derivatives of one energy: no closed loop in (d, θ) does work. Loaded tilts are small beside the approach, since
-shafts are much stiffer against tilting than the contact is; what misalignment takes away stands in the lead, not in
-θ.
+are derivatives of one energy: no closed loop in (d, θ) does work. Loaded tilts are small beside the approach; what
+misalignment takes away stands in the lead, not in θ. The expansion holds where the whole face touches: up to tilts that
+lift its ends by `TOUCHING` of the reach.
 
 Nodes lie at D (k/(n - 1))² up to the largest approach D; beyond it the force goes on with the last slope.
 """
@@ -27,7 +27,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.kind_row import KindRow, felt, first_touch, kind_row, pits_of_kind, touch_along
-from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, table_solver
+from siggen.gears.contact.table_columns import FORCE, TOUCHING, TableSolver, column_curves, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
@@ -45,7 +45,8 @@ class ContactTable(NamedTuple):
 
     `touch_m` (rows, points): approach at which a pair of this kind first touches [m]; `column`, `gain` (rows, points -
     1): column at the start of a fine interval, and how many columns it spans; `curves` (columns, nodes, 4 or 8): see
-    FORCE; `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add.
+    FORCE; `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add;
+    `largest_tilt_rad`: up to which the expansion holds, 0 where gears stay parallel.
     """
 
     touch_m: FloatArray
@@ -54,6 +55,7 @@ class ContactTable(NamedTuple):
     curves: FloatArray
     reach_m: float
     lead_m: float = 0.0
+    largest_tilt_rad: float = 0.0
 
 
 def contact_table(
@@ -97,7 +99,11 @@ def contact_table(
         parts.append(_damaged(solver, damaged, row, healthy, first))
     touch, column, gain, curves = (list(values) for values in zip(*parts, strict=True))
     joined = np.concatenate(curves)
-    table = ContactTable(np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()))
+    # The ends of the face lift by as much as `table_columns` lets a tilted face take to touch.
+    tilt = 2.0 * TOUCHING * healthy.reach_m / pair.face_width_m if options.tilts else 0.0
+    table = ContactTable(
+        np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()), tilt
+    )
     for array in table[:4]:
         array.setflags(write=False)
     return table
