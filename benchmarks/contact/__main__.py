@@ -6,7 +6,7 @@ import argparse
 import time
 from collections.abc import Iterator
 
-from benchmarks.contact import comparisons, cost
+from benchmarks.contact import case, comparisons, cost
 
 
 def edge_table() -> Iterator[str]:
@@ -47,6 +47,25 @@ def loss_table() -> Iterator[str]:
         for loss in comparisons.losses(force, counts):
             found = " | ".join(f"{loss.library[n]:.2f}" for n in counts)
             yield f"| {loss.land} | {force:.0f} | {loss.solver:.2f} | {found} |"
+
+
+def teeth_table() -> Iterator[str]:
+    """Lines of losses with teeth that bend across the face, in per cent, and of tilts of rigid and of bending teeth."""
+    yield "| land | F [N] | three dimensions | 100 slices |"
+    yield "|---|---|---|---|"
+    for force in (300.0, 1200.0, 4000.0):
+        for loss in comparisons.losses(force, (100,), teeth=case.BENDING):
+            yield f"| {loss.land} | {force:.0f} | {loss.solver:.2f} | {loss.library[100]:.2f} |"
+    yield ""
+    yield "| teeth | tilt [µrad] | F [N] | approach [µm] | three dimensions | moment [N m] | three dimensions |"
+    yield "|---|---|---|---|---|---|---|"
+    for name, teeth in (("rigid", case.RIGID), ("bending", case.BENDING)):
+        for force in (300.0, 1200.0):
+            for t in comparisons.tilted(force, teeth=teeth):
+                yield (
+                    f"| {name} | {1e6 * t.tilt_rad:.0f} | {force:.0f} | {1e6 * t.approach_m:.3f} "
+                    f"| {1e6 * t.solver_approach_m:.3f} | {t.moment_n_m:.3f} | {t.solver_moment_n_m:.3f} |"
+                )
 
 
 def cost_table() -> Iterator[str]:
@@ -123,6 +142,7 @@ def fit_notch() -> Iterator[str]:
 TABLES = {
     "edge": edge_table,
     "losses": loss_table,
+    "teeth": teeth_table,
     "cost": cost_table,
     "loop": loop_table,
     "table": face_table,
