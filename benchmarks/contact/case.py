@@ -91,7 +91,8 @@ def spalled_face(
     along = offset_m + skew * y
     left = 0.6e-3 + along + wave_m * np.sin(2.0 * pi * y / 3e-3)
     right = 0.6e-3 - along + wave_m * np.sin(2.0 * pi * y / 2.1e-3 + 1.0)
-    return face_of(np.where(inside, left, -NO_EDGE), np.where(inside, right, -NO_EDGE), np.where(inside, 0.2e-3, 0.0))
+    edges = (np.where(inside, x, -NO_EDGE) for x in (left, right))
+    return face_of(*edges, np.where(inside, 0.2e-3, 0.0), BENDING)
 
 
 def approach_under(slices: FaceSlices, force_n: float) -> float:
