@@ -87,6 +87,25 @@ def test_the_loss_of_pair_stiffness_against_three_dimensions(name, land_of, room
     assert found == pytest.approx(expected, abs=room), name
 
 
+def test_bending_teeth_lose_stiffness_and_resist_a_tilt_as_in_three_dimensions():
+    # 31 %, twice what rigid teeth lose: the end that carries gives way
+    force, rest = 1200.0, 0.25 * REST
+    case = FaceCase(cell_m=0.1e-3, tooth_length_m=BENDING[0], tooth_m_per_n=BENDING[1])
+    one_end = land_of_gap(case, 0.5, 0.0)
+    whole, damaged = (approach_at(case, land, force, reach=5.0)[0] for land in (np.ones(200, bool), one_end))
+    expected = 100.0 * (1.0 - (rest + whole / force) / (rest + damaged / force))
+    soft = face(teeth=BENDING, rest=rest)
+    never = face(~one_end, 1.0, 1.0, teeth=BENDING, rest=rest)
+    found = 100.0 * (1.0 - approach_under(soft, force) / approach_under(never, force))
+    assert expected > 30.0
+    assert found == pytest.approx(expected, abs=0.3)
+    _, line = approach_at(case, np.ones(200, bool), force, tilt_rad=0.1e-3)
+    y = 0.1e-3 * (np.arange(200) - 99.5)
+    turned, _ = solve(soft, approach_under(soft, force), 0.1e-3)
+    # the kernel's one a for the whole line gives way by 10 % more to a tilt than the contact's own; a third is contact
+    assert turned.moment_n_m == pytest.approx(float(line @ y) * 0.1e-3, rel=0.07)
+
+
 TILTS = [0.0, 0.1e-3, -0.25e-3]
 FACES = {
     "healthy": face,
