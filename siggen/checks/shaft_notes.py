@@ -13,7 +13,7 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
     if config.dynamics.shafts is not None:
         notes.append(
             "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
-            "the largest approach (about 100 urad for 20 mm) is outside_model"
+            "the largest approach (100 to 200 urad for 20 mm) is outside_model"
         )
     lead = None if config.manufacture is None else config.manufacture.lead_misalignment_um
     misaligned = lead is not None and (isinstance(lead, str) or bounds(lead)[1] > 0.0)
