@@ -17,13 +17,13 @@ from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_p
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.release.log_features import log_mean, log_values
 from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.log_features import log_mean, log_values
 from siggen.errors import UsageError
 
-INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"
+INDICATORS, REFERENCED, NETWORK, CIRCULAR = "indicators", "healthy_referenced", "network", "circular"
 
 Reference = tuple[MeasuredRecording, ShaftPulses, RecordPieces]
 """A recording in healthy state as it came, its pulses, and its pieces at the rate of the model."""
@@ -166,7 +166,9 @@ def predict_recording(
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
     network, notes = _network_vote(model, recording, pulses, teeth)
-    votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in (answer, *network))
+    circular, circular_notes = _circular_vote(model, pieces, teeth)
+    every = (answer, *network, *circular)
+    votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in every)
     undefined = int(np.isnan(pieces.columns(model.classifier.features)).any(axis=0).sum())
     return Prediction(
         recording=recording,
@@ -181,7 +183,9 @@ def predict_recording(
             *known_reasons(facts, source, pulses, teeth, pieces),
             *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
-        notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
+        notes=tuple(
+            note for note in (*pieces.notes, model.note, *notes, *circular_notes, _undefined_note(undefined)) if note
+        ),
         pieces=pieces,
     )
 
@@ -273,6 +277,20 @@ def _network_vote(
         return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
     found = network_probabilities(*model.network, recording, pulses)
     return (_vote(NETWORK, found, facts.temperature),), ()
+
+
+def _circular_vote(
+    model: ReleasedModel, pieces: RecordPieces, teeth: tuple[int, int]
+) -> tuple[tuple[Vote, ...], tuple[str, ...]]:
+    """Return the vote of the network on averages where the pieces have them, else why not."""
+    if model.circular is None:
+        return (), ()
+    from diagnostics.prediction.circular_vote import circular_probabilities
+
+    network, facts = model.circular
+    if not all(pieces.waveforms):
+        return (), ("the circular network takes averages of two pinion revolutions or more: left out",)
+    return (_vote(CIRCULAR, circular_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

@@ -8,7 +8,11 @@ from diagnostics.page.wording import capitalised, counted, joined, percent
 from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.release.model_facts import ModelFacts
 
-TITLES = {"healthy_referenced": "differences from the healthy reference", "network": "the network"}
+TITLES = {
+    "healthy_referenced": "differences from the healthy reference",
+    "network": "the network",
+    "circular": "the circular network",
+}
 
 
 def prediction_summary(found: Prediction) -> list[str]:

@@ -40,12 +40,15 @@ class RecordPieces:
         Pinion revolutions of the shortest piece.
     notes : tuple of str
         What is undefined and why.
+    waveforms : tuple of dict of str to (orders,) complex64
+        Lines of the pinion's average of every piece by channel, see `diagnostics.indicators.record.RecordValues`.
     """
 
     values: np.ndarray
     names: tuple[str, ...]
     revolutions: int
     notes: tuple[str, ...]
+    waveforms: tuple[dict[str, np.ndarray], ...] = ()
 
     def columns(self, names: tuple[str, ...]) -> np.ndarray:
         """Return the named features, (pieces, len(names)); those that were not taken are NaN."""
@@ -116,7 +119,8 @@ def record_pieces(
     names = tuple(values[0])
     table = np.array([[piece[name] for name in names] for piece in values])
     notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))
-    return RecordPieces(table, names, min(piece.revolutions[0] for piece in found), notes)
+    waveforms = tuple(piece.waveforms for piece in found)
+    return RecordPieces(table, names, min(piece.revolutions[0] for piece in found), notes, waveforms)
 
 
 def _own_values(own: Sequence[OwnIndicator], piece: Recording) -> dict[str, float]:

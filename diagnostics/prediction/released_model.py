@@ -18,7 +18,7 @@ from diagnostics.release.model_facts import FACTS_FILE, ModelFacts, read_accurac
 from diagnostics.release.release import REFERENCED
 from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import NETWORK
+from diagnostics.statistics.judgement import CIRCULAR, NETWORK
 from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.classifier_file import (
     CLASSIFIER_FILE,
@@ -30,10 +30,12 @@ from diagnostics.training.classifier_file import (
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
+    from diagnostics.training.circular_files import CircularFacts
+    from diagnostics.training.circular_network import CircularNetwork
     from diagnostics.training.cnn import WideKernelNetwork
     from diagnostics.training.cnn_files import NetworkFile
 
-NETWORK_FILE = "cnn.safetensors"
+NETWORK_FILE, CIRCULAR_FILE = "cnn.safetensors", "circular.safetensors"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,8 @@ class ReleasedModel:
         On features minus the machine's own healthy ones; None where the set did not allow the variant.
     network : tuple or None
         Network and what its file says; None where it was not trained or torch is missing.
+    circular : tuple or None
+        The same of the network on averages.
     accuracy : mapping of str to Interval
         Accuracy on the test specimens by classifier.
     note : str
@@ -71,6 +75,7 @@ class ReleasedModel:
     accuracy: Mapping[str, Interval]
     note: str
     own: tuple[OwnIndicator, ...] = ()
+    circular: tuple[CircularNetwork, CircularFacts] | None = None
 
 
 def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
@@ -102,9 +107,11 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics train` wrote")
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
-    network, note = _network(folder, NETWORK in accuracy)
+    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy, CIRCULAR_FILE: CIRCULAR in accuracy})
+    network = _network(folder) if NETWORK_FILE in loadable else None
+    circular = _circular(folder) if CIRCULAR_FILE in loadable else None
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
-    _check_folder(folder, facts, classifiers, network)
+    _check_folder(folder, facts, classifiers, network, circular)
     return ReleasedModel(
         folder=folder,
         facts=facts,
@@ -117,6 +124,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         accuracy=accuracy,
         note=note,
         own=_own_of(folder, classifiers, own),
+        circular=circular,
     )
 
 
@@ -146,6 +154,7 @@ def _check_folder(
     facts: ModelFacts,
     classifiers: Mapping[str, FeatureClassifier],
     network: tuple[WideKernelNetwork, NetworkFile] | None,
+    circular: tuple[CircularNetwork, CircularFacts] | None,
 ) -> None:
     parts = []
     for prefix, classifier in classifiers.items():
@@ -154,16 +163,28 @@ def _check_folder(
         parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
     if network:
         parts.append(ModelPart(NETWORK_FILE, network[1].identity, network[1].classes, network[1].channels))
+    if circular:
+        parts.append(ModelPart(CIRCULAR_FILE, circular[1].identity, circular[1].classes, circular[1].channels))
     check_parts(folder, facts, parts)
 
 
-def _network(folder: Path, scored: bool) -> tuple[tuple[WideKernelNetwork, NetworkFile] | None, str]:
-    path = folder / NETWORK_FILE
-    if not path.is_file():
-        missing_note = f"network left out: {FACTS_FILE} gives its scores, but {NETWORK_FILE} is missing; train again"
-        return None, missing_note if scored else ""
-    if missing := missing_packages("torch", "safetensors"):
-        return None, f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
+def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...], str]:
+    """Return the files of networks that can be read, and what is left out of those that the model gives scores of."""
+    present = tuple(name for name in scored if (folder / name).is_file())
+    lost = [name for name, wanted in scored.items() if wanted and name not in present]
+    note = f"network left out: {FACTS_FILE} gives its scores, but {', '.join(lost)} is missing; train again"
+    if present and (missing := missing_packages("torch", "safetensors")):
+        return (), f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
+    return present, note if lost else ""
+
+
+def _network(folder: Path) -> tuple[WideKernelNetwork, NetworkFile]:
     from diagnostics.training.cnn_files import load_network
 
-    return load_network(path), ""
+    return load_network(folder / NETWORK_FILE)
+
+
+def _circular(folder: Path) -> tuple[CircularNetwork, CircularFacts]:
+    from diagnostics.training.circular_files import load_circular
+
+    return load_circular(folder / CIRCULAR_FILE)

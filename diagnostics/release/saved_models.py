@@ -16,6 +16,7 @@ from siggen.dataset.reading import Dataset
 
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
+    *("circular.safetensors", "circular.onnx"),
     *("model.json", "referenced_classifier.skops", "referenced_feature_names.json"),
 )
 
@@ -48,6 +49,14 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
             export_onnx(network, facts, folder / "cnn.onnx")
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export failed: {error}")
+    if training.circular:
+        from diagnostics.training.circular_files import export_circular_onnx, save_circular
+
+        save_circular(training.circular, folder / "circular.safetensors")
+        try:
+            export_circular_onnx(training.circular, folder / "circular.onnx")
+        except (RuntimeError, ImportError) as error:
+            notes.append(f"ONNX export of the circular network failed: {error}")
     released = release(training, table, dataset)
     save_release(training, released, table, folder)
     notes += [released.note] if released.note else []

@@ -23,8 +23,10 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
 DISTRIBUTIONS = ("Uniform", "LogUniform", "Normal", "Choice")
 UNITS = {
-    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad", "n_per_m": "N/m", "nm_per_rad": "N m/rad",
-    "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz", "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
+    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad",
+    "n_per_m": "N/m", "nm_per_rad": "N m/rad",
+    "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz",
+    "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
     "m_s": "m/s", "pa_s": "Pa s", "mm": "mm", "um": "µm", "deg": "°", "gpa": "GPa", "hz": "Hz", "us": "µs", "s": "s",
     "kg": "kg", "nm": "N m", "rad": "rad", "db": "dB", "n": "N", "c": "°C",
 }  # fmt: skip
@@ -37,6 +39,8 @@ This page is printed by `python docs/scripts/yaml_reference.py` from `siggen sch
 
 * **Number** in the column "allowed" is a physical number. It may be a constant, or a distribution that siggen draws once
   per gearbox ([below](#distributions)).
+* **extends** names a preset or another file. Its values hold wherever this file gives none. Mappings are merged key by
+  key; numbers, lists, null, and distributions are replaced. The set's own `config.yaml` holds the result.
 * **required**: the key has no default. Where its section is optional, it is required only in that section.
 * **expert**: no shipped configuration sets the key. Its default serves, unless you know why it should not.
 * Units are part of the key names: mm, µm, degrees and GPa for gears, SI for the rest.
@@ -229,7 +233,7 @@ class Shipped:
         if not SOURCE.search(text):
             return ""
         # "teeth: paper A, section 4.2; bore assumed" beside several keys of one line: each takes its own part
-        parts = [part for part in re.split(r"; |, (?=\w+ assumed)", text) if name.split("_")[0] in part]
+        parts = [part for part in re.split(r"; |, (?=\w+ assumed)", text) if name.split("_", maxsplit=1)[0] in part]
         return (parts[0] if len(parts) == 1 and text.count(";") else text).removeprefix(f"{name}: ")
 
 
@@ -269,7 +273,7 @@ def table(schema: Schema, keys: list[Key], users: Mapping[str, list[str]], start
     for key in keys:
         shown = key.path.removeprefix(start)
         # What a section cannot do without is never for experts, as in `siggen schema`.
-        marks = "" if users[key.path] or default(key) == "required" else "expert"
+        marks = "" if users[key.path] or key.path == "extends" or default(key) == "required" else "expert"
         cells = (described(schema, key.schema), unit(key.path), allowed(schema, key.schema), default(key))
         yield row(f"`{shown}`", *cells, marks)
 

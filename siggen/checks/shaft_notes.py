@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from siggen.config import Config, bounds
+from siggen.config import Config
 
 
 def shaft_notes(config: Config) -> tuple[str, ...]:
@@ -15,11 +15,10 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
             "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
             "the largest approach (100 to 200 urad for 20 mm) is outside_model"
         )
-    lead = None if config.manufacture is None else config.manufacture.lead_misalignment_um
-    misaligned = lead is not None and (isinstance(lead, str) or bounds(lead)[1] > 0.0)
-    if misaligned and mesh.contact != "face":
+    uneven = config.manufacture is not None and not config.manufacture.even_face
+    if uneven and mesh.contact != "face":
         notes.append(
-            "misalignment acts several times too hard: with dynamics.mesh.contact: slices teeth are rigid across the "
-            "face; with face they give way (docs/understand/contact_across_the_face.md)"
+            "misalignment, helix and crowning act several times too hard: with dynamics.mesh.contact: slices teeth are "
+            "rigid across the face; with face they give way (docs/understand/contact_across_the_face.md)"
         )
     return tuple(notes)

@@ -12,9 +12,11 @@ from siggen.cli.errors import errors
 from siggen.cli.export_model import export_model
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
+from siggen.cli.init import init
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
+from siggen.cli.pressure import pressure
 from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
@@ -25,7 +27,22 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (plan, generate, verify, show, simulate, export_model, tvms, flank, errors, modes, path, schema)
+COMMANDS = (
+    init,
+    plan,
+    generate,
+    verify,
+    show,
+    simulate,
+    export_model,
+    tvms,
+    flank,
+    pressure,
+    errors,
+    modes,
+    path,
+    schema,
+)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",

@@ -36,11 +36,14 @@ def generate(
     Example: siggen generate configs/quickstart.yaml --out sets/quickstart
     """
     from siggen.checks.loading import load_config
+    from siggen.checks.plausibility import implausible
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
 
     loaded = load_config(config, overrides or ())
+    for sentence in implausible(loaded):
+        typer.echo(f"implausible: {sentence}", err=True)
     if told := compilation_text():
         typer.echo(told, err=True)
     with _progress() as show:

@@ -27,7 +27,7 @@ def plan(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
 ) -> None:
-    """List the records, shards and size that a configuration would give.
+    """List the records, shards and size that a configuration would give, and what in it is implausible.
 
     Example: siggen plan configs/quickstart.yaml --set specimens=1000 --json
     """
@@ -45,6 +45,8 @@ def plan(
     console.print(_overview(summary))
     console.print(_states(summary))
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
+    for sentence in summary["implausible"]:
+        console.print(f"implausible: {sentence}", highlight=False, markup=False, style="yellow")
     for note in (note for kind in NOTES for note in summary[kind]):
         console.print(f"note: {note}", highlight=False, markup=False)
 
@@ -53,11 +55,12 @@ def plan_summary(config: Config) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.checks.contact_notes import contact_notes
     from siggen.checks.damage_notes import damage_notes
+    from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import SPLITS, estimated_bytes, rows_per_group, shards, specimens_per_shard
     from siggen.specimen.gears import model_notes
-    from siggen.views.stiffness_curves import table_error_text
+    from siggen.views.table_error import table_error_text
 
     shard_plans = {split: shards(config, split) for split in SPLITS}
     specimens = {split: sum(len(s.specimens) for s in shard_plans[split]) for split in SPLITS}
@@ -88,6 +91,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "lubrication_notes": list(contact_notes(config)),
         "torque_notes": list(reversal_notes(config)),
         "damage_notes": list(damage_notes(config)),
+        "implausible": list(implausible(config)),
         "shaft_notes": list(shaft_notes(config)),
     }
 
@@ -106,7 +110,11 @@ def _manufacture(config: Config) -> str:
     if section is None:
         return "perfect gears"
     owner = {"specimen": "the same in all states of a gearbox", "state": "drawn anew for each state"}[section.draw]
-    return f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}; {owner}"
+    across = "; helix slope and form" if section.has_helix else ""
+    across += "; crowned" if section.has_crowning else ""
+    return (
+        f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}{across}; {owner}"
+    )
 
 
 def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, Any]]:

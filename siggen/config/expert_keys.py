@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from siggen.config.config import Config
+from siggen.config.inheritance import EXTENDS, inherited
 from siggen.config.parsing import parse
 from siggen.config.presets import presets
 from siggen.config.section import Section
@@ -21,9 +22,13 @@ def schema_with_experts() -> dict[str, Any]:
     What a section cannot do without is never for experts, though the section may be.
     """
     schema = Config.model_json_schema(mode="validation")
+    schema["properties"][EXTENDS] = {
+        "type": "string",
+        "description": "preset or file whose values hold wherever this file gives none",
+    }
     used = keys_of_presets()
     for name, found in ((Config.__name__, schema), *schema.get("$defs", {}).items()):
-        known = used.get(name, set()) | set(found.get("required", ())) | {"kind"}
+        known = used.get(name, set()) | set(found.get("required", ())) | {"kind", EXTENDS}
         for key, described in found.get("properties", {}).items():
             if key not in known:
                 described[EXPERT] = True
@@ -34,7 +39,7 @@ def keys_of_presets() -> dict[str, set[str]]:
     """Return section -> keys that any shipped configuration sets in it."""
     used: dict[str, set[str]] = {}
     for path in presets().values():
-        raw = read_yaml(path)
+        raw = inherited(read_yaml(path), path.parent)
         for section, keys in _written(parse(raw).config, raw):
             used.setdefault(section, set()).update(keys)
     return used

@@ -18,7 +18,7 @@ from siggen.config.number import Number, Within, bounds
 from siggen.config.places import READING, GearName, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
 from siggen.config.teeth import Teeth
-from siggen.errors import Problem
+from siggen.errors import Problem, counted
 
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch"))]
@@ -34,6 +34,11 @@ class IrregularSpalls(DamageSection):
     gear: GearName = Field(default="pinion", description="damaged gear")
     teeth: Teeth = Field(
         default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
+    )
+    stages: Annotated[Number | tuple[Number, ...], Within(above=0, most=1, many=True)] = Field(
+        default=1.0,
+        description="lengths and depth of a tooth's spall over those given here; a number or distribution, drawn for "
+        "each tooth, or a list with one for each tooth, in the order of their indices from the first on",
     )
     centre_height_mm: Middle = Field(
         default=START,
@@ -88,6 +93,21 @@ class IrregularSpalls(DamageSection):
             allowed = "allowed: nothing beside depth_mm, which it would compute"
             raise refusal([Problem("depth_share", "a value", allowed)])
         return self
+
+    @model_validator(mode="after")
+    def _a_stage_for_each_tooth(self) -> IrregularSpalls:
+        if not isinstance(self.stages, tuple):
+            return self
+        teeth = self.teeth if isinstance(self.teeth, int) else len(self.teeth)
+        if len(self.stages) != teeth:
+            hit = counted(teeth, "damaged tooth", "damaged teeth")
+            allowed = f"allowed: one for each of the {hit} (teeth), or one number"
+            raise refusal([Problem("stages", f"a list of {len(self.stages)}", allowed)])
+        return self
+
+    def stage(self, index: int) -> Number:
+        """Return the stage of the damaged tooth of this index, from 0."""
+        return self.stages[index] if isinstance(self.stages, tuple) else self.stages
 
     @classmethod
     def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003

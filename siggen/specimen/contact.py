@@ -47,6 +47,11 @@ def damage_is_geometry(dynamics: Dynamics) -> bool:
     return dynamics.mesh.law == "pairs" and dynamics.mesh.damage != "stiffness"
 
 
+def solves_across_the_face(dynamics: Dynamics) -> bool:
+    """Whether the contact is solved across the face rather than in slices that do not feel each other."""
+    return dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face"
+
+
 def tooth_tables(
     dynamics: Dynamics,
     pair: GearPair,
@@ -67,7 +72,7 @@ def tooth_tables(
     """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
-    if dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face":
+    if solves_across_the_face(dynamics):
         return _across_the_face(dynamics, pair, damage, options, points, largest_force_n, lead_m, coupling)
     # Misaligned faces need slices in the healthy state too: states must not differ by it.
     if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
@@ -93,13 +98,18 @@ def _across_the_face(
     coupling: FloatArray | None,
 ) -> ToothTables:
     """Return the table of the contact across the face; the linear tables of healthy teeth are what it deviates from."""
-    face = TableOptions(
-        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
-        section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
-    )  # fmt: skip
+    face = face_options(dynamics, largest_force_n)
     lead = None if lead_m is None else lead_m(face_slices(pair, face))
     table = contact_table(pair, damage, options, face, points, lead)
     return ToothTables(whole_face(pair, damage, options, points), None, coupling, table)
+
+
+def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
+    """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
+    return TableOptions(
+        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
+        section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
+    )  # fmt: skip
 
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:

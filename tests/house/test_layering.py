@@ -16,11 +16,11 @@ SIGGEN_ROOMS = (
     "errors", "seeding", "arrays", "config", "planning",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
-    "sensing", "specimen", "checks", "columns", "record", "dataset", "engines", "sets", "views", "cli",
+    "sensing", "specimen", "checks", "rig", "columns", "record", "dataset", "engines", "sets", "views", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "loader", "training", "release", "recordings", "page",
-    "prediction", "audit", "report", "cli",
+    "prediction", "machine", "audit", "report", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

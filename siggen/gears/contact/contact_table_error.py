@@ -38,8 +38,9 @@ def contact_table_error(
     table: ContactTable,
     reference_n: float,
     places: int = 40,
+    lead_m: FloatArray | None = None,
 ) -> ContactTableError:
-    """Return the errors at places in the middle of fine intervals near damage, evenly spread (without lead).
+    """Return the errors at places in the middle of fine intervals near damage, evenly spread; of sound teeth without.
 
     Parameters
     ----------
@@ -50,13 +51,17 @@ def contact_table_error(
         Force that errors are shares of [N].
     places : int
         Per kind of damaged pair.
+    lead_m : (slices,) or None
+        Missing material across the face that the table was made with.
     """
-    solver = table_solver(pair, stiffness, options, np.zeros(face_slices(pair, options)))
+    lead = np.zeros(face_slices(pair, options)) if lead_m is None else lead_m - np.min(lead_m)
+    solver = table_solver(pair, stiffness, options, lead)
     fine = 2 * table.touch_m.shape[1] - 1  # every second point is the middle of an interval
     errors = [np.zeros(1)]
-    for row, kind in enumerate(pair_kinds(pair, damage)[1:], start=1):
+    kinds = pair_kinds(pair, damage)
+    for row, kind in [*enumerate(kinds)][1:] or [(0, kinds[0])]:
         middles = kind_row(pair, stiffness, options, fine, pits_of_kind(damage, kind))
-        near = np.flatnonzero(table.column[row] >= options.healthy_columns)
+        near = np.flatnonzero((table.column[row] >= options.healthy_columns) | (row == 0))
         for cell in near[:: max(1, near.size // places)].tolist():
             errors.append(_errors_at(solver, middles, table, row, cell))
     found = np.abs(np.concatenate(errors)) / reference_n

@@ -16,16 +16,19 @@ import pytest
 from pyarrow import parquet
 from scipy.signal import resample_poly
 
+from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
-from diagnostics.release.log_features import healthy_referenced, healthy_references, reference_speed_ratio
+from diagnostics.records.healthy_references import healthy_references
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training.classifier_file import load_classifier
+from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.referenced import referenced_classifiers
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import train_models
 
@@ -180,7 +183,9 @@ def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
     speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
     position = features_of_measured.schema.get_field_index("speed_hz")
     table = features_of_measured.set_column(position, "speed_hz", pa.array(speed))
-    training: Any = SimpleNamespace(split=specimen_split(labels))
+    split = specimen_split(labels)
+    found = referenced_classifiers(feature_matrix(table), split, [], None, 0, NetworkOptions(cnn=False), silent_stage)
+    training: Any = SimpleNamespace(split=split, referenced=found)
     assert release(training, table, measured).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
 
 

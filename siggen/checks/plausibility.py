@@ -1,0 +1,210 @@
+"""Implausible numbers of a configuration: allowed, but far from gearboxes that are built, often by a slip of units.
+
+Ranges are wide: what lies outside them is a thousand times off rather than twice, or says something that a user should
+know before a set is made. They are judgement, beside the limits of the standards that are named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import pi, sqrt
+
+from siggen.config import Config, Number, Sensor, bounds, corners
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
+
+FORM_FACTOR = 2.5
+"""Of the nominal stress at the tooth root, F_t/(b m) Y; 2.1 to 3 for spur gears of 17 teeth and more (ISO 6336-3)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number with its usual range.
+
+    Parameters
+    ----------
+    path : str
+        Key to blame.
+    what : str
+        Name of what is compared, with its unit.
+    found : (low, high)
+        Over all gearboxes of the set.
+    least, most : float
+        The usual range.
+    hint : str
+        What a value outside may come from.
+    """
+
+    path: str
+    what: str
+    found: tuple[float, float]
+    least: float
+    most: float
+    hint: str = ""
+
+    @property
+    def implausible(self) -> bool:
+        """Whether any gearbox may lie outside the usual range."""
+        return not (self.least <= self.found[0] and self.found[1] <= self.most)
+
+    def __str__(self) -> str:
+        """One sentence: where, what, how much, what is usual."""
+        shown = " to ".join(dict.fromkeys(f"{value:.3g}" for value in self.found))
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{self.path}: {self.what} {shown}; usual: {self.least:.3g} to {self.most:.3g}{hint}"
+
+
+def implausible(config: Config) -> tuple[str, ...]:
+    """Return a sentence on every implausible number of a configuration, in the order of its sections."""
+    return tuple(str(quantity) for quantity in quantities(config) if quantity.implausible) + tuple(missing(config))
+
+
+def quantities(config: Config) -> Iterator[Quantity]:
+    """Yield what is compared."""
+    pair = gear_pair(next(corners(config.gears)))
+    yield from _gears(config, pair)
+    yield from _load(config, pair)
+    yield from _rotors(config, pair)
+    yield from _supports(config, pair)
+    yield from _teeth(config, pair)
+    yield from _record(config)
+
+
+def missing(config: Config) -> Iterator[str]:
+    """Yield what a set lacks that every measurement has."""
+    if config.manufacture is None:
+        yield "manufacture: perfect gears: healthy records have no sidebands, so any damage is trivially found"
+    noises = [s.noise is not None or s.noise_spectrum is not None for s in config.sensors]
+    if not any(noises) and config.housing is None and config.background is None:
+        yield "sensors: no noise at all: any damage is trivially found"
+    seen: list[Sensor] = []
+    for sensor, noisy in zip(config.sensors, noises, strict=True):
+        nameless = sensor.model_copy(update={"name": "any"})
+        if not noisy and nameless in seen:
+            yield f"sensors: {sensor.name} repeats another sensor: their channels will be identical, bit by bit"
+        seen.append(nameless)
+
+
+def _gears(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    gears = config.gears
+    module = 1e3 * pair.pinion.module_m
+    yield _of("gears.module_mm", "module [mm]", gears.module_mm, 0.3, 30.0, "is it in mm?")
+    yield _of(
+        "gears.youngs_modulus_gpa", "Young's modulus [GPa]", gears.youngs_modulus_gpa, 1.0, 230.0, "is it in GPa?"
+    )
+    yield _of("gears.face_width_mm", "face width over module", gears.face_width_mm, 1.5, 40.0, "is it in mm?", module)
+    for name, wheel, gear in (("pinion", gears.pinion, pair.pinion), ("gear", gears.gear, pair.gear)):
+        root_mm = 1e3 * gear.root_radius_m
+        hint = "a radius, in mm"
+        yield _of(
+            f"gears.{name}.bore_radius_mm", "bore over root circle", wheel.bore_radius_mm, 0.08, 0.95, hint, root_mm
+        )
+
+
+def _load(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    radius = pair.pinion.base_radius_m
+    for i, point in enumerate(config.operating_points):
+        force = [abs(torque) / radius for torque in bounds(point.torque_nm)]
+        at = f"operating_points.{i}"
+        speeds = [abs(speed) * 2.0 * pi * pair.pinion.pitch_radius_m for speed in bounds(point.speed_hz)]
+        hint = "speeds are turns of the pinion per second, not per minute"
+        yield Quantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", _ends(speeds), 0.02, 100.0, hint)
+        pressure = [1e-6 * _hertz_pa(pair, value) for value in force]
+        hint = "torques are N m on the pinion; 1500 MPa is what case-hardened flanks bear"
+        yield Quantity(
+            f"{at}.torque_nm", "contact stress at the pitch point [MPa]", _ends(pressure), 50.0, 2000.0, hint
+        )
+        root = [1e-6 * FORM_FACTOR * value / (pair.face_width_m * pair.pinion.module_m) for value in force]
+        yield Quantity(f"{at}.torque_nm", "stress at the tooth root [MPa]", _ends(root), 0.5, 600.0, "")
+
+
+def _hertz_pa(pair: GearPair, force_n: float) -> float:
+    """Return the largest Hertz pressure of one pair at the pitch point, p = sqrt(F E*/(pi b R)) [Pa]."""
+    position, line = pair.pitch_point_m, pair.line_of_action_m
+    radius = position * (line - position) / line
+    modulus = pair.youngs_modulus_pa / (2.0 * (1.0 - pair.poisson_ratio**2))
+    return sqrt(force_n * modulus / (pi * pair.face_width_m * radius))
+
+
+def _rotors(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    dynamics = config.dynamics
+    for name, rotor, gear in (("pinion", dynamics.pinion, pair.pinion), ("gear", dynamics.gear, pair.gear)):
+        at = f"dynamics.{name}"
+        hint = "null takes the disc; a value left from other teeth?"
+        disc = disc_mass_kg(gear, pair.face_width_m)
+        if rotor.mass_kg is not None:
+            yield _of(f"{at}.mass_kg", "mass over that of a steel disc", rotor.mass_kg, 0.3, 12.0, hint, disc)
+        disc = disc_inertia_kg_m2(gear, pair.face_width_m)
+        if rotor.inertia_kg_m2 is not None:
+            what = "inertia over that of a steel disc"
+            yield _of(f"{at}.inertia_kg_m2", what, rotor.inertia_kg_m2, 0.3, 5.0, hint, disc)
+        for axis in "xy":
+            key = f"bearing_stiffness_{axis}_n_per_m"
+            yield _of(f"{at}.{key}", "stiffness [N/m]", getattr(rotor, key), 2e6, 2e10, "is it in N/m, not N/mm?")
+            key = f"bearing_damping_{axis}_n_s_per_m"
+            yield _of(f"{at}.{key}", "damping [N s/m]", getattr(rotor, key), 0.0, 1e6, "is it in N s/m?")
+
+
+def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    dynamics, radius = config.dynamics, pair.pinion.base_radius_m
+    highest = max(max(map(abs, bounds(point.torque_nm))) for point in config.operating_points)
+    ratio = pair.gear.teeth / pair.pinion.teeth
+    for name, coupling, torque in (
+        ("input_coupling", dynamics.input_coupling, highest),
+        ("output_coupling", dynamics.output_coupling, highest * ratio),
+    ):
+        twist = [torque / value for value in reversed(bounds(coupling.stiffness_nm_per_rad))]
+        hint = "is the stiffness in N m/rad?"
+        yield Quantity(
+            f"dynamics.{name}.stiffness_nm_per_rad", "twist at full load [rad]", _ends(twist), 1e-5, 1.0, hint
+        )
+    disc = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
+    for name in ("motor_inertia_kg_m2", "load_inertia_kg_m2"):
+        hint = "is it in kg m²?"
+        yield _of(f"dynamics.{name}", "inertia over the pinion's disc", getattr(dynamics, name), 0.1, 1e5, hint, disc)
+    if dynamics.model == "casing":
+        gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+        casing = dynamics.casing
+        yield _of("dynamics.casing.mass_kg", "mass over both discs", casing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
+        for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
+            at = f"dynamics.casing.bolts.{key}"
+            yield _of(at, "stiffness [N/m]", getattr(casing.bolts, key), 1e5, 1e11, "is it in N/m, not N/mm?")
+    approach = 1e6 * highest / radius / (pair.face_width_m * 14e9)
+    if dynamics.mesh.law == "pairs" and bounds(dynamics.mesh.tip_relief_um)[1] > 0.0:  # without relief is a choice
+        hint = f"teeth deflect by about {approach:.2g} µm at full load; is it in µm?"
+        yield _of(
+            "dynamics.mesh.tip_relief_um", "relief [µm]", dynamics.mesh.tip_relief_um, 0.1, 3 * approach + 20, hint
+        )
+
+
+def _teeth(config: Config, pair: GearPair) -> Iterator[Quantity]:
+    module = 1e3 * pair.pinion.module_m
+    low, _ = bounds(config.dynamics.backlash_um)
+    if low > 0.0:  # no play at all is a model of its own
+        what = "backlash over module [µm/mm]"
+        yield _of("dynamics.backlash_um", what, config.dynamics.backlash_um, 3.0, 200.0, "is it in µm?", module)
+    if config.dynamics.rubbing == "mixed_ehl":
+        roughness = config.dynamics.friction.roughness_um
+        yield _of("dynamics.friction.roughness_um", "roughness [µm]", roughness, 0.02, 4.0, "is it in µm?")
+
+
+def _record(config: Config) -> Iterator[Quantity]:
+    slowest = min(min(map(abs, bounds(point.speed_hz))) for point in config.operating_points)
+    turns = config.duration_s * slowest * config.gears.pinion.teeth / config.gears.gear.teeth
+    yield Quantity(
+        "duration_s", "turns of the gear in a record", (turns, turns), 3.0, 1e5, "averages need several turns"
+    )
+    for i, sensor in enumerate(config.sensors):
+        if sensor.range_m_s2 is not None:
+            yield _of(f"sensors.{i}.range_m_s2", "range [m/s²]", sensor.range_m_s2, 1.0, 1e5, "is it in m/s², not g?")
+
+
+def _of(path: str, what: str, number: Number, least: float, most: float, hint: str = "", over: float = 1.0) -> Quantity:
+    low, high = bounds(number)
+    return Quantity(path, what, (low / over, high / over), least, most, hint)
+
+
+def _ends(values: list[float]) -> tuple[float, float]:
+    return min(values), max(values)

@@ -1,0 +1,98 @@
+"""What `extends` stands for: a configuration that takes another one's values and states what differs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from siggen.config.presets import config_file
+from siggen.config.problems import received_text
+from siggen.config.yaml_source import read_yaml
+from siggen.errors import ConfigError, Problem, UsageError
+
+EXTENDS = "extends"
+DEEPEST = 8
+"""Files that may extend each other in a row."""
+
+
+def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "configuration") -> dict[str, Any]:
+    """Return a raw configuration in which `extends` is resolved; without that key, a copy.
+
+    Mappings are merged key by key. Everything else replaces what it extends: numbers, lists, null, and mappings that
+    have a `kind` of their own, such as distributions.
+
+    Parameters
+    ----------
+    raw : mapping
+    folder : Path
+        That paths count from.
+    source : str
+        For messages.
+
+    Raises
+    ------
+    ConfigError
+        If `extends` is no text, leads nowhere or in a circle; or if the other file is no YAML.
+    """
+    return _resolved(raw, folder, source, ())
+
+
+def extended_files(file: Path) -> tuple[Path, ...]:
+    """Return a configuration's file and those that it extends, in the order in which a key is looked for.
+
+    Raises
+    ------
+    ConfigError
+        As `inherited`.
+    """
+    found: tuple[Path, ...] = (file,)
+    while EXTENDS in (raw := read_yaml(found[-1])) and len(found) <= DEEPEST:
+        found = (*found, _extended(raw[EXTENDS], found[-1].parent, str(found[-1])))
+    return found
+
+
+def _resolved(raw: Mapping[str, Any], folder: Path, source: str, seen: tuple[Path, ...]) -> dict[str, Any]:
+    if EXTENDS not in raw:
+        return dict(raw)
+    file = _extended(raw[EXTENDS], folder, source)
+    if file in seen or len(seen) >= DEEPEST:
+        circle = "a circle" if file in seen else f"more than {DEEPEST} files in a row"
+        raise ConfigError([Problem(EXTENDS, f"{received_text(raw[EXTENDS])}, {circle}", "allowed: a chain that ends")])
+    base = _anchored(_resolved(read_yaml(file), file.parent, str(file), (*seen, file)), file.parent)
+    return merged(base, {key: value for key, value in raw.items() if key != EXTENDS})
+
+
+def _extended(name: object, folder: Path, source: str) -> Path:
+    """Return the file that `extends` names: one beside the configuration, or a preset."""
+    allowed = "allowed: a preset such as bench, or the path of a YAML file, from the folder of this one"
+    if not isinstance(name, str) or not name:
+        raise ConfigError([Problem(EXTENDS, received_text(name), allowed)], source)
+    try:
+        beside = folder / name
+        return (beside if beside.is_file() else config_file(name)).resolve()
+    except UsageError as error:
+        raise ConfigError([Problem(EXTENDS, f"the text '{name}'", f"{allowed} ({error})")], source) from None
+
+
+def _anchored(value: Any, folder: Path) -> Any:
+    """Return a value in which files of data, named by keys `file`, do not depend on the folder of their YAML file."""
+    match value:
+        case Mapping():
+            return {
+                key: str(folder / item) if key == "file" and isinstance(item, str) else _anchored(item, folder)
+                for key, item in value.items()
+            }
+        case list() | tuple():
+            return [_anchored(item, folder) for item in value]
+    return value
+
+
+def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with the values of `own`; see `inherited` for what is merged and what is replaced."""
+    result = dict(base)
+    for key, value in own.items():
+        below = result.get(key)
+        both = isinstance(below, Mapping) and isinstance(value, Mapping)
+        result[key] = merged(below, value) if both and "kind" not in value else value  # type: ignore[arg-type]
+    return result

@@ -1,0 +1,84 @@
+"""Rig: the few numbers by which a user describes a machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import gcd
+
+from siggen.errors import UsageError
+
+Pair = tuple[float, float]
+
+LIMITS = {
+    "module": (0.3, 50.0, "mm"),
+    "face-width": (1.0, 500.0, "mm"),
+    "speed": (0.05, 500.0, "Hz, of the pinion"),
+    "torque": (0.01, 1e6, "N m, on the pinion"),
+    "bores": (1.0, 1000.0, "mm, diameters"),
+    "pressure-angle": (14.5, 30.0, "degrees"),
+}
+"""Smallest, largest and unit of what `siggen init` takes."""
+LARGEST_SENSORS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """A single-stage spur gearbox.
+
+    Parameters
+    ----------
+    teeth : (pinion, gear)
+    module_mm, face_width_mm, pressure_angle_deg : float
+    speed_hz, torque_nm : (lowest, highest) of the pinion's shaft, equal where there is one
+    sensors : int
+        Number of accelerometers.
+    bores_mm : (pinion, gear) or None
+        Diameters of the bores, which are those of the shafts; None: from the torque.
+    """
+
+    teeth: tuple[int, int]
+    module_mm: float
+    face_width_mm: float
+    speed_hz: Pair
+    torque_nm: Pair
+    sensors: int = 2
+    pressure_angle_deg: float = 20.0
+    bores_mm: Pair | None = None
+
+    @property
+    def hunting_turns(self) -> int:
+        """Turns of the pinion after which the same two teeth meet again: z2/gcd(z1, z2)."""
+        return self.teeth[1] // gcd(*self.teeth)
+
+
+def checked_rig(rig: Rig) -> Rig:
+    """Return a rig whose numbers lie within LIMITS.
+
+    Raises
+    ------
+    UsageError
+        If one does not; names the option, what came, what is allowed.
+    """
+    given = {
+        "module": (rig.module_mm,),
+        "face-width": (rig.face_width_mm,),
+        "speed": rig.speed_hz,
+        "torque": rig.torque_nm,
+        "bores": rig.bores_mm or (),
+        "pressure-angle": (rig.pressure_angle_deg,),
+    }
+    for name, values in given.items():
+        low, high, unit = LIMITS[name]
+        if not all(low <= value <= high for value in values):
+            raise UsageError(f"--{name}: received {_listed(values)}; allowed: {low:g} to {high:g} {unit}")
+        if len(values) == 2 and name != "bores" and values[0] > values[1]:
+            raise UsageError(f"--{name}: received {_listed(values)}; allowed: the lowest value first")
+    if not all(5 <= z <= 1000 for z in rig.teeth):
+        raise UsageError(f"--teeth: received {_listed(rig.teeth)}; allowed: 5 to 1000 teeth of pinion and gear")
+    if not 1 <= rig.sensors <= LARGEST_SENSORS:
+        raise UsageError(f"--sensors: received {rig.sensors}; allowed: 1 to {LARGEST_SENSORS}")
+    return rig
+
+
+def _listed(values: tuple[float, ...]) -> str:
+    return ",".join(f"{value:g}" for value in values)

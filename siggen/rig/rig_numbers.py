@@ -1,0 +1,124 @@
+"""RigNumbers: masses, supports and sizes that follow from a rig's gears, torque and shafts.
+
+Steel discs and shafts by geometry. Stiffness of bearings by Palmgren's deflection of point contacts as manufacturers'
+catalogues give it, delta = 4.4e-4 Q^(2/3) D^(-1/3) (mm, N), Q = 4.37 F/Z without clearance, Z = 9 balls of D = 0.3 of
+the height between bore d and outer ring 1.6 d + 12 mm (series 62). What follows from nothing that is known scales with
+the gearbox of `bench`: `ASSUMED`.
+"""
+
+from __future__ import annotations
+
+from math import ceil, cos, pi, radians, sqrt
+from typing import NamedTuple
+
+from siggen.rig.rig import Pair, Rig
+from siggen.specimen.structure import STEEL_DENSITY_KG_M3
+
+SHEAR_N_MM2 = 20.0
+"""Allowed in a shaft that also bends; a usual value for a first size."""
+RELIEF_STIFFNESS_N_UM_MM = 14.0
+"""Single stiffness of steel gears in ISO 6336, its round value; tip relief is the deflection at full load over it."""
+BALLS = 9
+BENCH_CENTRE_MM = 97.5
+BENCH_TORQUE_NM = (60.0, 156.7)
+ASSUMED = "scaled from the gearbox of bench, by size or torque"
+
+
+class RotorNumbers(NamedTuple):
+    """Of one gear with its shaft: diameter of the bore [mm], mass [kg], inertia [kg m²], both bearings [N/m]."""
+
+    bore_mm: float
+    mass_kg: float
+    inertia_kg_m2: float
+    bearing_n_per_m: float
+    span_mm: float
+
+
+class RigNumbers(NamedTuple):
+    """What `rig_text` writes; stiffnesses and dampings of couplings belong to input and output."""
+
+    rotors: tuple[RotorNumbers, RotorNumbers]
+    motor_inertia_kg_m2: float
+    load_inertia_kg_m2: float
+    coupling_nm_per_rad: Pair
+    coupling_nm_s_per_rad: Pair
+    casing_kg: float
+    casing_inertia_kg_m2: float
+    scale: float
+    tip_relief_um: Pair
+    fs_hz: float
+    duration_s: float
+
+
+def rig_numbers(rig: Rig) -> RigNumbers:
+    """Return the numbers of a rig at its largest torque."""
+    ratio = rig.teeth[1] / rig.teeth[0]
+    torque = (rig.torque_nm[1], rig.torque_nm[1] * ratio)
+    base_mm = 0.5 * rig.module_mm * rig.teeth[0] * cos(radians(rig.pressure_angle_deg))
+    force_n = 1e3 * torque[0] / base_mm
+    rotors = _rotor(rig, 0, torque[0], force_n), _rotor(rig, 1, torque[1], force_n)
+    motor, load = 4e-3 * torque[0] / BENCH_TORQUE_NM[0], 1e-2 * torque[1] / BENCH_TORQUE_NM[1]
+    stiffness = 6300.0 * torque[0] / BENCH_TORQUE_NM[0], 2100.0 * torque[1] / BENCH_TORQUE_NM[1]
+    inertias = (motor, rotors[0].inertia_kg_m2), (load, rotors[1].inertia_kg_m2)
+    damping = tuple(0.1 * sqrt(k * a * b / (a + b)) for k, (a, b) in zip(stiffness, inertias, strict=True))
+    scale = 0.5 * rig.module_mm * sum(rig.teeth) / BENCH_CENTRE_MM
+    relief = force_n / rig.face_width_mm / RELIEF_STIFFNESS_N_UM_MM
+    return RigNumbers(
+        rotors,
+        motor,
+        load,
+        stiffness,
+        (damping[0], damping[1]),
+        20.0 * scale**3,
+        0.25 * scale**5,
+        scale,
+        (max(0.75 * relief, 1.0), max(1.25 * relief, 2.0)),
+        sampling_rate_hz(rig),
+        duration_s(rig),
+    )
+
+
+def sampling_rate_hz(rig: Rig) -> float:
+    """Return the least of 25.6, 51.2, ... kHz that carries ten mesh harmonics below 0.4 of it [Hz]."""
+    needed = 10.0 * rig.teeth[0] * rig.speed_hz[1] * 1.02 / 0.4
+    rate = 25_600.0
+    while rate < needed:
+        rate *= 2.0
+    return rate
+
+
+def duration_s(rig: Rig, longest_s: float = 10.0) -> float:
+    """Return the time of one hunting period and a turn more, and of ten turns of the gear, at most `longest_s` [s].
+
+    At the lowest speed; 2 % are left for its variation, and 1 s is the least.
+    """
+    turns = max(rig.hunting_turns + 1, 10.0 * rig.teeth[1] / rig.teeth[0])
+    return min(max(ceil(10.0 * 1.02 * turns / rig.speed_hz[0]) / 10.0, 1.0), longest_s)
+
+
+def _rotor(rig: Rig, i: int, torque_nm: float, force_n: float) -> RotorNumbers:
+    pitch_mm = rig.module_mm * rig.teeth[i]
+    bore_mm = rig.bores_mm[i] if rig.bores_mm else _bore_mm(torque_nm, pitch_mm - 2.5 * rig.module_mm)
+    span_mm = rig.face_width_mm + 3.0 * bore_mm
+    disc, shaft = (
+        STEEL_DENSITY_KG_M3 * 0.25 * pi * 1e-9 * area * length
+        for area, length in ((pitch_mm**2 - bore_mm**2, rig.face_width_mm), (bore_mm**2, span_mm))
+    )
+    inertia = 0.125e-6 * (disc * (pitch_mm**2 + bore_mm**2) + shaft * bore_mm**2)
+    return RotorNumbers(
+        bore_mm, disc + shaft, inertia, 2.0 * bearing_stiffness_n_per_m(bore_mm, 0.5 * force_n), span_mm
+    )
+
+
+def _bore_mm(torque_nm: float, root_mm: float) -> float:
+    """Return a shaft for the torque, in steps of 5 mm where it is that thick, at most 0.6 of the root circle [mm]."""
+    needed = max((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0), 0.25 * root_mm)
+    rounded = 5.0 * ceil(needed / 5.0) if needed > 10.0 else float(ceil(needed))
+    return min(rounded, 0.6 * root_mm)
+
+
+def bearing_stiffness_n_per_m(bore_mm: float, force_n: float) -> float:
+    """Return dF/d(delta) of one deep-groove ball bearing under a radial force [N/m]."""
+    ball_mm = 0.3 * (0.6 * bore_mm + 12.0)
+    deflection_mm = 4.4e-4 * (4.37 * force_n / BALLS) ** (2.0 / 3.0) / ball_mm ** (1.0 / 3.0)
+    return float(1.5e3 * force_n / deflection_mm)

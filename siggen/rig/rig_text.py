@@ -1,0 +1,172 @@
+"""The YAML file of a rig: what the user gave, what follows from it, and everything else from a preset."""
+
+from __future__ import annotations
+
+from siggen.rig.rig import Pair, Rig
+from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_numbers
+
+PLACES_MM = (
+    (60.0, 50.0, "vertical"),
+    (-100.0, -20.0, "horizontal"),
+    (-60.0, 50.0, "vertical"),
+    (100.0, -20.0, "horizontal"),
+)
+"""Of sensors on the casing of bench; further sensors take the same again a little lower."""
+SPREAD = (0.75, 1.33)
+"""Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
+
+
+def rig_text(rig: Rig, name: str, base: str) -> str:
+    """Return the file's text.
+
+    Parameters
+    ----------
+    rig : Rig
+    name : str
+        Of the set.
+    base : str
+        Preset that it extends.
+    """
+    numbers = rig_numbers(rig)
+    parts = (_head(rig, name, base, numbers), _gears(rig, numbers), _dynamics(rig, numbers), _states(rig))
+    return "\n".join((*parts, _sensors(rig, numbers.scale)))
+
+
+def _head(rig: Rig, name: str, base: str, numbers: RigNumbers) -> str:
+    turns = numbers.duration_s * rig.speed_hz[0]
+    cut = f"less than the hunting period of {rig.hunting_turns} turns"
+    whole = "one hunting period and a turn more" if turns > rig.hunting_turns else cut
+    return f"""\
+# Made by `siggen init`. What stands here differs from the preset {base}; all else is its own.
+# `siggen plan` says what follows from it and what is implausible. Numbers that you know better: change them here.
+
+name: {name}
+extends: {base}
+specimens: 40                 # gearboxes; more only add records
+fs_hz: {numbers.fs_hz:g}              # carries ten mesh harmonics
+duration_s: {numbers.duration_s:g}               # {whole} at {rig.speed_hz[0]:g} Hz
+
+operating_points:
+  - speed_hz: {_range(rig.speed_hz)}             # of the pinion
+    torque_nm: {_range(rig.torque_nm)}            # on the pinion
+"""
+
+
+def _gears(rig: Rig, numbers: RigNumbers) -> str:
+    bores = [f"{0.5 * rotor.bore_mm:.4g}" for rotor in numbers.rotors]
+    why = "as given" if rig.bores_mm else "shafts for the torque"
+    return f"""\
+gears:
+  module_mm: {rig.module_mm:g}
+  pressure_angle_deg: {rig.pressure_angle_deg:g}
+  face_width_mm: {rig.face_width_mm:g}
+  pinion: {{teeth: {rig.teeth[0]}, bore_radius_mm: {bores[0]}}}     # {why}
+  gear: {{teeth: {rig.teeth[1]}, bore_radius_mm: {bores[1]}}}
+"""
+
+
+def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
+    scale = numbers.scale
+    bolts = ", ".join(f"[{sign * 90.0 * scale:.3g}, 0]" for sign in (1, 1, -1, -1))
+    lines = [
+        "dynamics:",
+        *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
+        f"  # From here on {ASSUMED}.",
+        f"  motor_inertia_kg_m2: {numbers.motor_inertia_kg_m2:.3g}",
+        f"  load_inertia_kg_m2: {numbers.load_inertia_kg_m2:.3g}",
+        f"  backlash_um: {{kind: uniform, low: {20 * rig.module_mm:.3g}, high: {40 * rig.module_mm:.3g}}}",
+        *(
+            f"  {which}_coupling: {{stiffness_nm_per_rad: {k:.4g}, damping_nm_s_per_rad: {c:.3g}}}"
+            for which, k, c in zip(
+                ("input", "output"), numbers.coupling_nm_per_rad, numbers.coupling_nm_s_per_rad, strict=True
+            )
+        ),
+        "  casing:",
+        f"    mass_kg: {numbers.casing_kg:.3g}",
+        f"    inertia_kg_m2: {numbers.casing_inertia_kg_m2:.3g}",
+        "    bolts:",
+        f"      shear_stiffness_n_per_m: {_spread(8e7 * scale)}",
+        f"      axial_stiffness_n_per_m: {_spread(1.5e8 * scale)}",
+        f"      positions_mm: [{bolts}]",
+        f"  mesh: {{tip_relief_um: {_range(numbers.tip_relief_um)}}}    # deflection at full load",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _rotor(name: str, rotor: RotorNumbers) -> str:
+    stiffness = _spread(rotor.bearing_n_per_m)
+    damping = tuple(2.0 * ratio * (rotor.bearing_n_per_m * rotor.mass_kg) ** 0.5 for ratio in (0.02, 0.04))
+    return f"""\
+  {name}:
+    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.span_mm:.3g} mm
+    inertia_kg_m2: {rotor.inertia_kg_m2:.3g}
+    bearing_stiffness_x_n_per_m: {stiffness}     # two ball bearings of {rotor.bore_mm:.3g} mm bore
+    bearing_stiffness_y_n_per_m: {stiffness}
+    bearing_damping_x_n_s_per_m: {_range(damping, "loguniform")}    # 2 to 4 % of critical
+    bearing_damping_y_n_s_per_m: {_range(damping, "loguniform")}"""
+
+
+def _states(rig: Rig) -> str:
+    m = rig.module_mm
+    radius = f"{{kind: uniform, low: {0.007 * m:.2g}, high: {min(0.07 * m, 0.2):.2g}}}"
+    return f"""\
+states:                       # on one tooth of the pinion; sizes grow with the module
+  - name: healthy
+  - name: healthy_again       # the same gearbox measured a second time: what a paired comparison starts from
+  - name: slight
+    damage: &spall
+      kind: irregular
+      gear: pinion
+      teeth: 1
+      profile_length_mm: {0.2 * m:.3g}
+      face_share: 0.25
+      edge_radius_mm: {radius}
+  - name: moderate
+    damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
+  - name: severe
+    damage: {{<<: *spall, profile_length_mm: {0.5 * m:.3g}, face_share: 1.0}}
+"""
+
+
+def _sensors(rig: Rig, scale: float) -> str:
+    lines = [
+        "sensors:                      # on the casing: [horizontal, vertical] from its centre of gravity",
+        *(_sensor(i, scale) for i in range(rig.sensors)),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _sensor(i: int, scale: float) -> str:
+    x, y, axis = PLACES_MM[i % len(PLACES_MM)]
+    lowered = 10.0 * (i // len(PLACES_MM))
+    own = f"""name: sensor_{i + 1}
+    position_mm: [{x * scale:.3g}, {(y - lowered) * scale:.3g}]
+    axes: [{axis}]"""
+    if i:
+        return f"  - <<: *sensor\n    {own}"
+    return f"""\
+  - &sensor
+    {own}
+    gain: {{kind: normal, mean: 1.0, std: 0.05, low: 0.9, high: 1.1}}
+    noise: {{floor_m_s2: {{kind: loguniform, low: 0.003, high: 0.01}}}}
+    range_m_s2: 500.0
+    bits: 24
+    path: {{kind: modal, delay_us: {{kind: uniform, low: 20, high: 100}}}}
+    high_pass_hz: {{kind: loguniform, low: 0.5, high: 2.0}}
+    mounting: {{frequency_hz: {{kind: uniform, low: 6000, high: 15000}}, damping_ratio: 0.06}}
+    place: casing"""
+
+
+def _spread(value: float) -> str:
+    return _range((SPREAD[0] * value, SPREAD[1] * value), "loguniform")
+
+
+def _range(values: Pair, kind: str = "uniform") -> str:
+    low, high = (_number(value) for value in values)
+    return low if low == high else f"{{kind: {kind}, low: {low}, high: {high}}}"
+
+
+def _number(value: float) -> str:
+    """Return three digits, without an exponent where four or five places do."""
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:.0f}" if 100.0 <= rounded < 1e5 else f"{rounded:g}"

@@ -1,0 +1,59 @@
+"""Numbers that are a unit off are named before anything is simulated; the shipped presets are plausible."""
+
+from __future__ import annotations
+
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.checks.plausibility import implausible
+from siggen.errors import ConfigError
+
+SLIPS = {
+    "modulus in Pa": "gears.youngs_modulus_gpa=206e9",
+    "torque in kN m": "operating_points.0.torque_nm=0.04",
+    "torque in N mm": "operating_points.0.torque_nm=40000",
+    "bearings in N/mm": "dynamics.pinion.bearing_stiffness_x_n_per_m=2e5",
+    "bolts in N/mm": "dynamics.casing.bolts.shear_stiffness_n_per_m=8e4",
+    "couplings in N mm": "dynamics.input_coupling.stiffness_nm_per_rad=6.3e6",
+    "width in m": "gears.face_width_mm=0.02",
+    "module in m": "gears.module_mm=0.003",
+    "backlash in mm": "dynamics.backlash_um=0.08",
+    "relief in mm": "dynamics.mesh.tip_relief_um=0.008",
+    "mass in g": "dynamics.pinion.mass_kg=1000",
+    "casing in t": "dynamics.casing.mass_kg=0.02",
+    "inertia in kg mm2": "dynamics.pinion.inertia_kg_m2=160",
+    "roughness in mm": "dynamics.friction.roughness_um=4e-4",
+    "speed in 1/min": "operating_points.0.speed_hz=2000",
+    "bore in m": "gears.pinion.bore_radius_mm=0.01",
+    "masses of other teeth": "gears.gear.teeth=94",
+}
+
+# What refuses a slip before its key is compared, or what it makes implausible.
+SAID_OF = {
+    "width in m": "face width 0.02 mm",
+    "module in m": "root radius",
+    "speed in 1/min": "fs_hz",
+    "bore in m": "larger bores",
+    "masses of other teeth": "dynamics.gear.inertia_kg_m2",
+}
+
+
+@pytest.mark.parametrize("preset", ["quickstart", "bench", "industrial"])
+def test_realistic_presets_are_plausible(preset: str) -> None:
+    assert implausible(load_config(preset)) == ()
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_a_slip_of_units_is_refused_or_named(slip: str) -> None:
+    try:
+        found = "\n".join(implausible(load_config("bench", [SLIPS[slip]])))
+    except ConfigError as error:
+        found = str(error)
+    key = SLIPS[slip].partition("=")[0]
+    assert SAID_OF.get(slip, key) in found
+
+
+def test_idealised_sets_say_what_they_lack() -> None:
+    found = "\n".join(implausible(load_config("ideal")))
+    assert "perfect gears" in found
+    assert "no noise at all" in found

@@ -1,0 +1,61 @@
+"""`siggen init`: one command writes a configuration that can be simulated as it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from siggen.checks.loading import load_config
+from siggen.checks.plausibility import implausible
+from siggen.cli.app import app
+from siggen.errors import UsageError
+
+RIGS = {
+    "25/56": ["--teeth", "25,56", "--module", "2", "--face-width", "20", "--speed", "15,25", "--torque", "20"],
+    "fine": ["--teeth", "19,19", "--module", "0.8", "--face-width", "8", "--speed", "50", "--torque", "1"],
+    "large": ["--teeth", "21,83", "--module", "8", "--face-width", "100", "--speed", "10,25", "--torque", "1000,3000"],
+    "28/28": ["--teeth", "28,28", "--module", "3.175", "--face-width", "6.35", "--speed", "23", "--torque", "160"],
+}
+
+
+def run(*arguments: str) -> object:
+    return CliRunner().invoke(app, ["init", *arguments], catch_exceptions=False)
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: Path, name: str) -> None:
+    file = tmp_path / "rig.yaml"
+    assert run(*RIGS[name], "--sensors", "3", "--out", str(file)).exit_code == 0
+    config = load_config(file)
+    assert implausible(config) == ()
+    assert len(config.channels) == 3
+    assert [state.severity for state in config.states] == ["healthy", "healthy", "slight", "moderate", "severe"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        (["--teeth", "25"], "two whole numbers"),
+        (["--teeth", "25,x"], "--teeth: received '25,x'"),
+        (["--module", "0.002"], "allowed: 0.3 to 50 mm"),
+        (["--speed", "25,15"], "the lowest value first"),
+        (["--speed", ""], "--speed: received nothing"),
+        (["--sensors", "0"], "allowed: 1 to 8"),
+        (["--extends", "nothing"], "allowed: a preset"),
+    ],
+)
+def test_slips_are_named(tmp_path: Path, changed: list[str], said: str) -> None:
+    from siggen.errors import SiggenError
+
+    with pytest.raises(SiggenError, match=said):
+        run(*RIGS["25/56"], "--out", str(tmp_path / "rig.yaml"), *changed)
+    assert not (tmp_path / "rig.yaml").exists()
+
+
+def test_a_file_that_exists_is_never_written(tmp_path: Path) -> None:
+    (tmp_path / "rig.yaml").write_text("mine")
+    with pytest.raises(UsageError, match="is there already"):
+        run(*RIGS["25/56"], "--out", str(tmp_path / "rig.yaml"))
+    assert (tmp_path / "rig.yaml").read_text() == "mine"

@@ -1,0 +1,39 @@
+"""What follows from the few numbers of a machine, against its gears' geometry and a catalogue's bearing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.rig.rig import Rig
+from siggen.rig.rig_numbers import bearing_stiffness_n_per_m, rig_numbers
+
+RIG = Rig(teeth=(25, 56), module_mm=2.0, face_width_mm=20.0, speed_hz=(15.0, 25.0), torque_nm=(20.0, 20.0))
+
+
+def test_the_stiffness_of_a_bearing_is_the_slope_of_its_deflection() -> None:
+    """The force is the slope's integral: delta grows with F^(2/3), so k = 1.5 F/delta; a 6205 has some 1e8 N/m."""
+    forces = np.linspace(1e-3, 800.0, 200_001)
+    slopes = np.array([bearing_stiffness_n_per_m(25.0, force) for force in forces])
+    deflection_m = np.trapezoid(1.0 / slopes, forces)
+    assert 800.0 / deflection_m * 1.5 == pytest.approx(slopes[-1], rel=1e-3)  # the step near 0 limits the integral
+    assert 0.7e8 < slopes[-1] < 1.3e8
+
+
+def test_masses_and_inertias_are_those_of_the_discs_and_shafts() -> None:
+    pinion, gear = rig_numbers(RIG).rotors
+    disc = 7850.0 * np.pi / 4 * (0.112**2 - (1e-3 * gear.bore_mm) ** 2) * 0.02
+    shaft = 7850.0 * np.pi / 4 * (1e-3 * gear.bore_mm) ** 2 * 1e-3 * gear.span_mm
+    assert gear.mass_kg == pytest.approx(disc + shaft, rel=1e-12)
+    assert pinion.inertia_kg_m2 < gear.inertia_kg_m2
+    scaled = rig_numbers(Rig((25, 56), 4.0, 40.0, (15.0, 25.0), (160.0, 160.0), bores_mm=(40.0, 60.0)))
+    half = rig_numbers(Rig((25, 56), 2.0, 20.0, (15.0, 25.0), (20.0, 20.0), bores_mm=(20.0, 30.0)))
+    # Of the same shape, twice as large: masses grow with the cube, inertias with the fifth power.
+    assert scaled.rotors[1].mass_kg == pytest.approx(8.0 * half.rotors[1].mass_kg)
+    assert scaled.rotors[1].inertia_kg_m2 == pytest.approx(32.0 * half.rotors[1].inertia_kg_m2)
+
+
+def test_a_record_holds_the_hunting_period_and_the_rate_carries_ten_harmonics() -> None:
+    numbers = rig_numbers(RIG)
+    assert numbers.duration_s * 15.0 / 1.02 >= 56 + 1
+    assert 0.4 * numbers.fs_hz >= 10 * 25 * 25.0
