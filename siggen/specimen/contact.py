@@ -10,15 +10,14 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
-from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table, face_slices
+from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-TILT_RAD = 2e-5
-"""At which moments across the face are expanded: 0.2 um at the ends of a face of 20 mm, as loaded shafts tilt."""
 LEAST_LINE_LOAD_N_PER_M = 1e3
 """Where the configuration has next to no torque: a Hertz band of some 10 µm."""
 
@@ -109,7 +108,7 @@ def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
     """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
     return TableOptions(
         largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
-        section_loss=dynamics.mesh.damage == "all", tilt_rad=0.0 if dynamics.shafts is None else TILT_RAD,
+        section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
     )  # fmt: skip
 
 

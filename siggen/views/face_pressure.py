@@ -12,9 +12,11 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gears.contact.contact_table import KindRow, TableSolver, face_slices, kind_row, row_faces, table_solver
+from siggen.gears.contact.kind_row import KindRow, kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
 from siggen.gears.contact.slice_pressures import slice_pressures
+from siggen.gears.contact.table_columns import TableSolver, row_faces, table_solver
+from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord, planned_record

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.contact.contact_table import FORCE, SLOPE, ContactTable
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.contact.face_gaps import face_gaps
+from siggen.gears.contact.table_columns import FORCE, SLOPE
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.config import Config
-from siggen.gears.contact.contact_table import contact_table, face_slices
+from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.contact_table_error import ContactTableError, contact_table_error
+from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
 from siggen.planning.specimen import draw_operating_point, draw_specimen

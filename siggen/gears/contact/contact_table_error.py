@@ -7,24 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.contact_table import (
-    FORCE,
-    NO_ENERGY,
-    SLOPE,
-    ContactTable,
-    KindRow,
-    TableOptions,
-    TableSolver,
-    face_slices,
-    first_touch,
-    kind_row,
-    pits_of_kind,
-    row_faces,
-    table_solver,
-)
-from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.contact.force_curve import force_curve
+from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
 from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.table_columns import FORCE, NO_ENERGY, SLOPE, TableSolver, row_faces, table_solver
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -85,12 +73,9 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     from scipy.interpolate import CubicHermiteSpline
 
     place = np.array([2 * cell + 1])
-    here = KindRow(
-        row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place], row.edge_radius_m
-    )
-    only = np.zeros(1, dtype=np.int64)
-    approach = float(first_touch(solver, here, only)[0]) + np.array(APPROACHES) * table.reach_m
-    slices = row_faces(solver, here, only)[0]
+    touch = float(first_touch(solver.pair, row, place, solver.lead_m)[0])
+    approach = touch + np.array(APPROACHES) * table.reach_m
+    slices = row_faces(solver, row, place)[0]
     direct = force_curve(
         slices, approach, 0.0, np.zeros(solver.lead_m.size), solver_room(solver.lead_m.size), NO_ENERGY
     )

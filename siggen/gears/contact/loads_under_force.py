@@ -28,7 +28,8 @@ def loads_under_force(slices: FaceSlices, force_n: float, tilt_rad: float = 0.0)
     # First touch by rigid flanks, then as if the whole pair were linear: both ends of a bracket, stretched if needed.
     sinks = np.array([slice_sink(slices, i, 0.0).sink_m for i in range(loads.size)])
     low = float((sinks + slices.lead_m - tilt_rad * slices.face_m).min())
-    high, step = np.inf, 2.0 * slices.compliance_m_per_n * force_n + 1e-7
+    teeth = slices.teeth.sum * slices.kappa_per_pa / (slices.kernel.cell_m * loads.size)
+    high, step = np.inf, 2.0 * (slices.compliance_m_per_n + teeth) * force_n + 1e-7
     approach = low + step
     for _ in range(MOST_STEPS):
         found = face_force(slices, approach, tilt_rad, loads, room)
