@@ -86,8 +86,9 @@ class Manufacture(Section):
         description="iso_1328: helix slope and form of each gear, alike on its teeth, within tolerance_share of its "
         "class; the slope anywhere up to its limit, either way, the form at its limit",
     )
-    helix_waves: Annotated[Number, Within(above=0, most=5)] = Field(
-        default=Uniform(low=0.7, high=2.0), description="cycles of the helix form over the face (assumed)"
+    # A distribution as a default would count in the identities of sets that do not use it.
+    helix_waves: Annotated[Number | None, Within(above=0, most=5, words=(None,))] = Field(
+        default=None, description="cycles of the helix form over the face; null: uniform from 0.7 to 2 (assumed)"
     )
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
@@ -127,6 +128,11 @@ class Manufacture(Section):
     def crowning_of_gear(self) -> Number:
         """Crowning of the driven gear, as given or as for the pinion."""
         return self.crowning_um if self.crowning_gear_um is None else self.crowning_gear_um
+
+    @property
+    def form_waves(self) -> Number:
+        """Cycles of the helix form, as given or as assumed."""
+        return Uniform(low=0.7, high=2.0) if self.helix_waves is None else self.helix_waves
 
     @property
     def has_crowning(self) -> bool:

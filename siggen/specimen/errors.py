@@ -143,7 +143,7 @@ def _helix(section: Manufacture, which: str, limits: FlankTolerances, uniform: C
     crowning = 1e-6 * at(number, uniform("crowning_um"))
     if not section.has_helix:
         return straight_helix(crowning)
-    waves, phase = at(section.helix_waves, uniform("helix_waves")), 2.0 * pi * uniform("helix_form")
+    waves, phase = at(section.form_waves, uniform("helix_waves")), 2.0 * pi * uniform("helix_form")
     return drawn_helix(crowning, 2.0 * uniform("helix") - 1.0, waves, phase, limits)
 
 
