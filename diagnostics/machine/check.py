@@ -10,10 +10,10 @@ from math import log
 
 import numpy as np
 
-from diagnostics.machine.change_score import FEWEST, ChangeScore, attainable_rate, change_score
-from diagnostics.machine.healthy_state import piece_medians, pieces_of
+from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
 from diagnostics.training.log_features import log_values
 from siggen.errors import UsageError
 
@@ -85,7 +85,7 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
         pieces, pulses = pieces_of(recording, machine.fs_hz, machine.teeth, machine.speed_range_hz, machine.duration_s)
     except UsageError as error:
         return Check(name, CANNOT_TELL, str(error), float("nan"))
-    logs = log_values(piece_medians(pieces, machine.names)[None])[0]
+    logs = log_values(pieces.medians(machine.names)[None])[0]
     alike = _alike(machine, pulses.speed_hz, load)
     if np.count_nonzero(alike) < FEWEST:
         return Check(name, OTHER_CONDITIONS, _conditions(machine, pulses.speed_hz, load), pulses.speed_hz)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,11 +10,11 @@ import numpy as np
 
 from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.machine.change_score import FEWEST
 from diagnostics.machine.machine import Machine
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.statistics.change_score import FEWEST
 from siggen.errors import UsageError
 
 LONGEST_PIECE_S = 10.0
@@ -70,7 +69,7 @@ def healthy_state(
         speeds.append(pulses.speed_hz)
         advance()
     names = rows[0].names
-    values = np.stack([piece_medians(pieces, names) for pieces in rows])
+    values = np.stack([pieces.medians(names) for pieces in rows])
     load = np.full(len(read), np.nan) if not loads else np.broadcast_to(np.asarray(loads, dtype=np.float64), len(read))
     called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
     return Machine(
@@ -105,13 +104,6 @@ def pieces_of(
             f"pinion; allowed: at least {FEWEST_TURNS}. Use longer recordings"
         )
     return record_pieces(slow, pulses, teeth, duration_s, IndicatorSettings()), pulses
-
-
-def piece_medians(pieces: RecordPieces, names: tuple[str, ...]) -> np.ndarray:
-    """Return the median over pieces of the named features, (features,), NaN where no piece defines one."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # no piece defines it: NaN it is
-        return np.asarray(np.nanmedian(pieces.columns(names), axis=0))
 
 
 def _row(facts: RecordingFacts, row: int | None) -> RecordingFacts:

@@ -32,6 +32,9 @@ def prediction_summary(found: Prediction) -> list[str]:
         answer = f"The recording is most like the state {found.state}."
         if found.contradiction:
             answer += f" This answer is weak: {found.contradiction}."
+    if (own := found.own_state) is not None:
+        told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
+        answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
     withheld = " Do not use these states." if found.reasons else ""
     return [
         answer,

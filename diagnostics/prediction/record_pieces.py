@@ -7,8 +7,9 @@ length or rate are other numbers. Pieces of the trained length keep them compara
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -59,6 +60,12 @@ class RecordPieces:
                 found[:, k] = self.values[:, position[name]]
         return found
 
+    def medians(self, names: tuple[str, ...]) -> np.ndarray:
+        """Return the median over pieces of the named features, (len(names),); NaN where no piece defines one."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # no piece defines it: NaN it is
+            return np.asarray(np.nanmedian(self.columns(names), axis=0))
+
 
 def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
     """Return the recording at the given rate if it was sampled faster, else as it is."""
@@ -71,7 +78,7 @@ def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
         name: np.asarray(resample_poly(signal, ratio.numerator, ratio.denominator))
         for name, signal in recording.channels.items()
     }
-    return MeasuredRecording(recording.path, channels, recording.fs_hz * float(ratio), recording.tacho_s)
+    return replace(recording, channels=channels, fs_hz=recording.fs_hz * float(ratio))
 
 
 def record_pieces(

@@ -14,10 +14,10 @@ import numpy as np
 
 import siggen
 from diagnostics.base.progress import silent_stage
-from diagnostics.machine.change_score import change_score
-from diagnostics.machine.healthy_state import healthy_state, piece_medians, pieces_of
+from diagnostics.machine.healthy_state import healthy_state, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.statistics.change_score import change_score
 from diagnostics.training.log_features import log_values
 
 REPEATS, DRAWS = 26, 400
@@ -55,7 +55,7 @@ def features(folder: Path) -> np.ndarray:
 def _row(machine: Machine, file: Path, row: int) -> np.ndarray:
     recording = read_recording(file, machine.channels, replace(machine.facts, row=row))
     pieces, _ = pieces_of(recording, machine.fs_hz, machine.teeth, None, machine.duration_s)
-    return np.asarray(log_values(piece_medians(pieces, machine.names)[None])[0])
+    return np.asarray(log_values(pieces.medians(machine.names)[None])[0])
 
 
 def main() -> None:

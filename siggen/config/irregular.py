@@ -17,8 +17,9 @@ from siggen.config.distributions import Uniform
 from siggen.config.number import Number, Within, bounds
 from siggen.config.places import READING, GearName, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
+from siggen.config.stages import STAGES, Stages, refuse_stages
 from siggen.config.teeth import Teeth
-from siggen.errors import Problem, counted
+from siggen.errors import Problem
 
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch"))]
@@ -35,11 +36,7 @@ class IrregularSpalls(DamageSection):
     teeth: Teeth = Field(
         default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
     )
-    stages: Annotated[Number | tuple[Number, ...], Within(above=0, most=1, many=True)] = Field(
-        default=1.0,
-        description="lengths and depth of a tooth's spall over those given here; a number or distribution, drawn for "
-        "each tooth, or a list with one for each tooth, in the order of their indices from the first on",
-    )
+    stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
         default=START,
         description="height of the middle above the base circle; pitch; or below_pitch: half way along the flank from "
@@ -96,18 +93,8 @@ class IrregularSpalls(DamageSection):
 
     @model_validator(mode="after")
     def _a_stage_for_each_tooth(self) -> IrregularSpalls:
-        if not isinstance(self.stages, tuple):
-            return self
-        teeth = self.teeth if isinstance(self.teeth, int) else len(self.teeth)
-        if len(self.stages) != teeth:
-            hit = counted(teeth, "damaged tooth", "damaged teeth")
-            allowed = f"allowed: one for each of the {hit} (teeth), or one number"
-            raise refusal([Problem("stages", f"a list of {len(self.stages)}", allowed)])
+        refuse_stages(self.stages, self.teeth)
         return self
-
-    def stage(self, index: int) -> Number:
-        """Return the stage of the damaged tooth of this index, from 0."""
-        return self.stages[index] if isinstance(self.stages, tuple) else self.stages
 
     @classmethod
     def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003

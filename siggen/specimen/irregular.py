@@ -10,6 +10,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Number, at, bounds, constant, draw
 from siggen.config.irregular import IrregularSpalls
+from siggen.config.stages import stage_of
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
@@ -46,7 +47,7 @@ def _irregular(model: IrregularSpalls, growth: Growth) -> Damage:
 def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) -> IrregularSpall:
     pair, name = growth.pair, f"irregular.{model.gear}.{tooth}"
     uniform = growth.place(model.gear, IrregularSpalls)
-    size = _staged(draw(model, uniform, name), at(model.stage(index), uniform(f"{name}.stages")))
+    size = _staged(draw(model, uniform, name), at(stage_of(model.stages, index), uniform(f"{name}.stages")))
     gear, width = pair.member(model.gear), pair.face_width_m
     length, across = MM * constant(size.profile_length_mm), _face_length_m(size, width)
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)

@@ -21,7 +21,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_complianc
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
-from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.contact import damage_is_geometry, largest_force_n
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
@@ -134,6 +134,12 @@ def _as_simulated(
 ) -> StiffnessCurve:
     state = specimen_state(config, specimen, state_id)
     pair, angle = state.pair, curve.angle_rad
+    most = largest_force_n(config.operating_points, pair) * pair.pinion.base_radius_m
+    if state.static.contact is not None and torque_nm > most:
+        raise UsageError(
+            f"torque: received {torque_nm:g} N m; allowed: up to {most:.4g} N m, three times the largest of the set, "
+            "where the tables of the contact across the face end"
+        )
     try:
         stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
     except ValueError as error:

@@ -41,7 +41,7 @@ def test_the_vote_of_a_recording_is_that_of_the_record_and_a_foreign_network_is_
     place = int(np.flatnonzero(training.split.test)[2])
     row = dataset.record(int(features.column("record_id")[place].as_py()))
     signals = {name: row[f"accel_{name}_m_s2"] for name in averages.channels}
-    recording = MeasuredRecording(Path("run.npz"), signals, dataset.fs_hz, row["tacho_s"])
+    recording = MeasuredRecording(Path("run.npz"), signals, dataset.fs_hz, row["tacho_s"], simulated=True)
     votes = {vote.classifier: vote for vote in predict_recording(model, recording, (18, 47)).votes}
     alone = circular_probability(found.network, averages.chosen(np.array([place])))
     np.testing.assert_allclose(votes["circular"].probability, tempered(alone, 0.7)[0], atol=1e-4)

@@ -126,7 +126,7 @@ def trained(
 def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
     """Return two gearboxes that nobody trained on, three states each, written as one record per row."""
     found = make_dataset(("test",) * 2, seed=11)
-    parquet.write_table(found.table, trained[1])
+    parquet.write_table(found.table.replace_schema_metadata({"siggen.identity": "0"}), trained[1])
     return found
 
 
@@ -255,3 +255,21 @@ def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
     for said, message in ((file, "--reference FILE:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
         assert predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(said))[0] == 2
         assert message in "".join(capsys.readouterr().err.split("\n")).replace("  ", " ")
+
+
+def test_the_change_comes_first_and_no_state_is_named_against_it(
+    trained: tuple[Path, Path], make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One gearbox measured healthy nine times, in files that siggen did not write: eight serve as references."""
+    folder, _ = trained
+    again = [make_dataset(("test",) * 2, seed=40 + k) for k in range(9)]
+    for k, found in enumerate(again):
+        np.savez(tmp_path / f"healthy_{k}.npz", **channels(found, 0))
+    np.savez(tmp_path / "severe.npz", **channels(again[0], 2))
+    references = [text for k in range(1, 9) for text in ("--reference", str(tmp_path / f"healthy_{k}.npz"))]
+    severe = predict(monkeypatch, folder, tmp_path / "severe.npz", tmp_path / "a", *references)[1]
+    healthy = predict(monkeypatch, folder, tmp_path / "healthy_0.npz", tmp_path / "b", *references)[1]
+    assert severe["against_own_healthy_state"]["verdict"] == "changed"
+    assert healthy["against_own_healthy_state"]["verdict"] == "unchanged"
+    assert severe["state"] in {"severe", "slight", "abstains"}
+    assert healthy["state"] in {"healthy", "abstains"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.machine.change_score import attainable_rate, change_score
+from diagnostics.statistics.change_score import attainable_rate, change_score
 from siggen.errors import UsageError
 
 FEATURES = 80
