@@ -36,6 +36,7 @@ from siggen.gears.stiffness.hertz import weber_banaschek_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.dynamics.pair_runs import gear_pair
+from tests.gears.damage.test_kind_without_outline import Hinge
 
 STIFFNESS = StiffnessOptions()
 FORCE_N = 1200.0
@@ -129,6 +130,15 @@ def test_away_from_damage_a_damaged_tooth_is_a_healthy_one() -> None:
     for place in (20.5, POINTS - 30.25):
         approach = np.array([2e-6, 8e-6])
         np.testing.assert_array_equal(from_table(found, 1, place, approach), from_table(found, 0, place, approach))
+
+
+def test_a_crack_that_shows_on_no_flank_is_felt_along_the_whole_path() -> None:
+    cracked = (Hinge("pinion", 3, depth_m=1e-3, spring_nm_per_rad=2e4),)
+    found, approach = table(cracked), np.array([4e-6, 8e-6])
+    for place in (400.0, 640.5, POINTS - 30.25):  # lower on the pinion the load passes through the root's hinge
+        share = from_table(found, 1, place, approach) / from_table(found, 0, place, approach)
+        assert (share < 0.999).all()
+    np.testing.assert_array_equal(found.touch_m[1], found.touch_m[0])
 
 
 def test_forces_rise_from_first_touch_with_a_continuous_slope() -> None:
