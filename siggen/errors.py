@@ -30,15 +30,20 @@ class SiggenError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that is wrong in a configuration: where, what came, what is allowed."""
+    """One thing that is wrong in a configuration: its key, what came, what is allowed.
+
+    `where` is the line of the file or the option of the command that the value comes from, where that is known.
+    """
 
     path: str
     received: str
     allowed: str
+    where: str = ""
 
     def __str__(self) -> str:
-        """One line: path, what was received, what is allowed."""
-        return f"{self.path}: received {self.received}; {self.allowed}"
+        """One line: path, what was received, what is allowed, where it stands."""
+        where = f" ({self.where})" if self.where else ""
+        return f"{self.path}: received {self.received}; {self.allowed}{where}"
 
 
 class ConfigError(SiggenError):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
-from benchmarks.contact import comparisons, cost
+from benchmarks.contact import case, comparisons, cost
 
 
 def edge_table() -> Iterator[str]:
@@ -47,6 +47,25 @@ def loss_table() -> Iterator[str]:
         for loss in comparisons.losses(force, counts):
             found = " | ".join(f"{loss.library[n]:.2f}" for n in counts)
             yield f"| {loss.land} | {force:.0f} | {loss.solver:.2f} | {found} |"
+
+
+def teeth_table() -> Iterator[str]:
+    """Lines of losses with teeth that bend across the face, in per cent, and of tilts of rigid and of bending teeth."""
+    yield "| land | F [N] | three dimensions | 100 slices |"
+    yield "|---|---|---|---|"
+    for force in (300.0, 1200.0, 4000.0):
+        for loss in comparisons.losses(force, (100,), teeth=case.BENDING):
+            yield f"| {loss.land} | {force:.0f} | {loss.solver:.2f} | {loss.library[100]:.2f} |"
+    yield ""
+    yield "| teeth | tilt [µrad] | F [N] | approach [µm] | three dimensions | moment [N m] | three dimensions |"
+    yield "|---|---|---|---|---|---|---|"
+    for name, teeth in (("rigid", case.RIGID), ("bending", case.BENDING)):
+        for force in (300.0, 1200.0):
+            for t in comparisons.tilted(force, teeth=teeth):
+                yield (
+                    f"| {name} | {1e6 * t.tilt_rad:.0f} | {force:.0f} | {1e6 * t.approach_m:.3f} "
+                    f"| {1e6 * t.solver_approach_m:.3f} | {t.moment_n_m:.3f} | {t.solver_moment_n_m:.3f} |"
+                )
 
 
 def cost_table() -> Iterator[str]:
@@ -92,24 +111,49 @@ def loop_table() -> Iterator[str]:
         yield f"one force from the solver itself in the loop, {slices} slices: {1e6 * spent:.1f} µs"
 
 
+def tilt_table() -> Iterator[str]:
+    """Lines of errors of the expansion in the tilt that the time loop reads."""
+    from benchmarks.contact.tilt_expansion import tilt_errors
+
+    yield "| damage of bench | tilt [µrad] | approach beyond first touch | F largest | rms | M largest |"
+    yield "|---|---|---|---|---|---|"
+    for e in tilt_errors():
+        where = "to 5 % of the reach" if e.touching else "farther"
+        yield (
+            f"| {e.state} | {1e6 * e.tilt_rad:.0f} | {where} | {e.force_largest:.1e} | {e.force_rms:.1e} "
+            f"| {e.moment_largest:.1e} |"
+        )
+
+
 def face_table() -> Iterator[str]:
     """Lines of the table that the time loop reads, on the gearbox and damages of bench; the first state compiles."""
     from benchmarks.contact.case import bench_damages
-    from siggen.gears.contact.contact_table import TableOptions, contact_table
+    from siggen.gears.contact.contact_table import contact_table
     from siggen.gears.contact.contact_table_error import contact_table_error
+    from siggen.gears.contact.table_options import TableOptions, face_slices
 
-    options = TableOptions(largest_force_n=4000.0)
     pair, teeth, damages = bench_damages(("slight", "face_40", "face_80", "through_060", "through_100"))
-    contact_table(pair, damages["slight"], teeth, options)
-    yield "| damage of bench | columns | CPU a state | rms error of F over 1,200 N | 95 % | largest |"
-    yield "|---|---|---|---|---|---|"
-    for name, damage in damages.items():
-        start = time.process_time()
-        found = contact_table(pair, damage, teeth, options)
-        spent = time.process_time() - start
-        error = contact_table_error(pair, damage, teeth, options, found, 1200.0)
-        columns = len(found.curves) - options.healthy_columns
-        yield f"| {name} | {columns} | {spent:.2f} s | {error.rms:.0e} | {error.most:.0e} | {error.largest:.0e} |"
+    yield "| damage of bench | weakened, tilts | slices | columns | CPU a state | rms error of F | 95 % | largest |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for both in (False, True):
+        options = TableOptions(largest_force_n=4000.0, section_loss=both, tilts=both)
+        contact_table(pair, damages["slight"], teeth, options)
+        for name, damage in damages.items():
+            spent = min(_seconds(lambda d=damage, o=options: contact_table(pair, d, teeth, o)) for _ in range(3))
+            found = contact_table(pair, damage, teeth, options)
+            error = contact_table_error(pair, damage, teeth, options, found, 1200.0)
+            columns = len(found.curves) - options.healthy_columns
+            slices, so = face_slices(pair, options), "yes" if both else "no"
+            yield (
+                f"| {name} | {so} | {slices} | {columns} | {1e3 * spent:.0f} ms "
+                f"| {error.rms:.0e} | {error.most:.0e} | {error.largest:.0e} |"
+            )
+
+
+def _seconds(run: Callable[[], object]) -> float:
+    start = time.process_time()
+    run()
+    return time.process_time() - start
 
 
 def fit_notch() -> Iterator[str]:
@@ -122,8 +166,10 @@ def fit_notch() -> Iterator[str]:
 TABLES = {
     "edge": edge_table,
     "losses": loss_table,
+    "teeth": teeth_table,
     "cost": cost_table,
     "loop": loop_table,
+    "tilt": tilt_table,
     "table": face_table,
     "notch": notch_table,
     "two_edges": two_edge_table,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
+from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -30,7 +32,18 @@ def half_width(line_load_n_per_m: float) -> float:
     return sqrt(2.0 * RADIUS_M * KAPPA * line_load_n_per_m)
 
 
-def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray) -> FaceSlices:
+class Teeth(NamedTuple):
+    """Length [m] and compliance [m/N] of the teeth that bend across the face; the rest stays rigid."""
+
+    length_m: float = np.inf
+    compliance_m_per_n: float = 0.0
+
+
+RIGID, BENDING = Teeth(), Teeth(4.8e-3, 2.83e-9)
+"""The finite-element teeth of 18/47: all but the torsion of the bodies bends, over 1.6 modules."""
+
+
+def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray, teeth: Teeth = RIGID) -> FaceSlices:
     """Return the library's face of slices with edges at these distances (n,) and gaps of this depth (n,)."""
     count = left_m.size
     cell = FACE_M / count
@@ -44,18 +57,19 @@ def face_of(left_m: np.ndarray, right_m: np.ndarray, depth_m: np.ndarray) -> Fac
         lead_m=none,
         face_m=cell * (np.arange(count) + 0.5) - 0.5 * FACE_M,
         kernel=line_kernel(kernel_family(count, cell, DEPTH_M), DEPTH_M, POISSON),
+        teeth=tooth_kernel(unit_tooth(count, FACE_M, teeth.length_m), teeth.compliance_m_per_n, FACE_M, KAPPA),
         radius_m=RADIUS_M,
         rounding_m=0.0,
         kappa_per_pa=KAPPA,
-        compliance_m_per_n=REST_M_PER_N,
+        compliance_m_per_n=REST_M_PER_N - teeth.compliance_m_per_n,
         carrying_m=carrying_length(left_m, right_m, depth_m, none, cell, RADIUS_M, KAPPA * 60e3),
     )
 
 
-def face_of_land(land: np.ndarray) -> FaceSlices:
+def face_of_land(land: np.ndarray, teeth: Teeth = RIGID) -> FaceSlices:
     """Return the face that carries only where `land` (n,) says so: elsewhere the edges are 1 m away."""
     away = np.where(land, -NO_EDGE, 1.0)
-    return face_of(away, away, np.zeros(land.size))
+    return face_of(away, away, np.zeros(land.size), teeth)
 
 
 def spalled_face(
@@ -77,11 +91,17 @@ def spalled_face(
     along = offset_m + skew * y
     left = 0.6e-3 + along + wave_m * np.sin(2.0 * pi * y / 3e-3)
     right = 0.6e-3 - along + wave_m * np.sin(2.0 * pi * y / 2.1e-3 + 1.0)
-    return face_of(np.where(inside, left, -NO_EDGE), np.where(inside, right, -NO_EDGE), np.where(inside, 0.2e-3, 0.0))
+    edges = (np.where(inside, x, -NO_EDGE) for x in (left, right))
+    return face_of(*edges, np.where(inside, 0.2e-3, 0.0), BENDING)
 
 
 def approach_under(slices: FaceSlices, force_n: float) -> float:
-    """Return the approach [m] of the pair at a force, by Newton's method.
+    """Return the approach [m] of the pair at a force; raises as `answer_under`."""
+    return answer_under(slices, force_n)[0]
+
+
+def answer_under(slices: FaceSlices, force_n: float, tilt_rad: float = 0.0) -> tuple[float, float]:
+    """Return approach [m] and moment [N m] of the pair at a force and a tilt, by Newton's method.
 
     Raises
     ------
@@ -89,11 +109,11 @@ def approach_under(slices: FaceSlices, force_n: float) -> float:
         If it does not converge.
     """
     room, loads = solver_room(slices.face_m.size), np.zeros(slices.face_m.size)
-    approach = force_n * (slices.compliance_m_per_n + 1.2e-9)
+    approach = force_n * (REST_M_PER_N + 1.2e-9)
     for _ in range(60):
-        answer = face_force(slices, approach, 0.0, loads, room)
+        answer = face_force(slices, approach, tilt_rad, loads, room)
         if abs(answer.force_n / force_n - 1.0) < 1e-9:
-            return approach
+            return approach, answer.moment_n_m
         approach += (force_n - answer.force_n) / answer.stiffness_n_per_m if answer.force_n else 5e-6
     raise RuntimeError(f"no approach found for {force_n} N")
 

@@ -12,6 +12,9 @@ from benchmarks.contact.case import (
     LINE_LOADS,
     RADIUS_M,
     REST_M_PER_N,
+    RIGID,
+    Teeth,
+    answer_under,
     approach_under,
     face_of_land,
     half_width,
@@ -136,16 +139,48 @@ class Loss:
     library: dict[int, float]
 
 
-def losses(force_n: float, slices: tuple[int, ...] = (200,), cell_m: float = 0.05e-3) -> Iterator[Loss]:
+def losses(
+    force_n: float, slices: tuple[int, ...] = (200,), cell_m: float = 0.05e-3, teeth: Teeth = RIGID
+) -> Iterator[Loss]:
     """Yield the losses of all `LANDS`."""
-    case = FaceCase(cell_m=cell_m)
+    case = face_case(cell_m, teeth)
+    rest = REST_M_PER_N - teeth.compliance_m_per_n
     whole = approach_at(case, np.ones(round(case.face_width_m / cell_m), bool), force_n)[0]
-    healthy = {n: approach_under(face_of_land(np.ones(n, bool)), force_n) for n in slices}
+    healthy = {n: approach_under(face_of_land(np.ones(n, bool), teeth), force_n) for n in slices}
     for name, land in LANDS.items():
         damaged = approach_at(case, land(case), force_n, reach=6.0)[0]
-        solver = 1.0 - (REST_M_PER_N + whole / force_n) / (REST_M_PER_N + damaged / force_n)
+        solver = 1.0 - (rest + whole / force_n) / (rest + damaged / force_n)
         library = {}
         for n in slices:
-            face = face_of_land(land(replace(case, cell_m=case.face_width_m / n)))
+            face = face_of_land(land(replace(case, cell_m=case.face_width_m / n)), teeth)
             library[n] = 100.0 * (1.0 - healthy[n] / approach_under(face, force_n))
         yield Loss(name, force_n, 100.0 * solver, library)
+
+
+def face_case(cell_m: float, teeth: Teeth) -> FaceCase:
+    """Return the case of the contact in three dimensions with these teeth."""
+    return FaceCase(cell_m=cell_m, tooth_length_m=teeth.length_m, tooth_m_per_n=teeth.compliance_m_per_n)
+
+
+@dataclass(frozen=True, slots=True)
+class Tilted:
+    """Whole face under a tilt at a force: approach [m] and moment [N m] of the library and in three dimensions."""
+
+    tilt_rad: float
+    force_n: float
+    approach_m: float
+    moment_n_m: float
+    solver_approach_m: float
+    solver_moment_n_m: float
+
+
+def tilted(force_n: float, slices: int = 100, cell_m: float = 0.1e-3, teeth: Teeth = RIGID) -> Iterator[Tilted]:
+    """Yield tilts of 20 to 400 µrad."""
+    case = face_case(cell_m, teeth)
+    count = round(case.face_width_m / cell_m)
+    y = (np.arange(count) + 0.5) * cell_m - 0.5 * case.face_width_m
+    rest = force_n * (REST_M_PER_N - teeth.compliance_m_per_n)
+    for tilt in (2e-5, 1e-4, 2e-4, 4e-4):
+        approach, line = approach_at(case, np.ones(count, bool), force_n, 4.0, tilt)
+        answer = answer_under(face_of_land(np.ones(slices, bool), teeth), force_n, tilt)
+        yield Tilted(tilt, force_n, answer[0], answer[1], approach + rest, float(line @ y) * cell_m)

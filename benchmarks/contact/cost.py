@@ -12,6 +12,7 @@ from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
+from siggen.gears.contact.pair_rest import rigid_rest
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon
 from siggen.gears.damage.spall import Spall
@@ -65,7 +66,9 @@ def state_cost(slices: int = 100, approaches: int = 9, positions: int = 120) -> 
         start = process_time()
         flanks = (flank_chords(g, d, FACE_M, slices) for g, d in ((pair.pinion, (spall,)), (pair.gear, ())))
         gaps = face_gaps(pair, *flanks, position)
-        faces = pair_faces(pair, gaps, position, np.full(positions, REST_M_PER_N), FaceOptions(60e3, 0.05e-3))
+        faces = pair_faces(
+            pair, gaps, position, rigid_rest(np.full(positions, REST_M_PER_N)), FaceOptions(60e3, 0.05e-3)
+        )
         middle = process_time()
         for face in faces:
             force_curve(face, nodes, 0.0, np.zeros(slices), solver_room(slices), NO_ENERGY)

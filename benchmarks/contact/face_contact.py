@@ -3,7 +3,8 @@
 Independent of `siggen.gears.contact`: no line kernel, no Hertz width, no slices. Rectangular cells of constant pressure
 (Love 1929), products by fast Fourier transforms, and the conjugate gradients of Polonsky and Keer (1999) for pressures
 that never pull at a given force. Displacements count from the point at the depth h below the line, in both bodies, as
-those of Weber and Banaschek do. The surface may carry where `land` says so; nothing else makes the edges.
+those of Weber and Banaschek do. The surface may carry where `land` says so; nothing else makes the edges. Teeth that
+bend across the face add their deflection by cosine modes of free ends.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ class FaceCase:
     """Cylinder, bodies and grid; the reference's case by default (teeth 18/47, module 3 mm, at the pitch point).
 
     `cells_per_width` pressure cells cover the Hertz half width of the whole face; `cell_m` is their length across the
-    face.
+    face; `tooth_length_m`, `tooth_m_per_n`: of teeth that bend across the face, none by default.
     """
 
     face_width_m: float = 20e-3
@@ -29,6 +30,8 @@ class FaceCase:
     poisson_ratio: float = 0.3
     cell_m: float = 0.05e-3
     cells_per_width: int = 8
+    tooth_length_m: float = np.inf
+    tooth_m_per_n: float = 0.0
 
     @property
     def kappa(self) -> float:
@@ -36,10 +39,13 @@ class FaceCase:
         return 4.0 * (1.0 - self.poisson_ratio**2) / (pi * self.youngs_modulus_pa)
 
 
-def approach_at(case: FaceCase, land: np.ndarray, force_n: float, reach: float = 2.6) -> tuple[float, np.ndarray]:
+def approach_at(
+    case: FaceCase, land: np.ndarray, force_n: float, reach: float = 2.6, tilt_rad: float = 0.0
+) -> tuple[float, np.ndarray]:
     """Return the approach [m] and the line load (k,) [N/m] of a face of which the cells `land` (k,) carry.
 
-    `reach` is the half width of the grid in Hertz half widths of the whole face.
+    The approach is that in the middle of the face, teeth included. `reach` is the half width of the grid in Hertz half
+    widths of the whole face; a positive tilt brings cells of high numbers nearer.
 
     Raises
     ------
@@ -50,7 +56,8 @@ def approach_at(case: FaceCase, land: np.ndarray, force_n: float, reach: float =
     dx = width / case.cells_per_width
     count = 2 * int(reach * case.cells_per_width) + 1
     x = (np.arange(count) - count // 2) * dx
-    gap = np.broadcast_to((x * x / (2.0 * case.radius_m))[:, None], (count, land.size))
+    y = (np.arange(land.size) + 0.5) * case.cell_m - 0.5 * case.face_width_m
+    gap = (x * x / (2.0 * case.radius_m))[:, None] - tilt_rad * y[None, :]
     carries = np.broadcast_to(land[None, :], gap.shape)
     operator = _Operator(case, dx, count, land.size)
     load = _gradients(operator, gap, carries, force_n)
@@ -62,7 +69,7 @@ def approach_at(case: FaceCase, land: np.ndarray, force_n: float, reach: float =
 
 def _gradients(operator: _Operator, gap: np.ndarray, carries: np.ndarray, force: float) -> np.ndarray:
     """Return the loads of the cells: Polonsky and Keer's conjugate gradients with the force given."""
-    load = np.where(carries & (gap < gap.max() * 0.2), 1.0, 0.0)
+    load = np.where(carries & (gap < gap.min() + 0.2 * np.ptp(gap)), 1.0, 0.0)
     load *= force / load.sum()
     direction = np.zeros_like(load)
     previous, restart = 1.0, 0.0
@@ -104,10 +111,23 @@ class _Operator:
         low, high = j - 0.5 * case.cell_m, j + 0.5 * case.cell_m
         below = 0.5 * case.kappa / case.cell_m * (_deep(high, case) - _deep(low, case))
         self._spectrum = np.fft.rfft2(np.fft.ifftshift(kernel - below[None, :]))
+        self._teeth = _teeth(case, columns)
 
     def __call__(self, load: np.ndarray) -> np.ndarray:
         shape = (2 * self.rows, 2 * self.columns)
-        return np.fft.irfft2(np.fft.rfft2(load, shape) * self._spectrum, shape)[: self.rows, : self.columns]
+        contact = np.fft.irfft2(np.fft.rfft2(load, shape) * self._spectrum, shape)[: self.rows, : self.columns]
+        return contact + (self._teeth @ load.sum(axis=0))[None, :]
+
+
+def _teeth(case: FaceCase, columns: int) -> np.ndarray:
+    """Deflection of the teeth at the cells under unit forces on others (columns, columns) [m/N]."""
+    number = np.arange(columns)
+    modes = np.cos(np.pi * number[:, None] * (number[None, :] + 0.5) / columns)
+    if case.tooth_m_per_n == 0.0:
+        return np.zeros((columns, columns))
+    stiffness = 1.0 + (number * pi * case.tooth_length_m / case.face_width_m) ** 2
+    weight = np.where(number == 0, 1.0, 2.0) / stiffness
+    return case.tooth_m_per_n * (modes.T * weight) @ modes
 
 
 def _deep(t: np.ndarray, case: FaceCase) -> np.ndarray:

@@ -14,10 +14,10 @@ import numpy as np
 from numba import njit
 from scipy.interpolate import CubicHermiteSpline
 
-from benchmarks.contact.case import FACE_M, KAPPA, REST_M_PER_N, spalled_face
+from benchmarks.contact.case import FACE_M, spalled_face
 from benchmarks.contact.cost import NO_ENERGY, SPALLS
 from siggen.gears.contact.face_force import face_force
-from siggen.gears.contact.face_slices import FaceSlices, slice_sink
+from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.force_curve import ForceCurve, force_curve
 from siggen.gears.contact.newton_matrix import SolverRoom, solver_room
 from siggen.gears.contact.stored_energy import energy_nodes
@@ -46,7 +46,6 @@ def options() -> Iterator[Option]:
     yield from _approach_axis(faces, approach, exact)
     yield from _tilt_axis(faces, approach, exact)
     yield from _expansion(faces, approach)
-    yield from _independent(faces, approach, exact)
 
 
 _SHAPE = {"skew": 0.02, "wave_m": 0.08e-3, "place_m": PLACE_M}
@@ -109,33 +108,6 @@ def _expansion(faces: list[FaceSlices], approach: np.ndarray) -> Iterator[Option
                 found.append((force, moment))
                 exact.append(_curve(face, approach, TILT_RAD + side))
         yield _option(f"expansion about the loaded tilt, {1e3 * away:g} mrad away", found, exact)
-
-
-def _independent(faces: list[FaceSlices], approach: np.ndarray, exact: list[ForceCurve]) -> Iterator[Option]:
-    """Yield the error of independent slices with the stiffness that each has in the solution at 7 µm."""
-    found = []
-    for face in faces:
-        loads = np.zeros(SLICES)
-        answer = face_force(face, REFERENCE_M, TILT_RAD, loads, solver_room(SLICES))
-        sunk = np.array([slice_sink(face, i, 0.0).sink_m for i in range(SLICES)])
-        into = REFERENCE_M + TILT_RAD * face.face_m - REST_M_PER_N * answer.force_n - sunk
-        # slices that do not touch there: the kernel's own stiffness
-        stiffness = np.where(loads > 0.0, loads / np.maximum(into, 1e-12), 0.25) * FACE_M / (SLICES * KAPPA)
-        found.append(_springs(stiffness, TILT_RAD * face.face_m - sunk, face.face_m, approach))
-    yield _option("independent slices, secant stiffness", found, exact)
-
-
-def _springs(
-    stiffness: np.ndarray, lead: np.ndarray, face: np.ndarray, approach: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return force and moment of springs in series with the rest of the pair, by bisection."""
-    low, high = np.zeros(approach.size), np.full(approach.size, 1e4)
-    for _ in range(60):
-        force = 0.5 * (low + high)
-        each = stiffness * np.maximum((approach - REST_M_PER_N * force)[:, None] + lead, 0.0)
-        above = each.sum(axis=1) > force
-        low, high = np.where(above, force, low), np.where(above, high, force)
-    return each.sum(axis=1), each @ face
 
 
 def position_errors() -> Iterator[tuple[str, float, float, float]]:

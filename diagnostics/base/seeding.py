@@ -19,6 +19,7 @@ class Purpose(IntEnum):
     FOLDS = 7
     LEARNING_CURVE = 8
     CALIBRATION = 9
+    AVERAGES = 10
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

@@ -9,6 +9,8 @@ from importlib.metadata import version
 import typer
 
 from diagnostics.cli.audit import audit
+from diagnostics.cli.baseline import baseline
+from diagnostics.cli.check import check
 from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
@@ -34,6 +36,8 @@ app.command()(train)
 app.command()(report)
 app.command()(audit)
 app.command()(predict)
+app.command()(baseline)
+app.command()(check)
 
 
 def _show_version(wanted: bool) -> None:

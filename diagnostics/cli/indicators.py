@@ -1,17 +1,42 @@
-"""`siggen-diagnostics indicators`: all indicators of a set, ranked by how well they show the damage."""
+"""`siggen-diagnostics indicators`: all indicators of a set, ranked by how well they show damage; or of recordings."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from diagnostics.cli.recording_options import (
+    Channel,
+    FullScale,
+    Rate,
+    Sensitivity,
+    Tacho,
+    TachoPulses,
+    Teeth,
+    Unit,
+    file_rows,
+    named_column,
+    two_gears,
+)
 from diagnostics.cli.training_options import OwnIndicators
+from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from diagnostics.recordings.measured_recording import RecordingFacts
 
 
 def indicators(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    targets: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="DIR | RECORDING...",
+            help="Folder of a finished set, or recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz.",
+            show_default=False,
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -45,11 +70,33 @@ def indicators(
         bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
     ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
+    teeth: Teeth = None,
+    fs: Rate = None,
+    channel: Channel = None,
+    unit: Unit = "m/s2",
+    sensitivity: Sensitivity = None,
+    full_scale: FullScale = None,
+    tacho: Tacho = None,
+    tacho_pulses: TachoPulses = 1,
 ) -> None:
-    """Compute all indicators, rank them by how well they separate damage, and write indicators.html and tables.
+    """Compute all indicators: of a set, ranked by how well they separate damage; or of measured recordings.
+
+    Options from --teeth on describe recordings. Writes indicators.html and tables.
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
+
+    Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14 26
     """
+    if teeth is not None or file_rows(targets[0])[0][0].is_file():
+        from diagnostics.recordings.measured_recording import RecordingFacts
+
+        columns = dict(named_column(said) for said in channel or ())
+        facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
+        _of_recordings(targets, teeth, facts, speed_range, out)
+        return
+    if len(targets) > 1:
+        raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
+    directory = Path(targets[0])
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -77,3 +124,33 @@ def indicators(
     folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
     typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))
+
+
+def _of_recordings(
+    targets: list[str],
+    teeth: str | None,
+    facts: RecordingFacts,
+    speed_range_hz: tuple[float, float] | None,
+    out: Path | None,
+) -> None:
+    """Write and print the indicators of recordings."""
+    from diagnostics.base.extras import require_packages
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.machine.recording_indicators import recording_indicators
+    from diagnostics.machine.recordings_page import write_recordings
+
+    require_packages("the page of indicators", "matplotlib")
+    if teeth is None:
+        raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
+    sources = [source for said in targets for source in file_rows(said)]
+    found = []
+    with terminal_stage("recordings", len(sources)) as advance:
+        for path, row in sources:
+            found.append(recording_indicators(path, two_gears(teeth), replace(facts, row=row), speed_range_hz))
+            advance()
+    for one in found:
+        levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
+        speed = f"pinion {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
+        typer.echo(f"{one.name}: {speed}; rms {levels}")
+    folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")
+    typer.echo(str(write_recordings(found, folder)))

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from diagnostics.cli.recording_options import file_rows, named_column, two_gears, two_numbers
 from diagnostics.cli.training_options import OwnIndicators
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.recordings.measured_recording import RecordingFacts
-
-ROWS = re.compile(r"\d+(,\d+)*")
 
 
 def predict(
@@ -78,16 +76,16 @@ def predict(
 
     loaded = load_model(model, load_indicators(indicator))
     pair = _teeth(file, teeth, loaded.facts.teeth)
-    columns = dict(_named(entry) for entry in channel or ())
+    columns = dict(named_column(entry) for entry in channel or ())
     facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses, row)
     names = loaded.facts.channels
     recording = read_recording(file, names, facts)
     references = tuple(
         read_recording(path, names, _reference_facts(facts, path, number, reference_fs))
         for said in reference or ()
-        for path, number in _reference_rows(said)
+        for path, number in file_rows(said)
     )
-    low_high = _pair(speed_range, "--speed-range", "20,50") if speed_range else None
+    low_high = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
     found = predict_recording(loaded, recording, pair, low_high, references)
     for label, text in prediction_rows(found):
         typer.echo(f"{label + ':':21} {text}")
@@ -105,36 +103,10 @@ def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> 
             f"{file}: teeth unknown. Orders, averages and sidebands need them. Give --teeth PINION,GEAR (this model "
             f"was trained on {pairs})"
         )
-    first, second = _pair(said, "--teeth", "18,47")
-    if min(first, second) < 3 or first % 1 or second % 1:
-        raise UsageError(f"{file}: --teeth: received {said}; allowed are two whole numbers from 3 on")
-    return int(first), int(second)
-
-
-def _reference_rows(said: str) -> list[tuple[Path, int | None]]:
-    """Return file and row of every reference that one --reference names; a file of that very name goes first."""
-    file, colon, rows = said.rpartition(":")
-    if not colon or Path(said).exists() or not ROWS.fullmatch(rows):
-        return [(Path(said), None)]
-    return [(Path(file), int(row)) for row in rows.split(",")]
+    return two_gears(said)
 
 
 def _reference_facts(facts: RecordingFacts, path: Path, row: int | None, fs_hz: float | None) -> RecordingFacts:
     """Return what is said about a reference: as about the recording, but for its own row and rate."""
     states_rate = path.suffix.lower() == ".wav"
     return replace(facts, row=row, fs_hz=fs_hz or (None if states_rate else facts.fs_hz))
-
-
-def _pair(said: str, option: str, example: str) -> tuple[float, float]:
-    try:
-        first, second = (float(part) for part in said.split(","))
-    except ValueError as error:
-        raise UsageError(f"{option}: received {said!r}; allowed are two numbers with a comma: {example}") from error
-    return first, second
-
-
-def _named(said: str) -> tuple[str, str]:
-    name, equals, column = said.partition("=")
-    if not equals or not name or not column:
-        raise UsageError(f"--channel: received {said!r}; allowed is NAME=COLUMN, e.g. bearing_vertical=ch1")
-    return name, column

@@ -1,8 +1,9 @@
 """What the indicators of one channel are made of, each signal made once, when a formula first asks for it.
 
 Names that a formula may take: of the record `signal`, `spectral_kurtosis`; of a shaft `average`, `regular`, `residual`,
-`difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `teeth`, `log_spectrum`, `period_steps`; and the
-fields of its columns (`harmonic`, `sideband` ...). A column that belongs to no shaft is the record's or the pinion's.
+`difference`, `lines`, `sideband_lines`, `revolutions`, `modulation`, `residual_band`, `teeth`, `log_spectrum`,
+`period_steps`; and the fields of its columns (`harmonic`, `sideband` ...). A column that belongs to no shaft is the
+record's or the pinion's.
 """
 
 from __future__ import annotations
@@ -20,12 +21,14 @@ from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.signal.demodulation import Modulation, demodulated
 from diagnostics.signal.mesh_band import mesh_baseband
+from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES, spectral_kurtosis
 
 SHAFT_SIGNALS = ("average", "lines", "sideband_lines", "sideband_average")
 PARTS = ("regular", "residual", "difference")
+_BANDS = {band_name(*band): band for band in ORDER_BANDS}
 
 
 class UndefinedSignalError(Exception):
@@ -60,6 +63,7 @@ class ChannelSignals:
         self.signal, self.fs_hz, self.grid, self.shafts, self.settings = signal, fs_hz, grid, shafts, settings
         self._of_shaft: dict[str, ShaftSignals] = {}
         self._modulations: dict[tuple[str, int], Modulation] = {}
+        self._bands: dict[tuple[str, str], np.ndarray] = {}
 
     @cached_property
     def steps(self) -> np.ndarray:
@@ -134,6 +138,7 @@ class ChannelSignals:
         return {
             "revolutions": self._revolutions,
             "modulation": self._modulation,
+            "residual_band": self._residual_band,
             "log_spectrum": self._shaft_log_spectrum,
             "period_steps": self._period_steps,
         }[name](shaft, field)
@@ -151,6 +156,19 @@ class ChannelSignals:
             teeth, around = signals.shaft.teeth, signals.sideband_average
             self._modulations[shaft, harmonic] = demodulated(around, teeth, harmonic, self._half_width(teeth))
         return self._modulations[shaft, harmonic]
+
+    def _residual_band(self, shaft: str, field: dict[str, Any]) -> np.ndarray:
+        """Return a band of the residual, up to half the sampling rate where the record turns slowest."""
+        name = str(field["band"])
+        if (shaft, name) not in self._bands:
+            residual = self.shaft(shaft).parts.residual
+            self._bands[shaft, name] = band_signal(residual, *_BANDS[name], self._carried_order(shaft))
+        return self._bands[shaft, name]
+
+    def _carried_order(self, shaft: str) -> float:
+        if self.grid is None:
+            return math.inf
+        return 0.5 * self.fs_hz / self.grid.slowest_hz * self._shaft(shaft).teeth / self.shafts[0].teeth
 
     def _shaft_log_spectrum(self, shaft: str, field: dict[str, Any]) -> np.ndarray:  # noqa: ARG002
         if self._shaft(shaft).revolutions < 2:

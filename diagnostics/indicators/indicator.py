@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from string import Formatter
 
-SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+)?$")
+SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+|_o\d+_\d+)?$")
 
 STILL = "the signal does not vary (standard deviation below 1e-9 of its rms)"
 NO_LINE = "the mesh line is below 1e-9 of the strongest line, or a sideband is unresolved or outside the band"

@@ -83,11 +83,24 @@ class RecordResult:
 
 @dataclass(frozen=True, slots=True)
 class RecordValues:
-    """Indicators of one record by column with channel, whole revolutions of pinion and gear, what is undefined."""
+    """What a record that belongs to no set gave.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        Indicators by column with channel.
+    revolutions : (int, int)
+        Whole revolutions of pinion and gear.
+    notes : str
+        What is undefined, and why.
+    waveforms : dict of str to (orders,) complex64
+        Lines of the pinion's average by channel, see `ChannelResult.waveform`; none below two revolutions.
+    """
 
     values: dict[str, float]
     revolutions: tuple[int, int]
     notes: str
+    waveforms: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def record_signals(
@@ -129,7 +142,11 @@ def record_values(
     """
     signals, shafts = record_signals(channels, tacho_s, fs_hz, teeth, settings or IndicatorSettings())
     values = {f"{name}__{channel}": v for channel, own in signals.items() for name, v in own.values(ALL).items()}
-    return RecordValues(values, (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts))
+    turns = (shafts[0].revolutions, shafts[1].revolutions)
+    waveforms = {}
+    if turns[0] >= FEWEST_AUDIT_TURNS:
+        waveforms = {name: _waveform(own.shaft("pinion").average, teeth[0]) for name, own in signals.items()}
+    return RecordValues(values, turns, shaft_notes(shafts), waveforms)
 
 
 def shaft_notes(shafts: tuple[Shaft, Shaft]) -> str:

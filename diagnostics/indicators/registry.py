@@ -5,11 +5,11 @@ from __future__ import annotations
 from itertools import product
 
 # importing a file puts its indicators into the list, in this order
-from diagnostics.indicators import average, cepstrum, history, level, modulation, sidebands
+from diagnostics.indicators import average, cepstrum, history, level, modulation, order_bands, sidebands
 from diagnostics.indicators.indicator import INDICATORS, Indicator
 from diagnostics.indicators.settings import IndicatorSettings
 
-FILES = (level, cepstrum, average, history, sidebands, modulation)
+FILES = (level, cepstrum, average, history, sidebands, modulation, order_bands)
 ALL: tuple[Indicator, ...] = tuple(
     entry for file in FILES for entry in INDICATORS if entry.function.__module__ == file.__name__
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from diagnostics.signal.difference_signal import SHAFT_ORDERS, SIDEBANDS
+from diagnostics.signal.order_bands import ORDER_BANDS, band_name
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH
 from diagnostics.signal.spectral_kurtosis import FRAME_SAMPLES
 
@@ -53,4 +54,5 @@ class IndicatorSettings:
             "side": ("lower", "upper"),
             "sideband": tuple(range(1, self.sidebands + 1)),
             "ratio_sidebands": (self.ratio_sidebands,),
+            "band": tuple(band_name(*band) for band in ORDER_BANDS),
         }[field]

@@ -1,4 +1,4 @@
-"""Streams of order-resampled windows for training: `WindowLoader` and `WindowStream`, loaded when first used."""
+"""Order-resampled windows for training: streams of them, and windows by number; loaded when first used."""
 
 from __future__ import annotations
 
@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnostics.loader.epoch_order import Shuffling
+    from diagnostics.loader.window_dataset import RowGroupSampler, WindowDataset
     from diagnostics.loader.window_index import StreamSettings
     from diagnostics.loader.window_stream import WindowLoader, WindowStream
 
-__all__ = ["Shuffling", "StreamSettings", "WindowLoader", "WindowStream"]
+__all__ = ["RowGroupSampler", "Shuffling", "StreamSettings", "WindowDataset", "WindowLoader", "WindowStream"]
 
 _HOMES = {
+    "RowGroupSampler": "window_dataset",
     "Shuffling": "epoch_order",
     "StreamSettings": "window_index",
+    "WindowDataset": "window_dataset",
     "WindowLoader": "window_stream",
     "WindowStream": "window_stream",
 }

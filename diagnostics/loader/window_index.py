@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from diagnostics.loader.window_labels import ANGLES, record_labels, window_angles
 from diagnostics.records.state_classes import class_ids
 from siggen.dataset.reading import Dataset, RowGroup
 from siggen.errors import DatasetError, UsageError
@@ -67,8 +68,10 @@ class WindowIndex:
         Samples of a window.
     lengths : tuple of (rows,) int
         Samples of the decoded records of every row group.
-    labels : dict of str to (records,)
-        `record_id`, `specimen_id`, `state_id`, `class_id`, `damaged_area_mm2`.
+    labels : dict of str to (records, ...)
+        `record_id`, `specimen_id`, `state_id`, `class_id`, `damaged_area_mm2`, and those that were asked for.
+    window_labels : dict of str to (windows,)
+        Those that differ between the windows of a record.
     """
 
     group: np.ndarray
@@ -78,6 +81,12 @@ class WindowIndex:
     samples: int
     lengths: tuple[np.ndarray, ...]
     labels: dict[str, np.ndarray]
+    window_labels: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def labels_of(self, number: int | list[int]) -> dict[str, np.ndarray]:
+        """Return all labels of a window or of several."""
+        own = {name: values[number] for name, values in self.window_labels.items()}
+        return {name: values[self.record[number]] for name, values in self.labels.items()} | own
 
     @property
     def size(self) -> int:
@@ -92,26 +101,41 @@ class WindowIndex:
         return digest.hexdigest()[:16]
 
 
-def window_index(dataset: Dataset, split: str, settings: StreamSettings) -> WindowIndex:
-    """Return where the windows of a split lie; reads pulse times only.
+def window_index(dataset: Dataset, split: str, settings: StreamSettings, further: Sequence[str] = ()) -> WindowIndex:
+    """Return where the windows of a split lie; reads pulse times and labels only.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set.
+    split : str
+        Its split.
+    settings : StreamSettings
+        What a window is.
+    further : sequence of str
+        Labels besides the usual ones, see `diagnostics.loader.window_labels`.
 
     Raises
     ------
+    UsageError
+        If a label is unknown.
     DatasetError
         If no record of the split holds a whole window.
     """
     labels = {**_columns(dataset, split, LABELS), "class_id": _class_id(dataset, split)}
+    labels |= record_labels(dataset, split, [name for name in further if name not in labels])
     pulses = [list(_pulses(dataset, group)) for group in dataset.row_groups(split)]
     samples = _window_samples(pulses, settings, dataset.fs_hz)
     recorded = round(dataset.duration_s * dataset.fs_hz)
-    rows = []
-    lengths = []
-    record = 0
+    rows, lengths, angles, record = [], [], [], 0
     for number, group in enumerate(pulses):
         lengths.append(np.array([_decoded_samples(times, settings, recorded) for times in group], dtype=np.int64))
         for row, times in enumerate(group):
             starts = _starts(times, settings, dataset.fs_hz)
-            rows += [(number, row, s, record) for s in starts if s + samples <= lengths[-1][row]]
+            for turn, start in starts.items():
+                if start + samples <= lengths[-1][row]:
+                    rows.append((number, row, start, record))
+                    angles.append(window_angles(times, turn, start, dataset.fs_hz, settings.samples_per_revolution))
             record += 1
     if not rows:
         raise DatasetError(
@@ -119,7 +143,8 @@ def window_index(dataset: Dataset, split: str, settings: StreamSettings) -> Wind
             "Use longer records (`duration_s`) or a higher speed."
         )
     found = np.array(rows, dtype=np.int64).T
-    return WindowIndex(found[0], found[1], found[2], found[3], samples, tuple(lengths), labels)
+    of_windows = {name: column for name, column in zip(ANGLES, np.array(angles).T, strict=True) if name in further}
+    return WindowIndex(found[0], found[1], found[2], found[3], samples, tuple(lengths), labels, of_windows)
 
 
 def _columns(dataset: Dataset, split: str | None, names: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -139,11 +164,12 @@ def _pulses(dataset: Dataset, group: RowGroup) -> Iterator[np.ndarray]:
     yield from (np.asarray(column[row].values, dtype=np.float64) for row in range(len(column)))
 
 
-def _starts(pulses: np.ndarray, settings: StreamSettings, fs_hz: float) -> list[int]:
+def _starts(pulses: np.ndarray, settings: StreamSettings, fs_hz: float) -> dict[int, int]:
+    """Return the first sample of every window by the pulse that it starts at."""
     first = range(0, pulses.size - settings.revolutions, settings.hop_revolutions)
     if settings.samples_per_revolution is not None:
-        return [turn * settings.samples_per_revolution for turn in first]
-    return [int(np.ceil(pulses[turn] * fs_hz)) for turn in first]
+        return {turn: turn * settings.samples_per_revolution for turn in first}
+    return {turn: int(np.ceil(pulses[turn] * fs_hz)) for turn in first}
 
 
 def _decoded_samples(pulses: np.ndarray, settings: StreamSettings, recorded: int) -> int:

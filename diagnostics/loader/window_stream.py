@@ -5,27 +5,46 @@
         loss = step(batch["windows"], batch["state_id"])
         position = loader.state_dict()
 
-Records of one row group are decoded once; a random record would cost a whole row group each.
+Records of one row group are decoded once; a random record would cost a whole row group each. Every iteration is the
+next epoch, through a `WindowLoader` or through torch's `DataLoader`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from torch.utils.data import DataLoader, IterableDataset, get_worker_info
+from torch.utils.data import DataLoader, IterableDataset, default_collate, get_worker_info
+from torch.utils.data._utils.collate import default_collate_fn_map
 
 from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks, rank_windows
 from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
+from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
-Batch = dict[str, torch.Tensor]
+MOST_WORKERS = 1024
+
+
+class Batch(dict[str, Any]):
+    """A batch of windows; torch's collation refuses to make a batch of several of them."""
+
+
+def _refused(batches: list[Batch], **_: Any) -> None:
+    raise UsageError(
+        f"batch_size: DataLoader wants to join {len(batches)} items of a WindowStream, but each of them is a batch "
+        "already. Give DataLoader batch_size=None, or give WindowStream "
+        "batch=None: it then yields single windows, and DataLoader's batch_size holds"
+    )
+
+
+default_collate_fn_map[Batch] = _refused
 
 
 @dataclass(slots=True)
@@ -36,13 +55,13 @@ class Position:
     delivered: int = 0
 
 
-class WindowStream(IterableDataset[Batch]):  # type: ignore[misc]  # the type checker does not read torch
-    """Batches of windows of one split; iterate it through a `WindowLoader`.
+class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type checker does not read torch
+    """Windows of one split, in batches or one by one; iterate it through a `WindowLoader` or torch's `DataLoader`.
 
     A batch has `windows` (batch, channels, samples) float32 in the unit of the channels, `record_id`, `specimen_id`,
     `state_id`, `class_id` (batch,) int64 (all healthy states are one class) and `damaged_area_mm2` (batch,) float64.
     All windows of an epoch come exactly once over all ranks and workers; ranks differ by one window at most, so give
-    every rank the same number of steps.
+    every rank the same number of steps. Every iteration is another epoch.
 
     Parameters
     ----------
@@ -52,14 +71,19 @@ class WindowStream(IterableDataset[Batch]):  # type: ignore[misc]  # the type ch
         Split to read.
     settings : StreamSettings, optional
         Default: windows of 8 pinion revolutions of 288 angle steps, every 4 revolutions.
-    batch : int
-        Windows of a batch; the last of a rank may be smaller.
+    batch : int or None
+        Windows of a batch; the last of a rank may be smaller. None: single windows, for `DataLoader(batch_size=...)`.
     rank, world_size : int
         Which of how many processes this is.
     shuffling : Shuffling, optional
         Seed and buffer; `Shuffling(seed=None)` keeps the order of the files.
     cache : Path, optional
         Folder for decoded records, read through memory mapping; worth it where they are read more than once.
+    labels : sequence of str
+        Further labels, see `diagnostics.loader.window_labels`.
+    transform : callable, optional
+        Takes a single window with its labels and a generator, and returns what is batched. The generator depends on
+        seed, epoch and window alone.
 
     Raises
     ------
@@ -75,73 +99,85 @@ class WindowStream(IterableDataset[Batch]):  # type: ignore[misc]  # the type ch
         split: str,
         settings: StreamSettings | None = None,
         *,
-        batch: int = 32,
+        batch: int | None = 32,
         rank: int = 0,
         world_size: int = 1,
         shuffling: Shuffling | None = None,
         cache: Path | None = None,
+        labels: Sequence[str] = (),
+        transform: Transform | None = None,
     ) -> None:
-        if batch < 1:
-            raise UsageError(f"batch: received {batch}; allowed are 1 or more windows")
+        if batch is not None and batch < 1:
+            raise UsageError(f"batch: received {batch}; allowed are 1 or more windows, or None for single ones")
         chosen = settings or StreamSettings()
         self.part = Part(rank, world_size)
         self.batch = batch
         self.shuffling = shuffling or Shuffling()
-        self.index = window_index(dataset, split, chosen)
+        self.index = window_index(dataset, split, chosen, labels)
+        self.transform = transform
         self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
+        # how often each worker began an epoch; shared, since a DataLoader makes new copies of the stream every time
+        self._begun = torch.zeros(MOST_WORKERS, dtype=torch.int64).share_memory_()
         self.position = Position()
+
+    @property
+    def position(self) -> Position:
+        """Where the next iteration begins; setting it makes all workers begin there."""
+        return self._position
+
+    @position.setter
+    def position(self, position: Position) -> None:
+        self._position = position
+        self._begun.zero_()
 
     def __len__(self) -> int:
         """Batches of this rank in an epoch."""
+        if self.batch is None:
+            raise TypeError("a stream of single windows does not know into how many batches they will be put")
         first, last = rank_windows(self.index.size, self.part)
         return (last - first + self.batch - 1) // self.batch
 
-    def __iter__(self) -> Iterator[Batch]:
-        """Yield the batches of this worker that the position has not passed."""
+    def __iter__(self) -> Iterator[Any]:
+        """Return this worker's part of the next epoch, without what the position has passed of the first one."""
         worker, workers = _worker()
-        delivered = self.position.delivered
+        begun = int(self._begun[worker])
+        self._begun[worker] += 1
+        return self._epoch(self.position.epoch + begun, self.position.delivered if begun == 0 else 0, worker, workers)
+
+    def _epoch(self, epoch: int, delivered: int, worker: int, workers: int) -> Iterator[Any]:
         # torch asks worker 0 first; after k batches it is the turn of the one that would have come then
         lane = (worker + delivered) % workers
         part = Part(self.part.rank, self.part.world_size, lane, workers)
-        chunks = epoch_chunks(self.index.group, self.position.epoch, part, self.batch, self.shuffling)
-        passed = len(range(lane, delivered, workers)) * self.batch
-        yield from self._batches(chunks, passed)
+        chunks = epoch_chunks(self.index.group, epoch, part, self.batch or 1, self.shuffling)
+        passed = len(range(lane, delivered, workers)) * (self.batch or 1)
+        samples = self._samples(chunks, passed, epoch)
+        if self.batch is None:
+            yield from samples
+            return
+        while found := list(islice(samples, self.batch)):
+            joined = default_collate(found)
+            yield Batch(joined) if isinstance(joined, dict) else joined
 
-    def _batches(self, chunks: list[np.ndarray], passed: int) -> Iterator[Batch]:
-        """Cut the windows of the chunks into batches; chunks that were passed are not decoded."""
-        waiting: list[tuple[int, list[np.ndarray]]] = []
+    def _samples(self, chunks: list[np.ndarray], passed: int, epoch: int) -> Iterator[Any]:
+        """Yield the windows of the chunks with their labels; chunks that were passed are not decoded."""
         for chunk in chunks:
             rest, passed = chunk[passed:], max(passed - chunk.size, 0)
-            if not rest.size:
-                continue
-            for number, window in zip(rest.tolist(), self._windows(rest), strict=True):
-                waiting.append((number, window))
-                if len(waiting) == self.batch:
-                    yield self._collated(waiting)
-                    waiting = []
-        if waiting:
-            yield self._collated(waiting)
+            for number, record in zip(rest.tolist(), self._records(rest), strict=True):
+                sample: Sample = window_sample(self.index, number, record)
+                if self.transform is None:
+                    yield sample
+                else:
+                    yield transformed(sample, self.transform, self.shuffling.seed, epoch, number)
 
-    def _windows(self, chosen: np.ndarray) -> Iterator[list[np.ndarray]]:
-        """Yield the windows as channels of samples, views into the decoded records of the chunk."""
+    def _records(self, chosen: np.ndarray) -> Iterator[Sequence[np.ndarray]]:
+        """Yield the decoded record of every window; all records of the chunk are decoded at once."""
         index = self.index
         decoded = {
             group: self.signals.read(group, np.unique(index.row[chosen[index.group[chosen] == group]]).tolist())
             for group in np.unique(index.group[chosen]).tolist()
         }
         for number in chosen.tolist():
-            record = decoded[int(index.group[number])][int(index.row[number])]
-            start = int(index.start[number])
-            yield [channel[start : start + index.samples] for channel in record]
-
-    def _collated(self, found: list[tuple[int, Any]]) -> Batch:
-        windows = np.empty((len(found), len(found[0][1]), self.index.samples), dtype=np.float32)
-        for place, (_, channels) in enumerate(found):
-            for row, channel in enumerate(channels):
-                windows[place, row] = channel
-        record = self.index.record[[number for number, _ in found]]
-        labels = {name: torch.from_numpy(values[record]) for name, values in self.index.labels.items()}
-        return {"windows": torch.from_numpy(windows), **labels}
+            yield decoded[int(index.group[number])][int(index.row[number])]
 
 
 class WindowLoader:
@@ -154,6 +190,8 @@ class WindowLoader:
     def __init__(self, stream: WindowStream, workers: int = 0) -> None:
         if workers < 0:
             raise UsageError(f"workers: received {workers}; allowed are 0 (this process) or more")
+        if stream.batch is None:
+            raise UsageError("batch: received None; a WindowLoader delivers batches. Give WindowStream a number")
         self.stream = stream
         self.workers = workers
 
@@ -164,6 +202,7 @@ class WindowLoader:
     def __iter__(self) -> Iterator[Batch]:
         """Yield the rest of the epoch."""
         position = self.stream.position
+        self.stream.position = position  # an epoch that another iteration began and left is gone on with, not passed
         # batches are ready-made; every worker gets a copy of the stream with its position
         for batch in DataLoader(self.stream, batch_size=None, num_workers=self.workers):
             position.delivered += 1

@@ -1,8 +1,10 @@
 """State of a recording by the saved models, with probabilities, and the reasons for which no answer should be taken.
 
-The answer is withheld where the recording is unlike the training records: by distance, or by what is known of it
-(teeth, rate, speed, length). Where the classifiers name different states the answer stands, with the
-contradiction beside it: that says how little it is worth, not that the recording is foreign. Source: derived.
+A state of a measured recording is named only beside healthy recordings of the same machine, and only where the
+classifier agrees with the direction of the change. The answer is withheld where the recording is unlike the training
+records: by distance, or by what is known of it (teeth, rate, speed, length). Where the classifiers name different
+states the answer stands, with the contradiction beside it: that says how little it is worth, not that the recording is
+foreign. Source: derived.
 """
 
 from __future__ import annotations
@@ -13,17 +15,22 @@ from typing import Any
 import numpy as np
 
 from diagnostics.prediction.known_reasons import known_reasons, reference_reasons
+from diagnostics.prediction.own_state import OwnState, own_state
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.release.log_features import log_mean, log_values
 from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.log_features import log_mean, log_values
 from siggen.errors import UsageError
 
-INDICATORS, REFERENCED, NETWORK = "indicators", "healthy_referenced", "network"
+NO_REFERENCE = (
+    "a state of a measured recording is named only beside healthy recordings of the same machine; give them with "
+    "--reference. Without them there are the distance and the indicators"
+)
+INDICATORS, REFERENCED, NETWORK, CIRCULAR = "indicators", "healthy_referenced", "network", "circular"
 
 Reference = tuple[MeasuredRecording, ShaftPulses, RecordPieces]
 """A recording in healthy state as it came, its pulses, and its pieces at the rate of the model."""
@@ -62,16 +69,21 @@ class Vote:
 
 @dataclass(frozen=True, slots=True)
 class Nearness:
-    """Distance to the training records: median over pieces, threshold, and the features farthest off."""
+    """Distance to the training records: median over pieces, threshold, and the features farthest off.
+
+    `farthest`, `allowed`: of a single feature, in spreads.
+    """
 
     distance: float
     threshold: float
     strangest: tuple[tuple[str, float], ...]
+    farthest: float = 0.0
+    allowed: float = np.inf
 
     @property
     def outside(self) -> bool:
         """Whether the recording is unlike the training records."""
-        return not self.distance <= self.threshold
+        return not (self.distance <= self.threshold and self.farthest <= self.allowed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +110,8 @@ class Prediction:
         What the reader should know besides.
     pieces : RecordPieces
         Indicators.
+    own_state : OwnState or None
+        Whether the machine has changed against its own healthy recordings; None where none were given.
     """
 
     recording: MeasuredRecording
@@ -110,6 +124,7 @@ class Prediction:
     reasons: tuple[str, ...]
     notes: tuple[str, ...]
     pieces: RecordPieces
+    own_state: OwnState | None = None
 
     @property
     def contradiction(self) -> str:
@@ -166,24 +181,40 @@ def predict_recording(
     else:
         answer, nearness = _indicator_vote(model, pieces), plain
     network, notes = _network_vote(model, recording, pulses, teeth)
-    votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in (answer, *network))
+    circular, circular_notes = _circular_vote(model, pieces, teeth)
+    every = (answer, *network, *circular)
+    votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in every)
+    unreferenced = not (recording.simulated or healthy)
+    own = own_state(pieces, [found for _, _, found in healthy]) if healthy else None
     undefined = int(np.isnan(pieces.columns(model.classifier.features)).any(axis=0).sum())
     return Prediction(
         recording=recording,
         pulses=pulses,
         teeth=teeth,
         classes=facts.classes,
-        votes=votes,
+        votes=() if unreferenced else votes,
         nearness=nearness,
         plain_nearness=plain,
         reasons=(
+            *([NO_REFERENCE] if unreferenced else []),
+            *_direction_reasons(own, facts.classes[answer.named]),
             *_distance_reasons(plain, nearness),
             *known_reasons(facts, source, pulses, teeth, pieces),
             *(text for found in healthy for text in reference_reasons(facts, *found, pulses.speed_hz)),
         ),
-        notes=tuple(note for note in (*pieces.notes, model.note, *notes, _undefined_note(undefined)) if note),
+        notes=tuple(
+            note for note in (*pieces.notes, model.note, *notes, *circular_notes, _undefined_note(undefined)) if note
+        ),
         pieces=pieces,
+        own_state=own,
     )
+
+
+def _direction_reasons(own: OwnState | None, named: str) -> list[str]:
+    """Return why the classifier's state cannot be the change that was found."""
+    if own is None or not own.contradicts(named):
+        return []
+    return [f"against its own healthy recordings the machine is {own.verdict}, the classifier says {named}"]
 
 
 def _undefined_note(count: int) -> str:
@@ -255,7 +286,9 @@ def _referenced_vote(
 def _nearness(distance: TrainingDistance, logs: np.ndarray, speed_hz: float) -> Nearness:
     found = distance.distance(logs, np.full(len(logs), speed_hz))
     middle = int(np.argsort(found)[len(found) // 2])
-    return Nearness(float(np.median(found)), distance.threshold, tuple(distance.strangest(logs[middle], speed_hz)))
+    farthest = float(np.median(distance.farthest(logs, np.full(len(logs), speed_hz))))
+    strangest = tuple(distance.strangest(logs[middle], speed_hz))
+    return Nearness(float(np.median(found)), distance.threshold, strangest, farthest, distance.largest_spreads)
 
 
 def _network_vote(
@@ -275,6 +308,20 @@ def _network_vote(
     return (_vote(NETWORK, found, facts.temperature),), ()
 
 
+def _circular_vote(
+    model: ReleasedModel, pieces: RecordPieces, teeth: tuple[int, int]
+) -> tuple[tuple[Vote, ...], tuple[str, ...]]:
+    """Return the vote of the network on averages where the pieces have them, else why not."""
+    if model.circular is None:
+        return (), ()
+    from diagnostics.prediction.circular_vote import circular_probabilities
+
+    network, facts = model.circular
+    if not all(pieces.waveforms):
+        return (), ("the circular network takes averages of two pinion revolutions or more: left out",)
+    return (_vote(CIRCULAR, circular_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
+
+
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:
     """Return why the distance forbids an answer.
 
@@ -289,6 +336,7 @@ def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:
             strangest = ", ".join(f"{name} {off:+.1f} spreads" for name, off in near.strangest)
             found.append(
                 f"unlike the {what}: the distance is {near.distance:.2f}, on held-out gearboxes it was at most "
-                f"{near.threshold:.2f} (largest deviations: {strangest})"
+                f"{near.threshold:.2f}; one indicator is {near.farthest:.1f} spreads off, at most {near.allowed:.1f} "
+                f"there (largest deviations: {strangest})"
             )
     return found

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.page.wording import counted
+from diagnostics.prediction.own_state import OwnState
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 from diagnostics.release.model_facts import ModelFacts
 
@@ -26,6 +27,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         "state": found.state,
         "reasons_to_abstain": list(found.reasons),
         "contradiction": found.contradiction or None,
+        "against_own_healthy_state": _own_state(found.own_state),
         "probabilities": {
             vote.classifier: {
                 **dict(zip(found.classes, vote.probability.tolist(), strict=True)),
@@ -61,6 +63,10 @@ def _median(values: np.ndarray) -> float:
     return float(np.median(finite)) if finite.size else math.nan
 
 
+def _own_state(found: OwnState | None) -> dict[str, Any] | None:
+    return None if found is None else {"verdict": found.verdict, "reason": found.reason}
+
+
 def _nearness(found: Nearness) -> dict[str, Any]:
     return {
         "value": found.distance,
@@ -75,7 +81,9 @@ def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     pulses = found.pulses
     source = "tacho" if pulses.source == "tacho" else f"mesh lines of {pulses.source}"
     pieces = counted(len(found.pieces.values), "piece")
+    own = found.own_state
     rows = [
+        *([] if own is None else [("against its own healthy state", f"{own.verdict} ({own.reason})")]),
         ("answer", found.state),
         ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({source}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
         ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),

@@ -42,7 +42,7 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
     blocks = []
     for channel in found.recording.channels:
         with styled():
-            png = png_bytes(sideband_figure(found, channel))
+            png = png_bytes(sideband_figure(found.recording, found.teeth, found.pulses, channel))
         (folder / f"sidebands_{channel}.png").write_bytes(png)
         blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"

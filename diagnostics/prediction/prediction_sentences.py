@@ -8,7 +8,11 @@ from diagnostics.page.wording import capitalised, counted, joined, percent
 from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.release.model_facts import ModelFacts
 
-TITLES = {"healthy_referenced": "differences from the healthy reference", "network": "the network"}
+TITLES = {
+    "healthy_referenced": "differences from the healthy reference",
+    "network": "the network",
+    "circular": "the circular network",
+}
 
 
 def prediction_summary(found: Prediction) -> list[str]:
@@ -28,6 +32,9 @@ def prediction_summary(found: Prediction) -> list[str]:
         answer = f"The recording is most like the state {found.state}."
         if found.contradiction:
             answer += f" This answer is weak: {found.contradiction}."
+    if (own := found.own_state) is not None:
+        told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
+        answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
     withheld = " Do not use these states." if found.reasons else ""
     return [
         answer,

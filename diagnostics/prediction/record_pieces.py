@@ -7,8 +7,9 @@ length or rate are other numbers. Pieces of the trained length keep them compara
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -40,12 +41,15 @@ class RecordPieces:
         Pinion revolutions of the shortest piece.
     notes : tuple of str
         What is undefined and why.
+    waveforms : tuple of dict of str to (orders,) complex64
+        Lines of the pinion's average of every piece by channel, see `diagnostics.indicators.record.RecordValues`.
     """
 
     values: np.ndarray
     names: tuple[str, ...]
     revolutions: int
     notes: tuple[str, ...]
+    waveforms: tuple[dict[str, np.ndarray], ...] = ()
 
     def columns(self, names: tuple[str, ...]) -> np.ndarray:
         """Return the named features, (pieces, len(names)); those that were not taken are NaN."""
@@ -55,6 +59,12 @@ class RecordPieces:
             if name in position:
                 found[:, k] = self.values[:, position[name]]
         return found
+
+    def medians(self, names: tuple[str, ...]) -> np.ndarray:
+        """Return the median over pieces of the named features, (len(names),); NaN where no piece defines one."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # no piece defines it: NaN it is
+            return np.asarray(np.nanmedian(self.columns(names), axis=0))
 
 
 def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
@@ -68,7 +78,7 @@ def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
         name: np.asarray(resample_poly(signal, ratio.numerator, ratio.denominator))
         for name, signal in recording.channels.items()
     }
-    return MeasuredRecording(recording.path, channels, recording.fs_hz * float(ratio), recording.tacho_s)
+    return replace(recording, channels=channels, fs_hz=recording.fs_hz * float(ratio))
 
 
 def record_pieces(
@@ -116,7 +126,8 @@ def record_pieces(
     names = tuple(values[0])
     table = np.array([[piece[name] for name in names] for piece in values])
     notes = tuple(dict.fromkeys(piece.notes for piece in found if piece.notes))
-    return RecordPieces(table, names, min(piece.revolutions[0] for piece in found), notes)
+    waveforms = tuple(piece.waveforms for piece in found)
+    return RecordPieces(table, names, min(piece.revolutions[0] for piece in found), notes, waveforms)
 
 
 def _own_values(own: Sequence[OwnIndicator], piece: Recording) -> dict[str, float]:

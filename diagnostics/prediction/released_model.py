@@ -19,7 +19,7 @@ from diagnostics.release.model_seal import FACTS_FILE, check_files
 from diagnostics.release.release import REFERENCED
 from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import NETWORK
+from diagnostics.statistics.judgement import CIRCULAR, NETWORK
 from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.classifier_file import (
     CLASSIFIER_FILE,
@@ -31,10 +31,12 @@ from diagnostics.training.classifier_file import (
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
+    from diagnostics.training.circular_files import CircularFacts
+    from diagnostics.training.circular_network import CircularNetwork
     from diagnostics.training.cnn import WideKernelNetwork
     from diagnostics.training.cnn_files import NetworkFile
 
-NETWORK_FILE = "cnn.safetensors"
+NETWORK_FILE, CIRCULAR_FILE = "cnn.safetensors", "circular.safetensors"
 UNHASHED = "this model has no hashes of its files, so a changed bit in one is not seen; train again to have them"
 
 
@@ -54,6 +56,8 @@ class ReleasedModel:
         On features minus the machine's own healthy ones; None where the set did not allow the variant.
     network : tuple or None
         Network and what its file says; None where it was not trained or torch is missing.
+    circular : tuple or None
+        The same of the network on averages.
     accuracy : mapping of str to Interval
         Accuracy on the test specimens by classifier.
     note : str
@@ -73,6 +77,7 @@ class ReleasedModel:
     accuracy: Mapping[str, Interval]
     note: str
     own: tuple[OwnIndicator, ...] = ()
+    circular: tuple[CircularNetwork, CircularFacts] | None = None
 
 
 def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
@@ -107,9 +112,11 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         check_files(folder, hashes)
     facts, distance, referenced = read_facts(folder)
     accuracy = read_accuracy(folder)
-    network, note = _network(folder, NETWORK in accuracy)
+    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy, CIRCULAR_FILE: CIRCULAR in accuracy})
+    network = _network(folder) if NETWORK_FILE in loadable else None
+    circular = _circular(folder) if CIRCULAR_FILE in loadable else None
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
-    _check_folder(folder, facts, classifiers, network)
+    _check_folder(folder, facts, classifiers, network, circular)
     return ReleasedModel(
         folder=folder,
         facts=facts,
@@ -122,6 +129,7 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
         accuracy=accuracy,
         note="; ".join(text for text in (note, "" if hashes else UNHASHED) if text),
         own=_own_of(folder, classifiers, own),
+        circular=circular,
     )
 
 
@@ -151,6 +159,7 @@ def _check_folder(
     facts: ModelFacts,
     classifiers: Mapping[str, FeatureClassifier],
     network: tuple[WideKernelNetwork, NetworkFile] | None,
+    circular: tuple[CircularNetwork, CircularFacts] | None,
 ) -> None:
     parts = []
     for prefix, classifier in classifiers.items():
@@ -159,16 +168,28 @@ def _check_folder(
         parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
     if network:
         parts.append(ModelPart(NETWORK_FILE, network[1].identity, network[1].classes, network[1].channels))
+    if circular:
+        parts.append(ModelPart(CIRCULAR_FILE, circular[1].identity, circular[1].classes, circular[1].channels))
     check_parts(folder, facts, parts)
 
 
-def _network(folder: Path, scored: bool) -> tuple[tuple[WideKernelNetwork, NetworkFile] | None, str]:
-    path = folder / NETWORK_FILE
-    if not path.is_file():
-        missing_note = f"network left out: {FACTS_FILE} gives its scores, but {NETWORK_FILE} is missing; train again"
-        return None, missing_note if scored else ""
-    if missing := missing_packages("torch", "safetensors"):
-        return None, f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
+def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...], str]:
+    """Return the files of networks that can be read, and what is left out of those that the model gives scores of."""
+    present = tuple(name for name in scored if (folder / name).is_file())
+    lost = [name for name, wanted in scored.items() if wanted and name not in present]
+    note = f"network left out: {FACTS_FILE} gives its scores, but {', '.join(lost)} is missing; train again"
+    if present and (missing := missing_packages("torch", "safetensors")):
+        return (), f"network left out: {', '.join(missing)} not installed (pip install 'siggen[cnn]')"
+    return present, note if lost else ""
+
+
+def _network(folder: Path) -> tuple[WideKernelNetwork, NetworkFile]:
     from diagnostics.training.cnn_files import load_network
 
-    return load_network(path), ""
+    return load_network(folder / NETWORK_FILE)
+
+
+def _circular(folder: Path) -> tuple[CircularNetwork, CircularFacts]:
+    from diagnostics.training.circular_files import load_circular
+
+    return load_circular(folder / CIRCULAR_FILE)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, new_figure
-from diagnostics.prediction.prediction import Prediction
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.signal.order_spectrum import OrderSpectrum, order_spectrum
 
 if TYPE_CHECKING:
@@ -20,10 +21,10 @@ DECADES_SHOWN = 5.0
 LINE_COLOUR = "#5b6b7b"
 
 
-def sideband_figure(found: Prediction, channel: str) -> Figure:
+def sideband_figure(recording: MeasuredRecording, teeth: tuple[int, int], pulses: ShaftPulses, channel: str) -> Figure:
     """Return the spectrum of a channel around its first mesh harmonics, one row each, all on one scale."""
-    recording, teeth, speed_hz = found.recording, found.teeth, found.pulses.speed_hz
-    spectrum = order_spectrum(recording.channels[channel], found.pulses.times_s, recording.fs_hz, teeth[0])
+    speed_hz = pulses.speed_hz
+    spectrum = order_spectrum(recording.channels[channel], pulses.times_s, recording.fs_hz, teeth[0])
     highest = int((0.45 * recording.fs_hz / speed_hz - ORDERS_SHOWN) / teeth[0])
     harmonics = range(1, min(HARMONICS_SHOWN, max(1, highest)) + 1)
     figure, axes = new_figure(len(harmonics), 1, height_in=1.0 + 1.3 * len(harmonics), sharex=True, sharey=True)

@@ -55,12 +55,16 @@ class RecordingFacts:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredRecording:
-    """Channels (n,) [m/s^2] by the model's names, rate, and pulse times [s] of the pinion where there is a tacho."""
+    """Channels (n,) [m/s^2] by the model's names, rate, and pulse times [s] of the pinion where there is a tacho.
+
+    `simulated`: whether the file says that siggen wrote it.
+    """
 
     path: Path
     channels: Mapping[str, np.ndarray]
     fs_hz: float
     tacho_s: np.ndarray | None
+    simulated: bool = False
 
     @property
     def duration_s(self) -> float:
@@ -98,7 +102,7 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
         raise UsageError(f"{path}: channels differ in their number of samples ({listed}); record them together")
     factor = factor_to_m_s2(facts.unit, facts.sensitivity_mv_per_g) * _full_scale(path, found, facts)
     channels = {name: factor * signal for name, signal in signals.items()}
-    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts))
+    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts), found.simulated)
 
 
 def _rate(path: Path, found: Columns, said: float | None) -> float:

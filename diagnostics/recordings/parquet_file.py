@@ -10,6 +10,9 @@ import numpy as np
 from diagnostics.recordings.recorded_columns import Columns
 from siggen.errors import UsageError
 
+IDENTITY = b"siggen.identity"
+"""Key of the schema's metadata in every file that siggen writes."""
+
 
 def read_parquet(path: Path, row: int | None = None) -> Columns:
     """Read the numeric columns of a Parquet file.
@@ -38,15 +41,16 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
         table = parquet.read_table(path, columns=lists or numbers)
     except (OSError, pa.ArrowInvalid) as error:
         raise UsageError(f"{path}: cannot be read as Parquet ({error})") from error
+    simulated = IDENTITY in (schema.metadata or {})
     if not lists:
-        return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers})
+        return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers}, simulated=simulated)
     chosen = 0 if row is None and table.num_rows == 1 else row
     if chosen is None or not 0 <= chosen < table.num_rows:
         raise UsageError(
             f"{path}: holds {table.num_rows} records, one per row; received row {row}. Choose one with --row, from 0 "
             f"to {table.num_rows - 1} (for a reference: --reference FILE:ROW)."
         )
-    return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists})
+    return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists}, simulated=simulated)
 
 
 def _is_list(kind: Any) -> bool:

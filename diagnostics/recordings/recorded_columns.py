@@ -20,11 +20,14 @@ class Columns:
         Sampling frequency where the file states it.
     full_scale : bool
         Whether values are shares of the recorder's full scale, as integer WAV files hold them.
+    simulated : bool
+        Whether the file says that siggen wrote it.
     """
 
     values: Mapping[str, np.ndarray]
     fs_hz: float | None = None
     full_scale: bool = False
+    simulated: bool = False
 
 
 def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:

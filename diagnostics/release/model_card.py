@@ -83,6 +83,16 @@ def _files(training: Training) -> str:
             "* `cnn.onnx`: the same network, input `windows`, output `logits`. Average the class probabilities over "
             f"the windows of a record. Windows are {windows.hop_revolutions} revolutions apart.",
         ]
+    if training.circular:
+        count = len(training.circular.channels)
+        lines += [
+            "* `circular.safetensors`: convolutional network round the pinion's synchronous average. The input is "
+            f"(batch, {2 * count}, 1024) in m/s^2: one averaged revolution of every channel, then their residuals "
+            "(without shaft orders 0 to 2 and mesh harmonics), orders up to 511. `predict` uses it.",
+            "* `circular.onnx`: the same network, input `rows`, output `logits`.",
+        ]
+    if training.referenced and len(training.referenced.judged) > 2:
+        lines.append("* The circular network beside a healthy record is judged in `metrics.json`; it is not saved.")
     return "\n".join(lines)
 
 

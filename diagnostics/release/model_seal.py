@@ -13,6 +13,7 @@ from siggen.errors import UsageError
 FACTS_FILE = "model.json"
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
+    *("circular.safetensors", "circular.onnx"),
     *("referenced_classifier.skops", "referenced_feature_names.json"),
 )
 """All files of a model beside `model.json`, those that not every training writes among them."""

@@ -12,13 +12,13 @@ import pyarrow as pa
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.recording import recordings
-from diagnostics.records.state_classes import CLASS
 from diagnostics.release.floor_roughness import floor_features
-from diagnostics.release.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.release.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
-from diagnostics.statistics.evaluation import Scores, scores
-from diagnostics.training.baselines import FeatureClassifier, calibrated_classifier, train_classifier
+from diagnostics.statistics.evaluation import Scores
+from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
+from diagnostics.training.baselines import FeatureClassifier
+from diagnostics.training.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
@@ -64,7 +64,7 @@ class Release:
     note: str
 
 
-def release(training: Training, table: pa.Table, dataset: Dataset, seed: int = 0) -> Release:
+def release(training: Training, table: pa.Table, dataset: Dataset) -> Release:
     """Return what goes along with the classifiers of a set; fitted on training, thresholds on held-out specimens.
 
     Parameters
@@ -75,13 +75,11 @@ def release(training: Training, table: pa.Table, dataset: Dataset, seed: int = 0
         Feature table of the set.
     dataset : siggen Dataset
         The set.
-    seed : int
-        Seeds the bootstrap of the variant's scores.
     """
     matrix, split = feature_matrix(table), training.split
     whole = with_floor_features(matrix, dataset)
     distance, distances = _distance(log_values(whole.values), whole, split)
-    referenced, note = _referenced(matrix, whole, split, seed)
+    referenced, note = _referenced(training, whole)
     seen = {name: column[~split.test] for name, column in matrix.labels.items()}
     ratio = reference_speed_ratio(seen) if referenced else None
     return Release(
@@ -126,23 +124,18 @@ def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
     return float(np.mean(distances > found.threshold))
 
 
-def _referenced(
-    matrix: FeatureMatrix, whole: FeatureMatrix, split: SpecimenSplit, seed: int
-) -> tuple[ReferencedVariant | None, str]:
-    """Return the variant on the features of `matrix` with a distance on those of `whole`, or why there is none."""
-    differences, kept = healthy_referenced(matrix)
-    part = replace(split, train=split.train[kept], validation=split.validation[kept], test=split.test[kept])
-    found = np.unique(differences.labels[CLASS][part.train])
-    if found.size < 2 or not part.test.any():
+def _referenced(training: Training, whole: FeatureMatrix) -> tuple[ReferencedVariant | None, str]:
+    """Return the variant with a distance on the features of `whole`, or why there is none."""
+    found = training.referenced
+    if found is None:
         return None, (
             "no healthy-referenced variant: it needs a second healthy record of every specimen, in another state, "
             "repeat or operating point"
         )
-    classifier = calibrated_classifier(train_classifier(differences, part, take_logarithms=False), differences, part)
-    judged = scores(classifier.predict(differences.rows(part.test)), seed)
+    (judged,) = [own for own in found.judged if own.name == REFERENCED_NAME]
     apart = healthy_referenced(whole)[0]
-    distance, distances = _distance(apart.values, apart, part)
-    return ReferencedVariant(classifier, distance, judged, distances, part.test), ""
+    distance, distances = _distance(apart.values, apart, found.split)
+    return ReferencedVariant(found.classifier, distance, judged.scores, distances, found.split.test), ""
 
 
 def release_scores(training: Training, found: Release) -> dict[str, Any]:

@@ -45,6 +45,14 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
             export_onnx(network, facts, folder / "cnn.onnx")
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export failed: {error}")
+    if training.circular:
+        from diagnostics.training.circular_files import export_circular_onnx, save_circular
+
+        save_circular(training.circular, folder / "circular.safetensors")
+        try:
+            export_circular_onnx(training.circular, folder / "circular.onnx")
+        except (RuntimeError, ImportError) as error:
+            notes.append(f"ONNX export of the circular network failed: {error}")
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []
     card = f"{model_card(training, dataset)}\n{release_card(released)}"

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.release.distance_part import DistancePart, fit_part, part_facts, part_from_facts
+from diagnostics.release.distance_part import CLIPPED_AT, DistancePart, fit_part, part_facts, part_from_facts
 from diagnostics.release.floor_roughness import DIFFERENCE, ROUGHNESS
 from diagnostics.release.group_bound import group_bound
 from diagnostics.release.noise_floor import FLOOR
@@ -33,6 +33,9 @@ LINES = (
 SHARE_INSIDE = 0.97
 """Share of records of new gearboxes that counts as like training: 5 % of false alarms are allowed, of which two fifths
 are kept for what a threshold from few gearboxes misses by."""
+
+SHARE_OF_SINGLES = 0.99
+"""Share of records of new gearboxes no feature of which lies farther off than `largest_spreads`."""
 
 SHARE_IN_SCALE = 0.9
 """Share of records of new gearboxes that the distance of one part, divided by its scale, keeps below one."""
@@ -53,11 +56,15 @@ class TrainingDistance:
         Largest distance that counts as like training.
     held_out_specimens : int
         How many gearboxes the threshold was chosen on.
+    largest_spreads : float
+        Most that a single feature may lie off, in spreads. The distance counts no feature as more than six, so that a
+        line near a node does not rule; without this second bound every feature might be infinitely far.
     """
 
     parts: tuple[DistancePart, ...]
     threshold: float
     held_out_specimens: int
+    largest_spreads: float = np.inf
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -76,12 +83,16 @@ class TrainingDistance:
         """
         return np.asarray(np.max([part.distance(own, speed_hz) for part, own in self._columns(logs)], axis=0))
 
+    def farthest(self, logs: np.ndarray, speed_hz: np.ndarray) -> np.ndarray:
+        """Return how far the farthest feature of every record lies off, (n,), in spreads; arguments as above."""
+        every = [np.abs(part.standardised(own, speed_hz)).max(axis=1) for part, own in self._columns(logs)]
+        return np.asarray(np.max(every, axis=0))
+
     def strangest(self, logs: np.ndarray, speed_hz: float, count: int = 3) -> list[tuple[str, float]]:
-        """Return the features of one record (k,) farthest off the line, in spreads, of the part farthest off."""
+        """Return the features of one record (k,) farthest off the line, in spreads."""
         speed = np.array([speed_hz])
-        part, own = max(self._columns(logs[None, :]), key=lambda entry: entry[0].distance(entry[1], speed)[0])
-        off = part.standardised(own, speed)[0]
-        return [(part.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
+        off = np.concatenate([part.standardised(own, speed)[0] for part, own in self._columns(logs[None, :])])
+        return [(self.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
 
     def _columns(self, logs: np.ndarray) -> list[tuple[DistancePart, np.ndarray]]:
         ends = np.cumsum([len(part.features) for part in self.parts])
@@ -120,15 +131,17 @@ def calibrated_distance(
     """
     used = split.train | split.validation
     ends = np.cumsum([len(part) for part in parts])
-    fitted, farthest = [], np.zeros(len(logs))
+    fitted, farthest, single = [], np.zeros(len(logs)), np.zeros(len(logs))
     for names, own in zip(parts, np.split(logs, ends[:-1], axis=1), strict=True):
         part = fit_part(own[split.train], speed_hz[split.train], names)
-        held_out = _held_out(part, own, speed_hz, split, specimen)
+        held_out, spreads = _held_out(part, own, speed_hz, split, specimen)
+        single = np.maximum(single, spreads)
         scale = _bound(held_out[used], specimen[used], SHARE_IN_SCALE)
         fitted.append(replace(part, scale=scale))
         farthest = np.maximum(farthest, held_out / scale)
     threshold = _bound(farthest[used], specimen[used], SHARE_INSIDE)
-    return TrainingDistance(tuple(fitted), threshold, int(np.unique(specimen[used]).size))
+    largest = _bound(single[used], specimen[used], SHARE_OF_SINGLES)
+    return TrainingDistance(tuple(fitted), threshold, int(np.unique(specimen[used]).size), max(largest, CLIPPED_AT))
 
 
 def _bound(distance: np.ndarray, specimen: np.ndarray, share: float) -> float:
@@ -138,15 +151,17 @@ def _bound(distance: np.ndarray, specimen: np.ndarray, share: float) -> float:
 
 def _held_out(
     part: DistancePart, logs: np.ndarray, speed_hz: np.ndarray, split: SpecimenSplit, specimen: np.ndarray
-) -> np.ndarray:
-    """Return the distance of all records, of those of a training specimen from a fit without it."""
-    found = part.distance(logs, speed_hz)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return distance and farthest feature of all records, of those of a training specimen from a fit without it."""
+    found, single = part.distance(logs, speed_hz), np.abs(part.standardised(logs, speed_hz)).max(axis=1)
     trained = np.unique(specimen[split.train])
     for number in trained if trained.size > 2 else ():
         own = split.train & (specimen == number)
         others = split.train & ~own
-        found[own] = fit_part(logs[others], speed_hz[others], part.features).distance(logs[own], speed_hz[own])
-    return found
+        fitted = fit_part(logs[others], speed_hz[others], part.features)
+        found[own] = fitted.distance(logs[own], speed_hz[own])
+        single[own] = np.abs(fitted.standardised(logs[own], speed_hz[own])).max(axis=1)
+    return found, single
 
 
 def distance_facts(found: TrainingDistance) -> dict[str, Any]:
@@ -155,6 +170,7 @@ def distance_facts(found: TrainingDistance) -> dict[str, Any]:
         "parts": [part_facts(part) for part in found.parts],
         "threshold": found.threshold,
         "held_out_specimens": found.held_out_specimens,
+        "largest_spreads": found.largest_spreads if np.isfinite(found.largest_spreads) else None,
     }
 
 
@@ -167,4 +183,6 @@ def distance_from_facts(facts: dict[str, Any]) -> TrainingDistance:
         If shapes do not fit or something is missing.
     """
     parts = tuple(part_from_facts(part) for part in facts["parts"])
-    return TrainingDistance(parts, float(facts["threshold"]), int(facts["held_out_specimens"]))
+    largest = facts.get("largest_spreads")  # models of earlier versions have none
+    known = np.inf if largest is None else float(largest)
+    return TrainingDistance(parts, float(facts["threshold"]), int(facts["held_out_specimens"]), known)

@@ -12,9 +12,12 @@ from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.training.learning_curve import CurvePoint
+from diagnostics.training.referenced import Referenced
 from diagnostics.training.split_study import SplitScore
 from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
+
+UNDEFINED = Interval(math.nan, math.nan, math.nan)
 
 FEWEST_SPECIMENS = 6
 """Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""
@@ -75,6 +78,46 @@ def other_set_table(training: Training) -> str:
     return table([*head, "Calibration error there"], rows, caption=caption, sortable=True)
 
 
+def referenced_table(found: Referenced) -> str:
+    """Return what classifiers reach alone and beside a healthy record of the same gearbox, on the same records."""
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            interval_cell(judged.scores.macro_auroc),
+            interval_cell(judged.scores.accuracy),
+            interval_cell(judged.detection.every if judged.detection else UNDEFINED),
+        ]
+        for judged in found.judged
+    ]
+    caption = (
+        "Alone and beside a healthy record of the same gearbox, on the "
+        f"{counted(found.judged[0].scores.records, 'test record')} that have one, with 95 % limits. "
+        "A healthy record is never its own reference."
+    )
+    head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def referenced_pairs_table(found: Referenced) -> str:
+    """Return the paired differences that a healthy record makes."""
+    specimens = found.judged[0].scores.specimens
+    rows = [
+        [
+            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
+            interval_cell(pair.macro_auroc, sign=True),
+            interval_cell(pair.detection or UNDEFINED, sign=True),
+            Cell(verdict(pair.macro_auroc, specimens)),
+        ]
+        for pair in found.comparisons
+    ]
+    head = ["Paired difference", "Macro-AUROC", "Damaged or not", "Interval excludes 0"]
+    caption = (
+        "What a healthy record of the same gearbox is worth: paired differences on the same resampled specimens, with "
+        "95 % limits. The last column is of macro-AUROC."
+    )
+    return table(head, rows, caption=caption, sortable=True)
+
+
 def _other_row(there: Judged, here: Judged) -> list[Cell]:
     scores = [there.scores.macro_auroc, here.scores.macro_auroc, there.scores.accuracy, here.scores.accuracy]
     return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
@@ -122,6 +165,8 @@ def _range(areas: np.ndarray) -> Cell:
 def score_blocks(training: Training) -> list[str]:
     """Return what the section of scores holds below its first table."""
     blocks = [comparison_table(training), severity_table(training)]
+    if training.referenced:
+        blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
     return [*blocks, other_set_table(training)] if training.other else blocks
 
 

@@ -1,4 +1,4 @@
-"""Real cepstrum, and lifters that keep or drop part of it.
+"""Real cepstrum at a few quefrencies, of log spectra without their mesh lines.
 
 c = IFFT(log |X|): sidebands or harmonics at a common spacing collect into one peak (rahmonic) at its inverse. Source:
 Randall 2017, standard literature.
@@ -31,27 +31,8 @@ def log_amplitude(signal: np.ndarray) -> np.ndarray:
     return found
 
 
-def real_cepstrum(log_spectrum: np.ndarray) -> np.ndarray:
-    """Return the real cepstrum of a one-sided log amplitude spectrum.
-
-    Parameters
-    ----------
-    log_spectrum : (k,) float64
-        Natural logarithm of amplitude in equal steps from zero; the last bin counts as the end of the band.
-
-    Returns
-    -------
-    (2 (k - 1),) float64
-        Dimensionless; index q is the quefrency of q / (2 (k - 1)) of the inverse bin width. An echo of share a after q
-        samples gives a/2 there.
-    """
-    from scipy import fft
-
-    return np.asarray(fft.irfft(log_spectrum, n=2 * (log_spectrum.size - 1)))
-
-
 def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
-    """Return the real cepstrum at a few quefrencies: the cosine sum of `real_cepstrum`, without its transform.
+    """Return the real cepstrum of a one-sided log amplitude spectrum at a few quefrencies, as a sum of cosines.
 
     A transform of a length with a large prime factor, as a whole number of revolutions often gives, costs several
     times more than one of a round length; a sum does not.
@@ -59,13 +40,15 @@ def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     log_spectrum : (k,) float64
-        As of `real_cepstrum`.
+        Natural logarithm of amplitude in equal steps from zero; the last bin counts as the end of the band.
     quefrency : (m,) int or float64
-        Indices into what `real_cepstrum` returns; between them the value is the band-limited interpolation.
+        In steps of 1 / (2 (k - 1)) of the inverse bin width; between whole steps the value is the band-limited
+        interpolation.
 
     Returns
     -------
     (m,) float64
+        Dimensionless. An echo of share a after q samples gives a/2 at q.
     """
     length = 2 * (log_spectrum.size - 1)
     block = math.isqrt(log_spectrum.size) + 1
@@ -79,19 +62,6 @@ def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
     rows = weighted.reshape(block, block)
     found: np.ndarray = ((rows @ fine.real) * coarse.real - (rows @ fine.imag) * coarse.imag).sum(axis=0) / length
     return found
-
-
-def short_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
-    """Return the cepstrum with quefrencies from `samples` on zeroed: its spectrum is the smooth envelope (the path)."""
-    kept = cepstrum.copy()
-    kept[samples : kept.size - samples + 1] = 0.0
-    return kept
-
-
-def long_pass(cepstrum: np.ndarray, samples: int) -> np.ndarray:
-    """Return the cepstrum with quefrencies below `samples` zeroed: its spectrum is flat but for lines (the source)."""
-    rest: np.ndarray = cepstrum - short_pass(cepstrum, samples)
-    return rest
 
 
 def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -> np.ndarray:

@@ -13,12 +13,16 @@ from diagnostics.statistics.detection import Detection, detection, detection_met
 from diagnostics.statistics.evaluation import Predictions, Scores, macro_auroc, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
+CIRCULAR, CIRCULAR_REFERENCED, REFERENCED = "circular", "circular_referenced", "healthy_referenced"
 TITLES = {
     INDICATORS: "logistic regression on indicators",
     BOOSTING: "gradient boosting on indicators",
     RMS_ALONE: "RMS alone",
     NETWORK: "1-D network",
     PLAIN_NETWORK: "1-D network without augmentation",
+    CIRCULAR: "circular network on the average",
+    REFERENCED: "logistic regression beside a healthy record",
+    CIRCULAR_REFERENCED: "circular network beside a healthy record",
 }
 
 VALIDATION_AUROC = "validation_macro_auroc"

@@ -158,7 +158,7 @@ def train_network(
         Called after every epoch.
     """
     chosen = settings or TrainingSettings()
-    with torch.random.fork_rng(devices=_seeded_devices(chosen.device)), _one_thread():
+    with torch.random.fork_rng(devices=seeded_devices(chosen.device)), one_thread():
         torch.manual_seed(seed)
         network = WideKernelNetwork(len(records.channels), len(split.classes), records.settings.samples_per_tooth)
         _normalise(network, records, np.flatnonzero(split.train))
@@ -166,13 +166,13 @@ def train_network(
         return _fit(network, records, target, split, seed, chosen, advance)
 
 
-def _seeded_devices(device: str) -> list[int]:
+def seeded_devices(device: str) -> list[int]:
     """Return the devices whose generators are seeded here and given back as they were, besides the CPU's."""
     return [torch.cuda.current_device()] if torch.device(device).type == "cuda" else []
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
+def one_thread() -> Iterator[None]:
     """Sum in one order whatever the number of cores; small layers gain nothing from more threads anyway."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)

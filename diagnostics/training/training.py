@@ -11,12 +11,14 @@ import pyarrow as pa
 
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
-from diagnostics.indicators.classifier_table import feature_matrix, table_notes
+from diagnostics.indicators.classifier_table import feature_matrix, table_notes, table_settings
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.table import record_table
 from diagnostics.statistics.comparison import Comparison, comparison, state_auc
 from diagnostics.statistics.evaluation import Interval, Predictions
 from diagnostics.statistics.judgement import (
     BOOSTING,
+    CIRCULAR,
     INDICATORS,
     NETWORK,
     RMS_ALONE,
@@ -35,8 +37,10 @@ from diagnostics.training.baselines import (
     train_classifier,
 )
 from diagnostics.training.boosting import train_boosting
+from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.network_training import NetworkOptions, TrainedNetworkFile, judge_networks
 from diagnostics.training.other_set import classifier_predictions, network_predictions_of
+from diagnostics.training.referenced import Referenced, referenced_classifiers
 from diagnostics.training.severity import (
     AreaScores,
     area_predictions,
@@ -73,6 +77,10 @@ class Training:
         AUC of RMS alone for the state with the largest damage against healthy.
     severity : tuple of AreaScores
         Damaged area as a number.
+    circular : TrainedCircularFile or None
+        Network on the synchronous average; None without networks.
+    referenced : Referenced or None
+        Classifiers beside a healthy record of the same gearbox; None where the set has no second one.
     """
 
     judged: tuple[Judged, ...]
@@ -86,6 +94,8 @@ class Training:
     comparisons: tuple[Comparison, ...]
     rms_severe: Interval | None
     severity: tuple[AreaScores, ...]
+    circular: TrainedCircularFile | None = None
+    referenced: Referenced | None = None
 
 
 @single_thread
@@ -127,10 +137,13 @@ def train_models(
     with stage("permuted labels", PERMUTATIONS) as advance:
         control = permutation_control(matrix, split, seed, strength=models[INDICATORS].strength, advance=advance)
     results = [_judge(name, model, matrix, split, control, seed) for name, model in models.items()]
-    trained = None
+    trained, circular, averages = None, None, None
     if options.cnn:
         found, trained = judge_networks(dataset, matrix, split, seed, options, stage)
-        results += found
+        averages = _averages(dataset, table)
+        network_alone, judged_alone = judge_circular(CIRCULAR, averages, matrix, split, seed, options, stage)
+        circular = TrainedCircularFile(network_alone, averages.channels, str(dataset.manifest["identity"]))
+        results += [*found, judged_alone]
     specimens = {name: _specimens(matrix, mask) for name, mask in _masks(split).items()}
     details = (str(found.details["note"]) for found in results if found.details.get("note"))
     notes = dict.fromkeys((*table_notes(table), *details))
@@ -141,12 +154,21 @@ def train_models(
         split=split,
         specimens=specimens,
         notes=tuple(notes),
-        other=_judge_other(models, trained, results, other, split.healthy, seed, stage) if other else (),
+        other=_judge_other(models, trained, circular, results, other, split.healthy, seed, stage) if other else (),
         other_name=other.dataset.path.name if other else "",
         comparisons=_comparisons(results, split.healthy, seed),
         rms_severe=_rms_severe(results, matrix, split, seed),
         severity=_severity(results, matrix, split, seed),
+        circular=circular,
+        referenced=referenced_classifiers(matrix, split, results, averages, seed, options, stage),
     )
+
+
+def _averages(dataset: Dataset, table: pa.Table) -> Any:
+    """Return the averages of the records of a feature table, from the table of indicators that it was made of."""
+    from diagnostics.training.average_rows import averaged_records
+
+    return averaged_records(record_table(dataset, table_settings(table)))
 
 
 def _masks(split: SpecimenSplit) -> dict[str, np.ndarray]:
@@ -194,6 +216,7 @@ def _judge(
 def _judge_other(
     models: dict[str, FeatureClassifier],
     network: TrainedNetworkFile | None,
+    circular: TrainedCircularFile | None,
     results: list[Judged],
     other: OtherSet,
     healthy: str | None,
@@ -210,6 +233,9 @@ def _judge_other(
             votes = network_predictions_of(network, other.dataset, matrix)
             advance()
         found[NETWORK] = (votes, network.trained.temperature)
+    if circular:
+        votes = circular_predictions_of(circular, _averages(other.dataset, other.table), matrix)
+        found[CIRCULAR] = (votes, circular.trained.temperature)
     details = {result.name: result.details for result in results}
     return tuple(judged(name, *votes, np.empty(0), details[name], seed, healthy) for name, votes in found.items())
 
@@ -264,19 +290,28 @@ def training_metrics(training: Training) -> dict[str, Any]:
         "classifiers": {found.name: judged_metrics(found) for found in training.judged},
         "other_set": training.other_name or None,
         "classifiers_on_other_set": {found.name: judged_metrics(found) for found in training.other},
-        "comparisons": [
-            {
-                "first": pair.first,
-                "second": pair.second,
-                "accuracy": pair.accuracy.numbers(),
-                "macro_auroc": pair.macro_auroc.numbers(),
-                "detection_auroc": pair.detection.numbers() if pair.detection else None,
-            }
-            for pair in training.comparisons
-        ],
+        "comparisons": [_pair_metrics(pair) for pair in training.comparisons],
+        "beside_a_healthy_record": _referenced_metrics(training.referenced) if training.referenced else None,
         "rms_severe_auc": training.rms_severe.numbers() if training.rms_severe else None,
         "damaged_area": [
             {"title": s.title, "error_mm2": s.error_mm2.numbers(), "spearman": s.spearman.numbers()}
             for s in training.severity
         ],
+    }
+
+
+def _pair_metrics(pair: Comparison) -> dict[str, Any]:
+    return {
+        "first": pair.first,
+        "second": pair.second,
+        "accuracy": pair.accuracy.numbers(),
+        "macro_auroc": pair.macro_auroc.numbers(),
+        "detection_auroc": pair.detection.numbers() if pair.detection else None,
+    }
+
+
+def _referenced_metrics(found: Referenced) -> dict[str, Any]:
+    return {
+        "classifiers": {judged.name: judged_metrics(judged) for judged in found.judged},
+        "comparisons": [_pair_metrics(pair) for pair in found.comparisons],
     }

@@ -70,7 +70,7 @@ class InAngle:
         return np.array(found) * 2.0 / ((hann**2).sum() * PER_TURN * self.shaft_hz)
 
     def residual(self) -> np.ndarray:
-        """The signal less the averages of both shafts."""
+        """Return the signal less the averages of both shafts."""
         rest = self.signal - np.tile(self.rows.mean(axis=0), self.turns)
         place = np.arange(rest.size) * self.gear_order / PER_TURN
         bins = np.floor(place % 1.0 * 2048).astype(int)
@@ -78,7 +78,7 @@ class InAngle:
         return rest - mean[bins]
 
     def band(self, signal: np.ndarray, low_hz: float, high_hz: float) -> np.ndarray:
-        """A signal without what lies outside of the band."""
+        """Return a signal without what lies outside of the band."""
         spectrum = np.fft.rfft(signal)
         hz = np.arange(spectrum.size) * self.shaft_hz * PER_TURN / signal.size
         return np.fft.irfft(np.where((hz >= low_hz) & (hz < high_hz), spectrum, 0.0), signal.size)

@@ -3,9 +3,9 @@
     python docs/scripts/classifier_columns.py data/quickstart data/bench24
 
 The six columns are the energy operators of Teager and Lebold and the cepstral peak of the pinion in every channel. Both
-classifiers choose their C in the same way, on gearboxes that are not judged. Two ways to judge: on the test gearboxes of
-the set's own split, and on all gearboxes, each by classifiers that were trained without it (six folds, of the rest every
-fourth gearbox validates). Intervals: 90 %, paired, from resampled gearboxes.
+classifiers choose their C in the same way, on gearboxes that are not judged. Two ways to judge: on the test gearboxes
+of the set's own split, and on all gearboxes, each by classifiers that were trained without it (six folds, of the rest
+every fourth gearbox validates). Intervals: 90 %, paired, from resampled gearboxes.
 """
 
 from __future__ import annotations

@@ -13,13 +13,14 @@ from pathlib import Path
 import pyarrow as pa
 
 import siggen
+from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import damage_schema, record_schema
 from siggen.record.quantities import quantity_column
-from siggen.checks.quantity_names import available_quantities
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "transfer_path.yaml"
-ADDED = {"manufacture": "manufacture={accuracy_class: 6}", "variation": "variation.speed.random_rms=0.001"}
+MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
+ADDED = {"manufacture": MADE, "variation": "variation.speed.random_rms=0.001"}
 """With these a configuration that has every part with columns of its own."""
 SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")
 NAMES = {
@@ -71,9 +72,12 @@ def needs(full: pa.Schema) -> dict[str, str]:
     """Return column -> section that brings it."""
     found: dict[str, str] = {}
     for section in ADDED:
-        found |= {name: f"`{section}`" for name in set(full.names) - set(schema(without=section).names)}
+        found |= dict.fromkeys(set(full.names) - set(schema(without=section).names), f"`{section}`")
+    for key, off in (("helix", "off"), ("crowning_um", "0")):
+        less = schema([f"manufacture.{key}={off}"])
+        found |= dict.fromkeys(set(full.names) - set(less.names), f"`manufacture.{key}`")
     silent = schema(["housing.force_noise=null"])
-    found |= {name: "`housing.force_noise`" for name in set(full.names) - set(silent.names)}
+    found |= dict.fromkeys(set(full.names) - set(silent.names), "`housing.force_noise`")
     sensors = len(siggen.load_config(FULL).sensors)
     for part in SENSOR_PARTS:
         # a path is what lets a sensor look along the shafts, so that column and axis go together
@@ -152,8 +156,10 @@ def page() -> str:
             "",
             "## Internal quantities",
             "",
-            "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of the record.",
-            "`siggen simulate` writes them for one record. The table shows those of `configs/quickstart.yaml`; other models",
+            "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of "
+            "the record.",
+            "`siggen simulate` writes them for one record. The table shows those of `configs/quickstart.yaml`; other "
+            "models",
             "have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1, ...",
             "",
             *internals(),

@@ -1,4 +1,4 @@
-"""The same record twice: integrated by siggen, and by scipy from an exported model (docs/reference/exported_model.md)."""
+"""One record twice: integrated by siggen, and by scipy from an exported model (docs/reference/exported_model.md)."""
 
 import sys
 import tempfile
@@ -37,7 +37,7 @@ def linear_force(model, approach, rate, pitches):
 
 
 def pair_force(model, approach, rate, pitches, tilt=0.0, tilt_rate=0.0):
-    """Return mesh force and moment of the law pairs on the drive flank, without friction, squeezed film and coupling."""
+    """Return mesh force and moment of the law pairs on the drive flank, without friction, squeezed film, coupling."""
     before, after = model["law.reach_before"], model["law.reach_after"]
     first = int(np.floor(pitches + before))
     touching = []
@@ -73,7 +73,7 @@ def spring(model, row, place, penetration, tilt):
         return whole * penetration, whole, 0.0, 0.0, 0.0
     sinks = between(model["law.slices.sink_m"][row], place)
     flush, contact = table(model["law.slices.flush"][row], place), table(model["law.slices.contact_n_per_m"], place)
-    # Springs in the order in which they touch: what is flush, then groups that stand for 1, 3, 5, ... parts of the rest.
+    # Springs in the order in which they touch: what is flush, then groups that stand for 1, 3, 5 ... parts of the rest.
     parts = contact * (1.0 - flush) * (2 * np.arange(sinks.size) + 1) / sinks.size**2
     stiffness = np.cumsum(np.append(contact * flush, parts))
     preload = np.cumsum(np.append(0.0, parts * sinks))
@@ -95,7 +95,9 @@ def face_spring(model, row, place, penetration, tilt):
     curve = between(model["law.contact.curves"], column)
     nodes = model["law.contact.reach_m"] * (np.arange(len(curve)) / (len(curve) - 1)) ** 2
     if approach > nodes[-1]:
-        raise ValueError(f"an approach of {approach} m lies beyond the last node; this script does not go on from there")
+        raise ValueError(
+            f"an approach of {approach} m lies beyond the last node; this script does not go on from there"
+        )
     force, slope, _ = cubic(nodes, curve[:, 0:2], approach)
     if curve.shape[1] == 4:
         return force, slope, 0.0, 0.0, 0.0
@@ -137,16 +139,25 @@ def integrate(model, times):
     # A step must not pass over a whole engagement: a tenth of one at most.
     longest = 0.1 / (model["speed_hz"] * 2 * np.pi * model["pitches_per_rad"])
     found = solve_ivp(
-        rate, (model["start_s"], times[-1]), model["start_state"], "RK45", times, rtol=1e-7, atol=1e-14, max_step=longest
+        rate,
+        (model["start_s"], times[-1]),
+        model["start_state"],
+        "RK45",
+        times,
+        rtol=1e-7,
+        atol=1e-14,
+        max_step=longest,
     )
-    return model["static_approach_m"] + p @ found.y[:n], np.array([mesh(t, z)[0] for t, z in zip(times, found.y.T)])
+    return model["static_approach_m"] + p @ found.y[:n], np.array(
+        [mesh(t, z)[0] for t, z in zip(times, found.y.T, strict=True)]
+    )
 
 
 def compare(config, overrides, samples=600, record=0):
     """Return times [s], then approach [m] and mesh force [N] by siggen and by scipy."""
-    from siggen.views.exported_model import exported_model, write_model
     from siggen.checks.loading import load_config
     from siggen.record.internals import internals_table
+    from siggen.views.exported_model import exported_model, write_model
 
     loaded = load_config(config, [*overrides, f"duration_s={samples / 51200}"])
     with tempfile.TemporaryDirectory() as folder:
@@ -174,16 +185,20 @@ def main():
 
     figure = Figure(figsize=(9, 9), layout="constrained")
     axes = figure.subplots(3, 2)
-    for row, (name, arguments) in zip(axes, CASES.items()):
+    for row, (name, arguments) in zip(axes, CASES.items(), strict=False):
         times, own, other = compare(*arguments)
         for axis, quantity, unit, scale, a, b in zip(
-            row, ("approach", "mesh force"), ("µm", "N"), (1e6, 1.0), own, other
+            row, ("approach", "mesh force"), ("µm", "N"), (1e6, 1.0), own, other, strict=False
         ):
             error = np.abs(a - b).max() / np.ptp(a)
             print(f"{name}, {quantity}: largest difference {error:.1e} of the swing of {scale * np.ptp(a):.4g} {unit}")
             axis.plot(1e3 * times, scale * a, color="tab:blue", lw=2.5, alpha=0.5, label="siggen")
             axis.plot(1e3 * times, scale * b, color="black", lw=0.8, ls="--", label="scipy, from the exported model")
-            axis.set(xlabel="time [ms]", ylabel=f"{quantity} [{unit}]", title=f"{name}\nlargest difference {error:.0e} of the swing")
+            axis.set(
+                xlabel="time [ms]",
+                ylabel=f"{quantity} [{unit}]",
+                title=f"{name}\nlargest difference {error:.0e} of the swing",
+            )
             axis.grid(alpha=0.3)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     figure.savefig(FIGURE, dpi=110)

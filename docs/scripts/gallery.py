@@ -1,19 +1,19 @@
-"""Figures and numbers of docs/understand/gallery.md: severity, position and size of pits on the gear pair of configs/paper_a.yaml."""
+"""Figures and numbers of docs/understand/gallery.md: severity, position and size of pits on the pair of paper_a."""
 
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from siggen.views.flank_figure import save_flank_figure
-from siggen.config import Config
-from siggen.planning.specimen import draw_specimen
-from siggen.views.flank_views import flank_damage_table, flank_views
-from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.gears.damage.tooth_damage import pits_of
 from siggen.checks.loading import load_config
-from siggen.specimen.gears import gear_pair
+from siggen.config import Config
+from siggen.gears.damage.tooth_damage import pits_of
+from siggen.gears.stiffness.sections import contact_length_loss
+from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage
+from siggen.specimen.gears import gear_pair
+from siggen.views.flank_figure import save_flank_figure
+from siggen.views.flank_views import flank_damage_table, flank_views
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
@@ -34,9 +34,11 @@ def sweep(symbol: str, key: str, values: tuple[float, ...], state: str = "modera
 
 
 def scattered(half_mm: float) -> Config:
-    """Return the paper's set with 48 pits of the severe state scattered around the pitch line, the same for all sizes."""
-    damage = (f"{{kind: clustered, count: 48, spread_profile_mm: 0.4, semi_axis_face_mm: 0.3, "
-              f"semi_axis_profile_mm: {half_mm}, depth_mm: 0.4}}")
+    """Return the paper's set with 48 pits of the severe state scattered about the pitch line, alike for all sizes."""
+    damage = (
+        f"{{kind: clustered, count: 48, spread_profile_mm: 0.4, semi_axis_face_mm: 0.3, "
+        f"semi_axis_profile_mm: {half_mm}, depth_mm: 0.4}}"
+    )
     return load_config(PAPER, [f"states.3.damage={damage}", "states.3.grows_from=none"])
 
 
@@ -78,8 +80,16 @@ def row(name: str, config: Config, state: str) -> str:
     area = flank_views(config, state=state)[0].area_mm2
     behind = loss[(degrees > last + 0.01) & (degrees < 32.7)].max(initial=0.0)
     relative = 100 * (loss / healthy.mesh_stiffness_n_per_m).max()
-    cells = (f"{flank_damage_table(config, state=state).num_rows}", f"{area:.2f}", f"{length:.2f}", f"{loss.max() / 1e6:.2f}",
-             f"{relative:.2f}", f"{degrees[loss.argmax()]:.2f}", f"{first:.2f} to {last:.2f}", f"{behind / 1e6:.3f}")
+    cells = (
+        f"{flank_damage_table(config, state=state).num_rows}",
+        f"{area:.2f}",
+        f"{length:.2f}",
+        f"{loss.max() / 1e6:.2f}",
+        f"{relative:.2f}",
+        f"{degrees[loss.argmax()]:.2f}",
+        f"{first:.2f} to {last:.2f}",
+        f"{behind / 1e6:.3f}",
+    )
     return f"| {name} | " + " | ".join(cells) + " |"
 
 
@@ -104,7 +114,9 @@ def draw(cases: Cases, path: Path) -> None:
     below.set_ylim(bottom=0)
     for axis in (above, below):
         axis.grid(alpha=0.3)
-    figure.legend(*above.get_legend_handles_labels(), loc="outside upper center", frameon=False, ncols=4 if len(cases) == 3 else 3)
+    figure.legend(
+        *above.get_legend_handles_labels(), loc="outside upper center", frameon=False, ncols=4 if len(cases) == 3 else 3
+    )
     figure.savefig(path, dpi=110)
 
 
@@ -114,8 +126,10 @@ def main() -> None:
     for group, cases in GROUPS.items():
         draw(cases, FIGURES / f"gallery_{group}.png")
     save_flank_figure(flank_views(load_config(PAPER)), FIGURES / "gallery_flanks.png")
-    print("| case | pits | area [mm²] | largest lost contact length [mm] | largest ΔK [10⁶ N/m] | largest ΔK/K [%] "
-          "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] |")
+    print(
+        "| case | pits | area [mm²] | largest lost contact length [mm] | largest ΔK [10⁶ N/m] | largest ΔK/K [%] "
+        "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] |"
+    )
     print("|---" * 9 + "|")
     for cases in GROUPS.values():
         for name, (config, state) in cases.items():

@@ -1,4 +1,4 @@
-"""Table of docs/understand/iso_6336.md: mean mesh stiffness of 20 gear pairs by our models beside ISO 6336-1, method B."""
+"""Table of docs/understand/iso_6336.md: mean mesh stiffness of 20 pairs by our models beside ISO 6336-1, method B."""
 
 from math import radians
 
@@ -10,8 +10,28 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
 LINE_LOAD_N_PER_M = 300e3
-PAIRS = ((18, 18), (18, 25), (18, 47), (18, 90), (20, 20), (20, 60), (23, 31), (23, 77), (25, 25), (25, 50),
-         (30, 30), (30, 45), (30, 100), (35, 35), (40, 40), (40, 80), (47, 47), (60, 60), (60, 100), (100, 100))
+PAIRS = (
+    (18, 18),
+    (18, 25),
+    (18, 47),
+    (18, 90),
+    (20, 20),
+    (20, 60),
+    (23, 31),
+    (23, 77),
+    (25, 25),
+    (25, 50),
+    (30, 30),
+    (30, 45),
+    (30, 100),
+    (35, 35),
+    (40, 40),
+    (40, 80),
+    (47, 47),
+    (60, 60),
+    (60, 100),
+    (100, 100),
+)
 MODELS = {
     "base_circle": StiffnessOptions("base_circle"),
     "rack_trochoid": StiffnessOptions("rack_trochoid"),
@@ -24,7 +44,10 @@ MODELS = {
 
 def gear_pair(first: int, second: int) -> GearPair:
     """Return a standard pair whose roots are three times their bores."""
-    gears = (SpurGear(z, MODULE_M, radians(20), 0.0, 1.0, 0.25, (z / 2 - 1.25) * MODULE_M / RADIUS_RATIO) for z in (first, second))
+    gears = (
+        SpurGear(z, MODULE_M, radians(20), 0.0, 1.0, 0.25, (z / 2 - 1.25) * MODULE_M / RADIUS_RATIO)
+        for z in (first, second)
+    )
     return GearPair(*gears, FACE_WIDTH_M, 206e9, 0.3)
 
 
@@ -45,7 +68,7 @@ def body_twist(pair: GearPair) -> float:
 
 
 def ours(pair: GearPair, options: StiffnessOptions) -> tuple[float, float]:
-    """Return largest single-pair stiffness and mean mesh stiffness over a pitch, each over the face width [N/(mm um)]."""
+    """Return largest single-pair stiffness and mean stiffness over a pitch, each over the face width [N/(mm um)]."""
     start, end = pair.contact_start_m, pair.contact_end_m
     nodes, weights = np.polynomial.legendre.leggauss(60)
     stiffness = pair_stiffness(pair, start + 0.5 * (end - start) * (1 + nodes), options)
@@ -76,7 +99,10 @@ def main() -> None:
         values = f"{theory:.1f} | {corrected:.1f} | {theory * factor:.1f} | {corrected * factor:.1f}"
         print(f"| {first}/{second} | {pair.contact_ratio:.2f} | {values} | " + " | ".join(cells) + " |")
     print("\nover the pairs, smallest and largest:\n")
-    print("| model | mean / cγα of c'th | largest single pair / c'th | the same without twist of the rings | mean / (largest single pair x (0.75 ε + 0.25)) |")
+    print(
+        "| model | mean / cγα of c'th | largest single pair / c'th | the same without twist of the rings | "
+        "mean / (largest single pair x (0.75 ε + 0.25)) |"
+    )
     print("|---|---|---|---|---|")
     for name in MODELS:
         shape = np.array(ratios[name]) / np.array(singles[name])

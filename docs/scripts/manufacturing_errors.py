@@ -1,13 +1,13 @@
-"""Tables of docs/understand/manufacturing_errors.md: sidebands and mesh force of healthy gears of several classes at 30 N m."""
+"""Tables of docs/understand/manufacturing_errors.md: sidebands and mesh force of healthy gears by class at 30 N m."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
+from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.checks.loading import load_config
 from siggen.record.simulation import record_response, specimen_state
 
 PINION, GEAR = 47, 18
@@ -25,7 +25,9 @@ def config(accuracy_class: str, share: str) -> Config:
         [
             f"specimens={SPECIMENS}", "fs_hz=54000.0", f"duration_s={PINION / 30!r}", "mesh_harmonics=5",
             "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]", "states=[{name: healthy}]",
-            "dynamics.friction.model=off", "dynamics.mesh.damping=constant", f"manufacture={{accuracy_class: {accuracy_class}{share}}}",
+            "dynamics.friction.model=off",
+            "dynamics.mesh.damping=constant",
+            f"manufacture={{accuracy_class: {accuracy_class}{share}}}",
         ],
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Figures of docs/understand/paper_a.md: spectra of the four states of configs/paper_a.yaml, and the energy of their sidebands."""
+"""Figures of docs/understand/paper_a.md: spectra of the states of configs/paper_a.yaml, energy of their sidebands."""
 
 from pathlib import Path
 
@@ -21,9 +21,7 @@ def line_amplitudes(signal: np.ndarray, fs_hz: float) -> np.ndarray:
 
 def energies(lines: np.ndarray) -> dict[str, float]:
     """Return the root of the sum of squared line amplitudes round the mesh harmonics and over all orders below 200."""
-    bands = {
-        f"around {h} x mesh": [h * TEETH + k for k in range(-8, 9) if k] for h in (1, 2, 3)
-    }
+    bands = {f"around {h} x mesh": [h * TEETH + k for k in range(-8, 9) if k] for h in (1, 2, 3)}
     bands["all orders < 200 but mesh"] = [order for order in range(1, 200) if order % TEETH]
     return {name: float(np.sqrt((lines[orders] ** 2).sum())) for name, orders in bands.items()}
 
@@ -51,7 +49,9 @@ def main() -> None:
         axis.vlines(SHAFT_HZ * orders[is_mesh], 1e-6, shown[is_mesh], color="tab:blue", lw=2)
         axis.set(yscale="log", ylim=(1e-6, 1e2), xlim=(490, 2000), ylabel=f"{state}\namplitude [m/s²]")
         axis.grid(alpha=0.3)
-    axes[-1].set_xlabel("frequency [Hz]; blue: mesh harmonics (n x 540 Hz), orange: other lines of the 30 Hz input shaft")
+    axes[-1].set_xlabel(
+        "frequency [Hz]; blue: mesh harmonics (n x 540 Hz), orange: other lines of the 30 Hz input shaft"
+    )
     figure.savefig(FIGURES / "paper_a_spectra.png", dpi=110)
 
 

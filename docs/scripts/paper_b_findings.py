@@ -1,4 +1,4 @@
-"""Figures and tables of docs/understand/paper_b.md: speed, severity, friction and lubrication of the gearbox of configs/paper_b.yaml."""
+"""Figures and tables of docs/understand/paper_b.md: speed, severity, friction and lubrication of its gearbox."""
 
 import sys
 from pathlib import Path
@@ -7,13 +7,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from siggen.checks.loading import load_config
 from siggen.config import read_yaml
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.quantities import internal_quantities
-from siggen.checks.loading import load_config
-from siggen.views.natural_modes import kinetic_shares, specimen_modes
 from siggen.record.simulation import record_response, specimen_state
+from siggen.views.natural_modes import kinetic_shares, specimen_modes
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 CONFIG = Path(__file__).resolve().parents[2] / "configs" / "paper_b.yaml"
@@ -69,7 +69,9 @@ def said(name):
     """Return the name of a state in words."""
     words = {"spall_half_face": "spall 1.5 mm, half the face"}
     words |= {name: f"{name} pits" for name in ("slight", "moderate", "severe")}
-    return words.get(name) or (f"spall {name[8:11].replace('_', '.')} mm through the face" if "through" in name else name)
+    return words.get(name) or (
+        f"spall {name[8:11].replace('_', '.')} mm through the face" if "through" in name else name
+    )
 
 
 def runs(states, speeds_hz, duration_s, *overrides, fs_hz=54000.0):
@@ -150,24 +152,52 @@ def speed_sweep():
     named = modes()
     figure = Figure(figsize=(9.5, 11), layout="constrained")
     axes = figure.subplots(3, 1, height_ratios=(1, 1, 1))
-    for axis, (name, amplitudes) in zip(axes, maps.items()):
+    for axis, (name, amplitudes) in zip(axes, maps.items(), strict=False):
         shown = 20.0 * np.log10(np.maximum(amplitudes, 1e-4))
-        mesh = axis.pcolormesh(orders, speeds, shown, cmap="magma_r", vmin=-60, vmax=20, shading="nearest", rasterized=True)
+        mesh = axis.pcolormesh(
+            orders, speeds, shown, cmap="magma_r", vmin=-60, vmax=20, shading="nearest", rasterized=True
+        )
         for frequency, _ in named:
             axis.plot(frequency / speeds, speeds, color="tab:cyan", lw=0.9, ls="--")
-        axis.set(xlim=(0.5, 162.5), ylim=(10, 50), ylabel="speed of the pinion [Hz]", xlabel="order of the pinion shaft",
-                 title=f"{said(name)}: casing, vertical; dashed: natural frequencies", xticks=TEETH * np.arange(1, 10))
+        axis.set(
+            xlim=(0.5, 162.5),
+            ylim=(10, 50),
+            ylabel="speed of the pinion [Hz]",
+            xlabel="order of the pinion shaft",
+            title=f"{said(name)}: casing, vertical; dashed: natural frequencies",
+            xticks=TEETH * np.arange(1, 10),
+        )
         figure.colorbar(mesh, ax=axis, label="amplitude [dB re 1 m/s²]")
     for harmonic in range(1, 6):
-        axes[2].plot(harmonic * TEETH * speeds, maps["healthy"][:, harmonic * TEETH - 1], lw=1.4, label=f"order {harmonic * TEETH}")
+        axes[2].plot(
+            harmonic * TEETH * speeds,
+            maps["healthy"][:, harmonic * TEETH - 1],
+            lw=1.4,
+            label=f"order {harmonic * TEETH}",
+        )
     for frequency, name in named:
         if 150 < frequency < 4500:
             axes[2].axvline(frequency, color="gray", lw=0.8, ls="--")
             aside = 0.985 if abs(frequency - 1397) < 10 else 1.015 if abs(frequency - 1428) < 10 else 1.0
-            axes[2].text(frequency * aside, 1.02, f"{frequency:.0f} {name}", rotation=90, ha="center", va="bottom", fontsize=7,
-                         transform=axes[2].get_xaxis_transform())
-    axes[2].set(xlabel="frequency of the mesh harmonic [Hz]", ylabel="amplitude [m/s²]", yscale="log", xscale="log",
-                xlim=(180, 4500), xticks=[200, 300, 500, 1000, 2000, 4000], xticklabels=[200, 300, 500, 1000, 2000, 4000])
+            axes[2].text(
+                frequency * aside,
+                1.02,
+                f"{frequency:.0f} {name}",
+                rotation=90,
+                ha="center",
+                va="bottom",
+                fontsize=7,
+                transform=axes[2].get_xaxis_transform(),
+            )
+    axes[2].set(
+        xlabel="frequency of the mesh harmonic [Hz]",
+        ylabel="amplitude [m/s²]",
+        yscale="log",
+        xscale="log",
+        xlim=(180, 4500),
+        xticks=[200, 300, 500, 1000, 2000, 4000],
+        xticklabels=[200, 300, 500, 1000, 2000, 4000],
+    )
     axes[2].xaxis.set_minor_formatter(NullFormatter())
     axes[2].legend(ncols=5, fontsize=8)
     axes[2].grid(alpha=0.3)
@@ -177,15 +207,22 @@ def speed_sweep():
     for name, values in level.items():
         print(f"| {said(name)} | " + " | ".join(f"{v:.3g}" for v in values[::20]) + " |")
     for name, values in level.items():
-        print(f"{said(name)}: largest rms {values.max():.3g} m/s² at {speeds[values.argmax()]} Hz, least {values.min():.3g} at {speeds[values.argmin()]} Hz")
+        print(
+            f"{said(name)}: largest rms {values.max():.3g} m/s² at {speeds[values.argmax()]} Hz, "
+            f"least {values.min():.3g} at {speeds[values.argmin()]} Hz"
+        )
 
 
 def severity_sweep():
     """Draw one revolution and its orders for every state; print levels, with damage as geometry alone besides."""
     found = {name: q for name, _, q in runs(SEVERITIES, [SPEED_HZ], 0.5)}
     alone = {name: q for name, _, q in runs(SEVERITIES, [SPEED_HZ], 0.5, "dynamics.mesh.damage=geometry")}
-    print("\n| state | rms [m/s²] | without mesh lines: rms, peak [m/s²] | horizontal: rms | geometry alone, vertical: rms | kurtosis | "
-          "orders 10-26 but 18 [m/s²] | orders 28-44 but 36 | mesh force [N] | contact lost |\n|---|---|---|---|---|---|---|---|---|---|")
+    print(
+        "\n| state | rms [m/s²] | without mesh lines: rms, peak [m/s²] | horizontal: rms | "
+        "geometry alone, vertical: rms | kurtosis | "
+        "orders 10-26 but 18 [m/s²] | orders 28-44 but 36 | mesh force [N] | contact lost |\n"
+        "|---|---|---|---|---|---|---|---|---|---|"
+    )
     figure = Figure(figsize=(9.5, 14), layout="constrained")
     axes = figure.subplots(len(found), 2, sharex="col")
     milliseconds = np.arange(1800) / 54.0
@@ -197,8 +234,11 @@ def severity_sweep():
         kurtosis = (rest**4).mean() / (rest**2).mean() ** 2 if rms(rest) > 1e-6 else np.nan
         across = rms(without_mesh(aligned(q, LID["horizontal"])))
         bare = rms(without_mesh(aligned(alone[name], LID["vertical"])))
-        print(f"| {said(name)} | {rms(signal):.3g} | {rms(rest):.2g}, {np.abs(rest).max():.2g} | {across:.2g} | {bare:.2g} | {kurtosis:.3g} | {bands[0]:.2g} | "
-              f"{bands[1]:.2g} | {force.min():.0f} to {force.max():.0f} | {q['lost']:.2%} |")
+        print(
+            f"| {said(name)} | {rms(signal):.3g} | {rms(rest):.2g}, {np.abs(rest).max():.2g} | {across:.2g} | "
+            f"{bare:.2g} | {kurtosis:.3g} | {bands[0]:.2g} | "
+            f"{bands[1]:.2g} | {force.min():.0f} to {force.max():.0f} | {q['lost']:.2%} |"
+        )
         row[0].plot(milliseconds, signal, color="tab:blue", lw=0.7, label="signal")
         row[0].plot(milliseconds, rest, color="tab:red", lw=0.9, label="without mesh harmonics")
         row[0].set(ylabel="[m/s²]", xlim=(0, 1000 / SPEED_HZ))
@@ -228,8 +268,11 @@ def friction_models():
         "mixed_ehl, damping by asperity share": (),
     }
     states = [HEALTHY, *PITTED, THROUGH]
-    print("\n| friction | state | bearing force along; across [N rms] | casing along; across [m/s² rms] | vertical; horizontal | "
-          "without mesh lines, vertical; horizontal |\n|---|---|---|---|---|---|")
+    print(
+        "\n| friction | state | bearing force along; across [N rms] | casing along; across [m/s² rms] | "
+        "vertical; horizontal | "
+        "without mesh lines, vertical; horizontal |\n|---|---|---|---|---|---|"
+    )
     figure = Figure(figsize=(9.5, 10), layout="constrained")
     axes = figure.subplots(4, 2, sharex=True, sharey="row")
     milliseconds = np.arange(1800) / 54.0
@@ -249,8 +292,12 @@ def friction_models():
             for row, part in enumerate((force[0], force[1], *casing)):
                 axes[row, column].plot(milliseconds, part, color=colours[model], lw=1.0, label=model)
                 axes[row, column].grid(alpha=0.3)
-    labels = ("bearing force\nalong the line of action [N]", "bearing force\nacross it [N]",
-              "casing along\nthe line of action [m/s²]", "casing\nacross it [m/s²]")
+    labels = (
+        "bearing force\nalong the line of action [N]",
+        "bearing force\nacross it [N]",
+        "casing along\nthe line of action [m/s²]",
+        "casing\nacross it [m/s²]",
+    )
     for row, label in zip(axes, labels, strict=True):
         row[0].set_ylabel(label)
     axes[0, 0].set(title="healthy", xlim=(0, 8))
@@ -293,7 +340,9 @@ def lubrication():
             continue
         place, values = engagement(q)
         inner = np.abs(place) < 3.5  # single contact and the damage, without the lightly loaded ends
-        cells = (f"{np.nanmin(v[inner]):.3g}, {np.nanmean(v[inner]):.3g}, {np.nanmax(v[inner]):.3g}" for v in values.values())
+        cells = (
+            f"{np.nanmin(v[inner]):.3g}, {np.nanmean(v[inner]):.3g}, {np.nanmax(v[inner]):.3g}" for v in values.values()
+        )
         print(f"| {said(name)} | " + " | ".join(cells) + " |")
         for axis, (key, (label, _)) in zip(axes.flat, LUBRICATION.items(), strict=True):
             axis.plot(place, values[key], lw=1.3, label=said(name))

@@ -1,4 +1,4 @@
-"""The tables of docs/understand/presets.md on bench, from what report and audit wrote: `python docs/scripts/preset_tables.py`.
+"""The tables of docs/understand/presets.md on bench: `python docs/scripts/preset_tables.py`, after report and audit.
 
 Reads runs/bench_report/metrics.json and runs/bench_audit/audit.json, which `make reports` writes.
 """

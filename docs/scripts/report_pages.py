@@ -1,4 +1,4 @@
-"""The pages of the presets in docs/reports: `python docs/scripts/report_pages.py [quickstart] [bench]`, or `make reports`.
+"""Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [quickstart] [bench]`, `make reports`.
 
 Sets are looked for in runs/ and made where they are missing; every command is printed before it runs. A page that
 names a place on this machine is refused. Sets, JSON files, tables and models stay in runs/.
@@ -65,7 +65,12 @@ def run(command: str) -> None:
 def places(page: str) -> list[str]:
     """Return what a page says about the machine it was made on: folders, user, host."""
     text = re.sub(r"base64,[A-Za-z0-9+/=]+", "", page)
-    names = {str(Path.cwd()), str(Path.home()), socket.gethostname(), getpass.getuser()} - {"", "/", "root", "localhost"}
+    names = {str(Path.cwd()), str(Path.home()), socket.gethostname(), getpass.getuser()} - {
+        "",
+        "/",
+        "root",
+        "localhost",
+    }
     found = [name for name in names if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
     return [*found, *re.findall(r"(?<![\w<])/(?:tmp|home|work|root|Users|var)/[\w./-]+", text)]
 

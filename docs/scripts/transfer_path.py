@@ -1,4 +1,4 @@
-"""Numbers of docs/understand/transfer_path.md: levels and noise of healthy channels, and how sensors of one gearbox differ.
+"""Numbers of docs/understand/transfer_path.md: levels and noise of healthy channels, how sensors of a gearbox differ.
 
 `python docs/scripts/transfer_path.py`; it takes half a minute.
 """
@@ -9,12 +9,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from siggen.config.config import Config
+
 from siggen.checks.loading import load_config
-from siggen.specimen.measured_path import INPUTS
-from siggen.sensing.modal_path import modal_accelerance
+from siggen.config.config import Config
 from siggen.record.simulation import simulate
+from siggen.sensing.modal_path import modal_accelerance
 from siggen.specimen.housing import specimen_housing
+from siggen.specimen.measured_path import INPUTS
 
 GEARBOXES, SPREAD_GEARBOXES, SENSORS = 5, 150, 12
 HEALTHY_ROW = 1
@@ -64,7 +65,7 @@ def healthy_channels(config: Config) -> np.ndarray:
 
 
 def sensor_spread(config: Config, mesh_hz: float) -> np.ndarray:
-    """Return the spread over sensors of sidebands and harmonics 2 to 5 over the mesh line [dB], median over gearboxes."""
+    """Return the spread over sensors of sidebands and harmonics 2 to 5 over the mesh line [dB], median of gearboxes."""
     force = np.random.default_rng(1).standard_normal(len(INPUTS))  # one fixed pattern over the bearing forces
     lines_hz = np.array([mesh_hz - 30.0, mesh_hz, mesh_hz + 30.0, *(mesh_hz * np.arange(2, 6))])
     spread = []

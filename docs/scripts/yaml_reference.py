@@ -23,8 +23,10 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
 DISTRIBUTIONS = ("Uniform", "LogUniform", "Normal", "Choice")
 UNITS = {
-    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad", "n_per_m": "N/m", "nm_per_rad": "N m/rad",
-    "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz", "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
+    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad",
+    "n_per_m": "N/m", "nm_per_rad": "N m/rad",
+    "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz",
+    "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
     "m_s": "m/s", "pa_s": "Pa s", "mm": "mm", "um": "µm", "deg": "°", "gpa": "GPa", "hz": "Hz", "us": "µs", "s": "s",
     "kg": "kg", "nm": "N m", "rad": "rad", "db": "dB", "n": "N", "c": "°C",
 }  # fmt: skip
@@ -231,7 +233,7 @@ class Shipped:
         if not SOURCE.search(text):
             return ""
         # "teeth: paper A, section 4.2; bore assumed" beside several keys of one line: each takes its own part
-        parts = [part for part in re.split(r"; |, (?=\w+ assumed)", text) if name.split("_")[0] in part]
+        parts = [part for part in re.split(r"; |, (?=\w+ assumed)", text) if name.split("_", maxsplit=1)[0] in part]
         return (parts[0] if len(parts) == 1 and text.count(";") else text).removeprefix(f"{name}: ")
 
 

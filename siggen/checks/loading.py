@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from siggen.config import Config, apply_overrides, config_file, inherited, parse, read_yaml
+from siggen.config import Config, apply_overrides, config_file, extended_files, inherited, parse, placed, read_yaml
 from siggen.errors import ConfigError
 
 
@@ -20,7 +20,8 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     UsageError
         If there is no such file or preset, or it cannot be read.
     ConfigError
-        If anything is wrong with the configuration; names every problem of form and physics at once.
+        If anything is wrong with the configuration; names every problem of form and physics at once, each with the line
+        of the file or the override that its value comes from.
     """
     # compile nothing, but load the physics
     from siggen.checks.density_files import with_density_files
@@ -29,7 +30,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     from siggen.specimen.measured_path import response_problems, with_measured_responses
 
     if isinstance(source, Mapping):
-        raw, folder, read_from = source, Path(), "configuration"
+        raw, folder, read_from, file = source, Path(), "configuration", None
     else:
         file = config_file(source)
         raw, folder, read_from = read_yaml(file), file.parent, str(source)
@@ -40,5 +41,6 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:
-        raise ConfigError(problems, read_from + (" with overrides" if overrides else ""))
+        files = () if file is None else extended_files(file)
+        raise ConfigError(placed(problems, files, overrides), read_from + (" with overrides" if overrides else ""))
     return parsed.config

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from siggen.checks.edge_problems import edge_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import (
@@ -67,6 +68,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     problems += _coupling_problems(gears, parsed.sections.get("stiffness"), sound)
     problems += variation_problems(parsed.sections, sound)
     problems += shaft_problems(parsed.sections, sound)
+    problems += edge_problems(parsed.sections, sound)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

@@ -18,6 +18,7 @@ from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
+from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
 from siggen.cli.schema import schema
 from siggen.cli.show import show
@@ -31,7 +32,7 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (
     *(init, plan, generate, merge, extend, verify, publish, show, simulate, export_model),
-    *(tvms, flank, errors, modes, path, schema),
+    *(tvms, flank, pressure, errors, modes, path, schema),
 )
 
 app = typer.Typer(

@@ -67,7 +67,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         specimens_per_shard,
     )
     from siggen.specimen.gears import model_notes
-    from siggen.views.stiffness_curves import table_error_text
+    from siggen.views.table_error import table_error_text
 
     specimens = {split: specimen_count(config, split) for split in SPLITS}
     records = config.specimens * config.records_per_specimen
@@ -116,7 +116,11 @@ def _manufacture(config: Config) -> str:
     if section is None:
         return "perfect gears"
     owner = {"specimen": "the same in all states of a gearbox", "state": "drawn anew for each state"}[section.draw]
-    return f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}; {owner}"
+    across = "; helix slope and form" if section.has_helix else ""
+    across += "; crowned" if section.has_crowning else ""
+    return (
+        f"ISO 1328-1 class {section.classes_text}; share of its tolerances: {section.tolerance_share}{across}; {owner}"
+    )
 
 
 def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, Any]]:

@@ -24,7 +24,9 @@ def tvms(
     parts: Annotated[
         bool,
         typer.Option(
-            "--parts", help="Add the compliances that the damaged tooth's pair is made of: contact and tooth."
+            "--parts",
+            help="Add the compliances that the damaged tooth's pair is made of: contact and tooth. With "
+            "dynamics.mesh.contact: face the contact is that of the pair alone under the torque, sink included.",
         ),
     ] = False,
     torque_nm: Annotated[
@@ -61,9 +63,9 @@ def tvms(
         static_torque_nm,
         stiffness_curves,
         stiffness_meaning,
-        table_error_text,
     )
     from siggen.views.stiffness_figure import check_picture_file, save_stiffness_figure
+    from siggen.views.table_error import table_error_text
 
     check_table_file(out)
     if png is not None:

@@ -24,14 +24,29 @@ GEAR_ERROR_COLUMNS = (
 """Columns of each gear in sets with manufacturing errors: as a machine measures them about the shaft's axis."""
 
 
+CROWNING_COLUMNS = (
+    ("crowning_{}_um", pa.float64(), MICROMETRE, "crowning of the {}: what its teeth miss at both ends of the face"),
+)
+HELIX_COLUMNS = (
+    ("helix_slope_{}_um", pa.float64(), MICROMETRE, "helix slope deviation of the {}; part of lead_misalignment_um"),
+    ("helix_form_{}_um", pa.float64(), MICROMETRE, "helix form deviation of the {}"),
+)
+
+
 def manufacture_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns of manufacturing errors; none for sets of perfect gears."""
     if config.manufacture is None:
         return ()
+    section = config.manufacture
+    named = (
+        *GEAR_ERROR_COLUMNS,
+        *(CROWNING_COLUMNS if section.has_crowning else ()),
+        *(HELIX_COLUMNS if section.has_helix else ()),
+    )
     of_gears = (
         Column(name.format(which), kind, unit, meaning.format(which))
         for which in ("pinion", "gear")
-        for name, kind, unit, meaning in GEAR_ERROR_COLUMNS
+        for name, kind, unit, meaning in named
     )
     waves = _wave_columns() if config.manufacture.flank_waves is not None else ()
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"

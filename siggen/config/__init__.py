@@ -11,9 +11,10 @@ from siggen.config.dynamics import Coupling, Dynamics, Rotor
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
-from siggen.config.inheritance import inherited
+from siggen.config.inheritance import extended_files, inherited
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
+from siggen.config.key_lines import placed
 from siggen.config.manufacture import FlankWaves, Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, at, bounds, constant
@@ -100,9 +101,11 @@ __all__ = [
     "constant",
     "corners",
     "draw",
+    "extended_files",
     "inherited",
     "parse",
     "parse_yaml",
+    "placed",
     "read_yaml",
     "yaml_text",
 ]

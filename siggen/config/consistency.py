@@ -155,10 +155,17 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
     # Without slices across the face a misalignment would be a label without an effect.
-    lead = sections["manufacture"].lead_misalignment_um
-    if lead != 0.0 and sections["dynamics"].mesh.damage == "stiffness":
-        allowed = "allowed: 0 with dynamics.mesh.damage: stiffness, which has no slices across the face"
-        yield Problem("manufacture.lead_misalignment_um", str(lead), allowed)
+    if sections["dynamics"].mesh.damage == "stiffness":
+        for key, none in (
+            ("lead_misalignment_um", 0.0),
+            ("crowning_um", 0.0),
+            ("crowning_gear_um", None),
+            ("helix", "off"),
+        ):
+            if (value := getattr(sections["manufacture"], key)) not in (none, 0.0):
+                said = "0" if none in (0.0, None) else none
+                allowed = f"allowed: {said} with dynamics.mesh.damage: stiffness, which has no slices across the face"
+                yield Problem(f"manufacture.{key}", str(value), allowed)
 
 
 def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

@@ -38,6 +38,6 @@ class Density(Section):
 class SensorDensity(Density):
     """Noise of a sensor and its electronics in m/s²/√Hz, such as its data sheet or a measurement at rest gives."""
 
-    factor: Annotated[Number, Within(least=0)] = Field(
+    factor: Annotated[Number, Within(least=0, most=1_000_000)] = Field(
         default=1.0, description="on the whole density, drawn per record and axis; with `background` per gearbox"
     )

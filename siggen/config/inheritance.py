@@ -38,6 +38,20 @@ def inherited(raw: Mapping[str, Any], folder: Path = Path(), source: str = "conf
     return _resolved(raw, folder, source, ())
 
 
+def extended_files(file: Path) -> tuple[Path, ...]:
+    """Return a configuration's file and those that it extends, in the order in which a key is looked for.
+
+    Raises
+    ------
+    ConfigError
+        As `inherited`.
+    """
+    found: tuple[Path, ...] = (file,)
+    while EXTENDS in (raw := read_yaml(found[-1])) and len(found) <= DEEPEST:
+        found = (*found, _extended(raw[EXTENDS], found[-1].parent, str(found[-1])))
+    return found
+
+
 def _resolved(raw: Mapping[str, Any], folder: Path, source: str, seen: tuple[Path, ...]) -> dict[str, Any]:
     if EXTENDS not in raw:
         return dict(raw)

@@ -17,6 +17,7 @@ from siggen.config.distributions import Uniform
 from siggen.config.number import Number, Within, bounds
 from siggen.config.places import READING, GearName, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
+from siggen.config.stages import STAGES, Stages, refuse_stages
 from siggen.config.teeth import Teeth
 from siggen.errors import Problem
 
@@ -35,6 +36,7 @@ class IrregularSpalls(DamageSection):
     teeth: Teeth = Field(
         default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
     )
+    stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
         default=START,
         description="height of the middle above the base circle; pitch; or below_pitch: half way along the flank from "
@@ -87,6 +89,11 @@ class IrregularSpalls(DamageSection):
         if self.depth_mm is not None and self.depth_share != 0.05:
             allowed = "allowed: nothing beside depth_mm, which it would compute"
             raise refusal([Problem("depth_share", "a value", allowed)])
+        return self
+
+    @model_validator(mode="after")
+    def _a_stage_for_each_tooth(self) -> IrregularSpalls:
+        refuse_stages(self.stages, self.teeth)
         return self
 
     @classmethod

@@ -73,7 +73,24 @@ class Manufacture(Section):
     profile_waves: Annotated[Number, Within(above=0, most=10)] = Field(
         default=Uniform(low=2.5, high=3.5), description="cycles of the profile's form over the flank, for each tooth"
     )
-    lead_misalignment_um: Annotated[Number | str, Within(least=0, words=("iso_1328",))] = Field(
+    crowning_um: Annotated[Number, Within(least=0, most=200)] = Field(
+        default=0.0,
+        description="lead crowning of the pinion: a parabola across the face that takes so much at both ends and "
+        "nothing in the middle",
+    )
+    crowning_gear_um: Annotated[Number | None, Within(least=0, most=200, words=(None,))] = Field(
+        default=None, description="of the driven gear; null: drawn like the pinion's, for itself"
+    )
+    helix: Literal["off", "iso_1328"] = Field(
+        default="off",
+        description="iso_1328: helix slope and form of each gear, alike on its teeth, within tolerance_share of its "
+        "class; the slope anywhere up to its limit, either way, the form at its limit",
+    )
+    # A distribution as a default would count in the identities of sets that do not use it.
+    helix_waves: Annotated[Number | None, Within(above=0, most=5, words=(None,))] = Field(
+        default=None, description="cycles of the helix form over the face; null: uniform from 0.7 to 2 (assumed)"
+    )
+    lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
         description="by how much the flanks are apart at one end of the face, either end; iso_1328: what the helix "
         "slopes of both gears make together, each drawn within tolerance_share of its class",
@@ -99,6 +116,38 @@ class Manufacture(Section):
         if problems:
             raise refusal(problems)
         return self
+
+    @model_validator(mode="after")
+    def _slopes_once(self) -> Manufacture:
+        if self.has_helix and self.lead_misalignment_um == "iso_1328":
+            allowed = "allowed: a number beside helix: iso_1328, which has the helix slopes already"
+            raise refusal([Problem("lead_misalignment_um", "iso_1328", allowed)])
+        return self
+
+    @property
+    def crowning_of_gear(self) -> Number:
+        """Crowning of the driven gear, as given or as for the pinion."""
+        return self.crowning_um if self.crowning_gear_um is None else self.crowning_gear_um
+
+    @property
+    def form_waves(self) -> Number:
+        """Cycles of the helix form, as given or as assumed."""
+        return Uniform(low=0.7, high=2.0) if self.helix_waves is None else self.helix_waves
+
+    @property
+    def has_crowning(self) -> bool:
+        """Whether a gear may be crowned."""
+        return max(bounds(self.crowning_um)[1], bounds(self.crowning_of_gear)[1]) > 0.0
+
+    @property
+    def has_helix(self) -> bool:
+        """Whether helices have errors."""
+        return self.helix != "off"
+
+    @property
+    def even_face(self) -> bool:
+        """Whether flanks meet evenly across the face in every specimen."""
+        return not (self.has_crowning or self.has_helix) and self.lead_misalignment_um == 0.0
 
     @property
     def classes_text(self) -> str:

@@ -16,6 +16,7 @@ from siggen.config.number import Number, Within, bounds
 from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Real, Section, Whole
+from siggen.config.stages import STAGES, Stages, refuse_stages
 from siggen.config.teeth import Teeth
 from siggen.errors import Problem, counted
 
@@ -121,6 +122,14 @@ class Spalls(SpallSize, DamageSection):
         default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
     )
     height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
+    stages: Stages = Field(default=1.0, description=f"{STAGES}; not of a polygon")
+
+    @model_validator(mode="after")
+    def _a_stage_for_each_tooth(self) -> Spalls:
+        refuse_stages(self.stages, self.teeth)
+        if self.shape == "polygon" and self.stages != 1.0:
+            raise refusal([Problem("stages", "a value", "allowed: nothing, a polygon is as large as its vertices say")])
+        return self
 
     @classmethod
     def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003

@@ -195,6 +195,14 @@ def parse_yaml(text: str, source: str = "configuration") -> dict[str, Any]:
     return dict(value)
 
 
+def yaml_node(text: str) -> yaml.Node | None:
+    """Return the tree of nodes of a YAML text, which know their lines; None if it is empty or no YAML."""
+    try:
+        return _Loader(text).get_single_node()
+    except yaml.YAMLError:
+        return None
+
+
 def yaml_value(text: str, source: str) -> Any:
     """Return any value written in YAML; raises ConfigError with the line if it is not YAML or has keys twice."""
     try:

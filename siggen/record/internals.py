@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
+from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import available_quantities, quantity_problems
 from siggen.columns.column import Column
 from siggen.config import Config
+from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
-from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
+from siggen.planning.plan import PlannedRecord, planned_record
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.channels import measured_channels
 from siggen.record.quantities import internal_quantities, quantity_column
-from siggen.record.simulation import record_response, specimen_state
+from siggen.record.simulation import SpecimenState, record_response, specimen_state
 
 
 def internals_table(config: Config, record_id: int, *, internals: bool = True) -> pa.Table:
@@ -32,9 +34,7 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         If the record cannot be simulated; says why.
     """
     record = planned_record(config, record_id)
-    specimen = draw_specimen(config, record.specimen_id)
-    state = specimen_state(config, specimen, record.state_id)
-    response, point = record_response(config, specimen, state, record, internals=internals)
+    specimen, _, response, point = _simulated(config, record, internals=internals)
     stored, _ = measured_channels(config, specimen, record, response)
     columns: dict[str, np.ndarray] = {
         "time_s": np.arange(config.samples) / config.fs_hz,
@@ -51,6 +51,28 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         "fs_hz": repr(config.fs_hz),
     }
     return pa.table(columns).replace_schema_metadata(facts)
+
+
+def record_internals(
+    config: Config, record: PlannedRecord
+) -> tuple[SpecimenState, OperatingPoint, FloatArray, dict[str, FloatArray]]:
+    """Return state, operating point, angle of the pinion (n,) [rad] and quantities, name -> (n,), of one record.
+
+    Raises
+    ------
+    SolverFailure
+        If the record cannot be simulated; says why.
+    """
+    specimen, state, response, point = _simulated(config, record, internals=True)
+    return state, point, response.angle_rad, internal_quantities(specimen, response)
+
+
+def _simulated(
+    config: Config, record: PlannedRecord, *, internals: bool
+) -> tuple[Specimen, SpecimenState, Response, OperatingPoint]:
+    specimen = draw_specimen(config, record.specimen_id)
+    state = specimen_state(config, specimen, record.state_id)
+    return specimen, state, *record_response(config, specimen, state, record, internals=internals)
 
 
 def stored_quantities(config: Config) -> tuple[Column, ...]:

@@ -69,7 +69,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
-        lead = None if errors is None or errors.lead_misalignment_m == 0.0 else errors.lead_m
+        lead = None if errors is None or errors.even else errors.lead_m
         teeth = tooth_tables(
             specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead,
             largest_force_n=largest_force_n(config.operating_points, pair),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from itertools import islice
@@ -26,6 +26,7 @@ from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
+from siggen.engines.registry import running
 from siggen.errors import EXIT_INTERRUPTED, SiggenError
 from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shards
 from siggen.sets import physics as contents
@@ -196,7 +197,7 @@ class SetRun:
         work = {shard.key: self._chunks(shard) for shard in missing}
         tasks = (chunk for pieces in work.values() for chunk in pieces)
         function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
-        with closing(self.engine.map(function, tasks)) as results:
+        with running(self.engine, function, tasks) as results:
             ordered = in_order(results)
             for shard in missing:
                 self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))

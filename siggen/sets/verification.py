@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -32,7 +31,7 @@ from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
 from siggen.dataset.storage import LocalFolder, Storage, sha256
 from siggen.engines.protocol import Engine
-from siggen.engines.registry import engine_of
+from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
 from siggen.sets import physics as contents
 
@@ -188,7 +187,7 @@ def _simulate_again(
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
     chosen = engine_of(engine, 1 if engine is None and workers is None else workers)
-    with closing(chosen.map(function, tasks)) as results:
+    with running(chosen, function, tasks) as results:
         for index, result in results:
             record_id, batch = ids[index], result.batch()
             if result.failures:

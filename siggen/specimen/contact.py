@@ -10,15 +10,14 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange, bounds, constant
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
-from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table, face_slices
+from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-TILT_RAD = 2e-5
-"""At which moments across the face are expanded: 0.2 um at the ends of a face of 20 mm, as loaded shafts tilt."""
 LEAST_LINE_LOAD_N_PER_M = 1e3
 """Where the configuration has next to no torque: a Hertz band of some 10 µm."""
 
@@ -48,6 +47,11 @@ def damage_is_geometry(dynamics: Dynamics) -> bool:
     return dynamics.mesh.law == "pairs" and dynamics.mesh.damage != "stiffness"
 
 
+def solves_across_the_face(dynamics: Dynamics) -> bool:
+    """Whether the contact is solved across the face rather than in slices that do not feel each other."""
+    return dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face"
+
+
 def tooth_tables(
     dynamics: Dynamics,
     pair: GearPair,
@@ -68,7 +72,7 @@ def tooth_tables(
     """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
-    if dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face":
+    if solves_across_the_face(dynamics):
         return _across_the_face(dynamics, pair, damage, options, points, largest_force_n, lead_m, coupling)
     # Misaligned faces need slices in the healthy state too: states must not differ by it.
     if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
@@ -94,13 +98,18 @@ def _across_the_face(
     coupling: FloatArray | None,
 ) -> ToothTables:
     """Return the table of the contact across the face; the linear tables of healthy teeth are what it deviates from."""
-    face = TableOptions(
-        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
-        section_loss=dynamics.mesh.damage == "all", tilt_rad=0.0 if dynamics.shafts is None else TILT_RAD,
-    )  # fmt: skip
+    face = face_options(dynamics, largest_force_n)
     lead = None if lead_m is None else lead_m(face_slices(pair, face))
     table = contact_table(pair, damage, options, face, points, lead)
     return ToothTables(whole_face(pair, damage, options, points), None, coupling, table)
+
+
+def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
+    """Return how the contact of a drawn `dynamics` section is tabulated across the face, up to a force [N]."""
+    return TableOptions(
+        largest_force_n, edge_radius_m=1e-3 * constant(dynamics.mesh.pit_edge_radius_mm),
+        section_loss=dynamics.mesh.damage == "all", tilts=dynamics.shafts is not None,
+    )  # fmt: skip
 
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Config, Manufacture, at
 from siggen.gears.errors.error_shapes import Draws, error_shapes
 from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors
+from siggen.gears.errors.helix import Helix, drawn_helix, straight_helix
 from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
 from siggen.gears.errors.tooth_errors import with_errors
 from siggen.gears.geometry.gear_pair import GearPair
@@ -19,26 +22,50 @@ from siggen.seeding import Stage, named_generator
 
 @dataclass(frozen=True, slots=True)
 class MadeGear:
-    """One gear as it was made: its class and tolerances, how much of them it uses, its errors, what a machine finds."""
+    """One gear as it was made: its class and tolerances, how much of them it uses, its errors, what a machine finds.
+
+    `helix`: crowning, slope and form across the face, alike on all teeth.
+    """
 
     accuracy_class: int
     tolerance_share: float
     tolerances: FlankTolerances
     errors: GearErrors
     found: FlankDeviations
+    helix: Helix
 
 
 @dataclass(frozen=True, slots=True)
 class SpecimenErrors:
-    """Both gears, and how far their flanks are apart at the far end of the face when they touch at the near one [m]."""
+    """Both gears, and how far their flanks are apart at the far end of the face when they touch at the near one [m].
+
+    `shafts_m` is the part of that distance that no helix slope of `MadeGear.helix` has.
+    """
 
     pinion: MadeGear
     gear: MadeGear
-    lead_misalignment_m: float
+    shafts_m: float
+
+    @property
+    def lead_misalignment_m(self) -> float:
+        """Distance at the far end that shafts and helix slopes make together [m]; its sign is the end."""
+        return self.shafts_m + self.pinion.helix.slope_m + self.gear.helix.slope_m
+
+    @property
+    def even(self) -> bool:
+        """Whether nothing is missing anywhere across the face."""
+        return self.shafts_m == 0.0 and self.pinion.helix.straight and self.gear.helix.straight
 
     def lead_m(self, slices: int) -> FloatArray:
-        """Return what is missing in the middle of every slice of the face (slices,) [m], of mean 0: F_β (w/L - 1/2)."""
-        return self.lead_misalignment_m * ((np.arange(slices) + 0.5) / slices - 0.5)
+        """Return what is missing in the middle of every slice of the face (slices,) [m]: F_β (w/L - 1/2) and helices.
+
+        Crowning counts from the middle of the face, everything else from its mean.
+        """
+        place = (np.arange(slices) + 0.5) / slices
+        lead = self.shafts_m * (place - 0.5)
+        for helix in (made.helix for made in (self.pinion, self.gear) if not made.helix.straight):
+            lead = lead + helix.missing_m(place)
+        return lead
 
 
 def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenErrors | None:
@@ -60,7 +87,7 @@ def specimen_errors(config: Config, pair: GearPair, specimen_id: int, state_id: 
         return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.{name}")
 
     pinion, gear = (_made(section, pair, which, draws) for which in ("pinion", "gear"))
-    return SpecimenErrors(pinion, gear, _lead_misalignment_m(section, (pinion, gear), draws))
+    return SpecimenErrors(pinion, gear, _shafts_m(section, (pinion, gear), draws))
 
 
 def erroneous_teeth(missing: MissingMaterial, pair: GearPair, errors: SpecimenErrors | None) -> MissingMaterial:
@@ -85,6 +112,11 @@ def error_labels(config: Config, errors: SpecimenErrors | None) -> dict[str, obj
             f"profile_form_{which}_um": 1e6 * largest["profile_form_m"],
             f"profile_deviation_{which}_um": 1e6 * largest["profile_m"],
         }
+        if config.manufacture.has_crowning:
+            labels[f"crowning_{which}_um"] = 1e6 * made.helix.crowning_m
+        if config.manufacture.has_helix:
+            labels[f"helix_slope_{which}_um"] = 1e6 * made.helix.slope_m
+            labels[f"helix_form_{which}_um"] = 1e6 * float(np.ptp(made.helix.form_m))
     return labels | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
 
 
@@ -101,10 +133,21 @@ def _made(section: Manufacture, pair: GearPair, which: str, draws: Draws) -> Mad
     errors = gear_errors(
         pair, which, shapes, tolerances.times(share), at(section.runout_share, uniform("runout_share"))
     )
-    return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors))
+    helix = _helix(section, which, tolerances.times(share), uniform)
+    return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors), helix)
 
 
-def _lead_misalignment_m(section: Manufacture, gears: tuple[MadeGear, MadeGear], draws: Draws) -> float:
+def _helix(section: Manufacture, which: str, limits: FlankTolerances, uniform: Callable[[str], float]) -> Helix:
+    """Return a helix; its slope has the draw that `lead_misalignment_um: iso_1328` takes it from."""
+    number = section.crowning_um if which == "pinion" else section.crowning_of_gear
+    crowning = 1e-6 * at(number, uniform("crowning_um"))
+    if not section.has_helix:
+        return straight_helix(crowning)
+    waves, phase = at(section.form_waves, uniform("helix_waves")), 2.0 * pi * uniform("helix_form")
+    return drawn_helix(crowning, 2.0 * uniform("helix") - 1.0, waves, phase, limits)
+
+
+def _shafts_m(section: Manufacture, gears: tuple[MadeGear, MadeGear], draws: Draws) -> float:
     """Return the drawn misalignment with its sign, as likely the one as the other."""
     if section.lead_misalignment_um == "iso_1328":
         ends = (2.0 * float(draws(f"{which}.helix").random()) - 1.0 for which in ("pinion", "gear"))

@@ -8,8 +8,9 @@ from math import sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Number, bounds, constant, draw
+from siggen.config import Number, at, bounds, constant, draw
 from siggen.config.irregular import IrregularSpalls
+from siggen.config.stages import stage_of
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
@@ -40,12 +41,13 @@ STRIPS_PER_WAVE = 4
 
 def _irregular(model: IrregularSpalls, growth: Growth) -> Damage:
     """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
-    return tuple(_on_tooth(model, growth, tooth) for tooth in growth.teeth(model))
+    return tuple(_on_tooth(model, growth, tooth, index) for index, tooth in enumerate(growth.teeth(model)))
 
 
-def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSpall:
+def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) -> IrregularSpall:
     pair, name = growth.pair, f"irregular.{model.gear}.{tooth}"
-    size = draw(model, growth.place(model.gear, IrregularSpalls), name)
+    uniform = growth.place(model.gear, IrregularSpalls)
+    size = _staged(draw(model, uniform, name), at(stage_of(model.stages, index), uniform(f"{name}.stages")))
     gear, width = pair.member(model.gear), pair.face_width_m
     length, across = MM * constant(size.profile_length_mm), _face_length_m(size, width)
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
@@ -67,6 +69,13 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSp
         size.floor,
         milder,
     )
+
+
+def _staged(size: IrregularSpalls, stage: float) -> IrregularSpalls:
+    """Return drawn sizes at a stage: all lengths shrink alike, and the depth that follows from them."""
+    lengths = ("profile_length_mm", "face_length_mm", "face_share", "depth_mm")
+    given = {key: value for key in lengths if (value := getattr(size, key)) is not None}
+    return size if stage == 1.0 else size.model_copy(update={key: stage * constant(v) for key, v in given.items()})
 
 
 def _milder(growth: Growth, gear: str, tooth: int) -> IrregularSpall | None:
@@ -121,7 +130,10 @@ def _rough(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray,
 
 
 def _problems(pair: GearPair, size: IrregularSpalls) -> Iterator[Problem]:
-    """Yield what is wrong at the bounds, whatever the waves turn out to be: they never go beyond `WAVE_LIMIT`."""
+    """Yield what is wrong at the bounds, whatever the waves turn out to be: they never go beyond `WAVE_LIMIT`.
+
+    A spall at an earlier stage is the same but smaller, and its edges are as far from crossing.
+    """
     width_mm = pair.face_width_m / MM
     yield from _face_problems(size, width_mm)
     shortest_mm, least_mm = bounds(_wave_length_mm(size, width_mm))[0], STRIPS_PER_WAVE * width_mm / STRIPS

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from siggen.config import Spalls, SpallSize, bounds, constant, corners, draw
+from siggen.config import Spalls, SpallSize, at, bounds, constant, corners, draw
+from siggen.config.stages import stage_of
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.outlines import Ellipse, Outline, Polygon, rectangle, v_outline
@@ -109,10 +110,20 @@ def axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
 def _spalls(model: Spalls, growth: Growth) -> Damage:
     """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
     uniform = growth.place(model.gear, Spalls)
-    return tuple(
-        spall_on_tooth(growth.pair, draw(model, uniform, f"spall.{model.gear}.{tooth}"), model.height_reading, tooth)
-        for tooth in growth.teeth(model)
-    )
+    found = []
+    for index, tooth in enumerate(growth.teeth(model)):
+        name = f"spall.{model.gear}.{tooth}"
+        stage = at(stage_of(model.stages, index), uniform(f"{name}.stages"))
+        found.append(
+            spall_on_tooth(growth.pair, _staged(draw(model, uniform, name), stage), model.height_reading, tooth)
+        )
+    return tuple(found)
+
+
+def _staged(size: Spalls, stage: float) -> Spalls:
+    """Return drawn sizes at a stage: all lengths and the depth shrink alike; a depth by length follows its own law."""
+    given = {key: value for key in SIZE_KEYS if (value := getattr(size, key)) is not None}
+    return size if stage == 1.0 else size.model_copy(update={key: stage * constant(v) for key, v in given.items()})
 
 
 def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:

@@ -15,14 +15,17 @@ if TYPE_CHECKING:
 
 
 def error_figure(charts: Sequence[GearChart]) -> Figure:
-    """Return the figure: a row per gear, cumulative pitch on the left, the profiles of all teeth on the right."""
+    """Return the figure: a row per gear, cumulative pitch, the profiles of all teeth, a helix that is not straight."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(11.0, 3.4 * len(charts)), layout="constrained")
-    axes = figure.subplots(len(charts), 2, squeeze=False)
+    columns = 3 if any(chart.helix_um is not None for chart in charts) else 2
+    figure = Figure(figsize=(5.5 * columns, 3.4 * len(charts)), layout="constrained")
+    axes = figure.subplots(len(charts), columns, squeeze=False)
     for row, chart in zip(axes, charts, strict=True):
         _draw_pitch(row[0], chart)
         _draw_profiles(row[1], chart)
+        if columns > 2:
+            _draw_helix(row[2], chart)
     figure.suptitle("deviations about the shaft's axis, positive where material is missing", fontsize=10)
     return figure
 
@@ -77,6 +80,33 @@ def _draw_profiles(axis: Axes, chart: GearChart) -> None:
     axis.set_xlabel("root end to tip of the active flank")
     axis.set_ylabel("profile about its middle [µm]")
     axis.legend(loc="upper right", fontsize=8)
+
+
+def _draw_helix(axis: Axes, chart: GearChart) -> None:
+    import numpy as np
+
+    helix, limits = chart.made.helix, chart.made.tolerances
+    points = helix.form_m.size
+    place = np.linspace(0.0, 1.0, points)
+    errors = 1e6 * (helix.missing_m(place) - helix.crowning_m * (2.0 * place - 1.0) ** 2)
+    _band(axis, 0.0, 1e6 * limits.helix_m, chart, r"$F_\beta$")
+    axis.plot(place, errors, color="tab:blue", label="errors")
+    if helix.crowning_m > 0.0:
+        axis.plot(
+            place,
+            np.zeros(points) if chart.helix_um is None else chart.helix_um,
+            color="tab:orange",
+            label="with crowning",
+        )
+    form = 1e6 * float(np.ptp(helix.form_m))
+    axis.set_title(
+        rf"helix: $f_{{H\beta}}$ {1e6 * helix.slope_m:+.1f} of {1e6 * limits.helix_slope_m:.1f} µm, "
+        rf"$f_{{f\beta}}$ {form:.1f} of {1e6 * limits.helix_form_m:.1f} µm, $C_\beta$ {1e6 * helix.crowning_m:.1f} µm",
+        fontsize=9,
+    )
+    axis.set_xlabel("near to far end of the face")
+    axis.set_ylabel("missing across the face [µm]")
+    axis.legend(loc="best", fontsize=8)
 
 
 def _band(axis: Axes, middle_um: float, height_um: float, chart: GearChart, name: str) -> None:

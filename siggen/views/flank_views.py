@@ -124,10 +124,11 @@ def _state_ids(config: Config, state: str | None) -> list[int]:
 def _views(pair: GearPair, state: str, damage: Damage) -> Iterator[FlankView]:
     for which in ("pinion", "gear"):
         for tooth in damaged_teeth(damage, which):
-            yield _view(pair, state, which, tooth, pits_of(damage, which, tooth))
+            yield flank_view(pair, state, which, tooth, pits_of(damage, which, tooth))
 
 
-def _view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) -> FlankView:
+def flank_view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) -> FlankView:
+    """Return the view of one flank with its damage, which may be none."""
     gear = pair.member(which)
     area_m2 = union_area_m2(gear, damage, pair.face_width_m)
     zones = _flank_zones(pair, which)

@@ -6,12 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.arrays import FloatArray
-from siggen.dynamics.mesh.slice_law import SliceLaw, slice_tables
+from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.damage.tooth_damage import Damage, has_extent
+from siggen.gears.contact.face_gaps import face_gaps
+from siggen.gears.contact.table_columns import FORCE, SLOPE
+from siggen.gears.damage.flank_chords import flank_chords
+from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds, table_of_pair
+from siggen.specimen.static_mesh import StaticMesh
+
+HALVINGS = 50
+"""Of an interval between two approaches of a table: beyond rounding."""
+LAND_SLICES = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,54 +28,111 @@ class SimulatedContact:
     Attributes
     ----------
     sink_um : (k,) how far the mating flank sinks before anything carries; 0 where a land carries
-    land_share : (k,) share of the face that is land
+    land_share : (k,) share of the face that is land; with slices averaged over the Hertz band
     potential_energy_n_per_m : (k,) what the mesh stiffness would be if damage only took contact length and sections
+    pair_m_per_n : (k,) approach over force of the pair, alone under the force of a torque: teeth, contact and sink;
+        None where the contact does not depend on the load
     """
 
     sink_um: FloatArray
     land_share: FloatArray
     potential_energy_n_per_m: FloatArray
+    pair_m_per_n: FloatArray | None = None
 
 
 def simulated_contact(
-    pair: GearPair,
+    static: StaticMesh,
     damage: Damage,
-    slices: SliceLaw | None,
-    contact: ContactTable | None,
     engagement: int,
     position_m: FloatArray,
     potential_energy_n_per_m: FloatArray,
+    torque_nm: float,
 ) -> SimulatedContact:
     """Return the contact of one engagement at positions (k,), which may lie off the path of contact.
 
     Parameters
     ----------
-    pair : GearPair
+    static : StaticMesh
+        Of a state with this damage.
     damage : tuple of Pit or Spall
-    slices : SliceLaw or None
-        Of this damage; None for flanks without any.
-    contact : ContactTable or None
-        In place of slices; it knows the sink, but no share of land (NaN).
     engagement : int
         Number of the pair: pinion tooth n mod z1 with gear tooth n mod z2.
     position_m : (k,)
         Position s of the pair on the line of action [m].
     potential_energy_n_per_m : (k,)
+    torque_nm : float
+        On the pinion.
     """
+    pair = static.pair
     inside = (position_m >= pair.contact_start_m) & (position_m <= pair.contact_end_m)
+    shown = tuple(pit for pit in damage if has_extent(pit))
+    row = table_of_pair(pair, pair_kinds(pair, shown))[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
     sink, land = np.zeros(position_m.size), np.ones(position_m.size)
-    if slices is not None:
-        rows = slice_tables(pair, damage, slices).table_of_pair
-        row = rows[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
+    whole = None
+    if static.slices is not None:
+        slices = static.slices
         grid = slices.start_m + np.arange(slices.land.shape[1]) / slices.per_m
         flush = np.interp(position_m, grid, slices.flush[row])
         land = np.interp(position_m, grid, slices.land[row])
         sink = np.where(flush > 0.0, 0.0, np.interp(position_m, grid, slices.sink_m[row, :, 0]))
-    if contact is not None:
-        kinds = pair_kinds(pair, tuple(pit for pit in damage if has_extent(pit)))
-        row = table_of_pair(pair, kinds)[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
-        grid = np.linspace(pair.contact_start_m, pair.contact_end_m, contact.touch_m.shape[1])
-        sink, land = np.interp(position_m, grid, contact.touch_m[row]), np.full(position_m.size, np.nan)
+    if static.contact is not None:
+        grid = np.linspace(pair.contact_start_m, pair.contact_end_m, static.contact.touch_m.shape[1])
+        sink = np.interp(position_m, grid, static.contact.touch_m[row])
+        land[inside] = _land_share(pair, damage, engagement, position_m[inside])
+        force = static.force_n(torque_nm)
+        whole = np.full(position_m.size, np.nan)
+        whole[inside] = (
+            sink[inside] + _beyond_touch_m(static.contact, int(row), position_m[inside], grid, force)
+        ) / force
     return SimulatedContact(
-        np.where(inside, 1e6 * sink, np.nan), np.where(inside, land, np.nan), potential_energy_n_per_m
+        np.where(inside, 1e6 * sink, np.nan), np.where(inside, land, np.nan), potential_energy_n_per_m, whole
+    )
+
+
+def _land_share(pair: GearPair, damage: Damage, engagement: int, position_m: FloatArray) -> FloatArray:
+    """Return the share of the face (k,) on which the contact line lies in no damage of either tooth."""
+    pinion, gear = (
+        flank_chords(
+            pair.member(which),
+            pits_of(damage, which, engagement % pair.member(which).teeth),
+            pair.face_width_m,
+            LAND_SLICES,
+        )
+        for which in ("pinion", "gear")
+    )
+    return np.asarray(1.0 - face_gaps(pair, pinion, gear, position_m).on_damage.mean(axis=1))
+
+
+def _beyond_touch_m(
+    table: ContactTable, row: int, position_m: FloatArray, grid_m: FloatArray, force_n: float
+) -> FloatArray:
+    """Return the approach beyond first touch (k,) [m] at which a table gives a force: its cubic, halved down to it."""
+    place = (position_m - grid_m[0]) / (grid_m[1] - grid_m[0])
+    cell = np.clip(place.astype(np.int64), 0, table.column.shape[1] - 1)
+    column = table.column[row, cell] + (place - cell) * table.gain[row, cell]
+    first: IntArray = np.minimum(column.astype(np.int64), len(table.curves) - 2)
+    share = (column - first)[:, None]
+    low, high = table.curves[first], table.curves[first + 1]
+    force = (1.0 - share) * low[:, :, FORCE] + share * high[:, :, FORCE]
+    slope = (1.0 - share) * low[:, :, SLOPE] + share * high[:, :, SLOPE]
+    node = table.reach_m * (np.arange(force.shape[1]) / (force.shape[1] - 1.0)) ** 2
+    end = np.clip(np.sum(force < force_n, axis=1), 1, node.size - 1)
+    rows, step = np.arange(end.size), node[end] - node[end - 1]
+    values = (force[rows, end - 1], force[rows, end], slope[rows, end - 1] * step, slope[rows, end] * step)
+    low_share, high_share = np.zeros(end.size), np.ones(end.size)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low_share + high_share)
+        less = _cubic(middle, *values) < force_n
+        low_share, high_share = np.where(less, middle, low_share), np.where(less, high_share, middle)
+    over = np.maximum(force_n - force[:, -1], 0.0) / slope[:, -1]
+    return np.asarray(node[end - 1] + low_share * step + over)
+
+
+def _cubic(x: FloatArray, start: FloatArray, end: FloatArray, rise: FloatArray, last: FloatArray) -> FloatArray:
+    """Return Hermite's cubic at shares x of an interval from its values and its slopes times the interval."""
+    return np.asarray(
+        (1.0 + 2.0 * x) * (1.0 - x) ** 2 * start
+        + x * (1.0 - x) ** 2 * rise
+        + x * x * (3.0 - 2.0 * x) * end
+        + x * x * (x - 1.0) * last
     )

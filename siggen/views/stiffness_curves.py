@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
-from siggen.config import Config
+from siggen.config import Config, bounds
+from siggen.errors import UsageError
 from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
-from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
-from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.contact import damage_is_geometry, largest_force_n
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
@@ -39,7 +39,8 @@ class StiffnessCurve:
     angle_rad : (k,)
     mesh_stiffness_n_per_m : (k,) as simulated, see `stiffness_meaning`
     parts_m_per_n : name of a part -> (k,) compliance of the pair of the first damaged tooth, NaN where it is not in
-        contact; the parts of both teeth from the root to the contact, in the order in which they are drawn
+        contact; the parts of both teeth from the root to the contact, in the order in which they are drawn. With
+        `contact: face` the contact is that of a pair alone under the torque's force, with what the flanks sink
     simulated : what the simulation makes of the damage, where it acts as geometry; else None
     """
 
@@ -91,6 +92,8 @@ def stiffness_curves(
         names it).
     SolverFailure
         If what was drawn cannot be built.
+    UsageError
+        If the teeth do not carry the torque.
 
     Source: paper A, section 2.2, by `siggen.gears.stiffness.mesh_stiffness`; where damage acts as geometry, force over
     approach at rest by `siggen.dynamics.mesh.static_stiffness`.
@@ -131,13 +134,27 @@ def _as_simulated(
 ) -> StiffnessCurve:
     state = specimen_state(config, specimen, state_id)
     pair, angle = state.pair, curve.angle_rad
-    stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
+    most = largest_force_n(config.operating_points, pair) * pair.pinion.base_radius_m
+    if state.static.contact is not None and torque_nm > most:
+        raise UsageError(
+            f"torque: received {torque_nm:g} N m; allowed: up to {most:.4g} N m, three times the largest of the set, "
+            "where the tables of the contact across the face end"
+        )
+    try:
+        stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
+    except ValueError as error:
+        most = max(bounds(point.torque_nm)[1] for point in config.operating_points)
+        raise UsageError(
+            f"torque: received {torque_nm:g} N m, which the teeth of specimen {specimen.specimen_id} do not carry "
+            f"({error}); allowed: a torque that they carry, such as up to {most:g} N m, the largest of the set"
+        ) from None
     position = pair.contact_start_m + pair.pinion.base_radius_m * angle
     energy = curve.mesh_stiffness_n_per_m
-    found = simulated_contact(
-        pair, state.damage, state.static.slices, state.static.contact, engagement, position, energy
-    )
-    return replace(curve, mesh_stiffness_n_per_m=stiffness, simulated=found)
+    found = simulated_contact(state.static, state.damage, engagement, position, energy, torque_nm)
+    parts = curve.parts_m_per_n
+    if found.pair_m_per_n is not None:
+        parts = {**parts, "contact": found.pair_m_per_n - sum(v for name, v in parts.items() if name != "contact")}
+    return replace(curve, mesh_stiffness_n_per_m=stiffness, simulated=found, parts_m_per_n=parts)
 
 
 def _curve(
@@ -194,36 +211,6 @@ def curve_table(curves: list[StiffnessCurve], *, parts: bool = False, potential_
             for name, values in curve.parts_m_per_n.items():
                 columns[f"{curve.state}_{name}_m_per_n"] = pa.array(values, mask=np.isnan(values))
     return pa.table(columns)
-
-
-def worst_table_error(config: Config, specimen_id: int = 0) -> float:
-    """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
-
-    Where damage acts through the contact's slices, which have tables of their own, that of healthy teeth.
-
-    Source: `siggen.gears.stiffness.mesh_tables.table_error`, half-way between the points of the tables that simulations
-    use.
-    """
-    specimen = draw_specimen(config, specimen_id)
-    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
-    damages: dict[Damage, None] = {(): None}
-    if not damage_is_geometry(specimen.dynamics):
-        damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
-    points = specimen.stiffness.table_points
-    return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
-
-
-def table_error_text(config: Config, specimen_id: int = 0) -> str:
-    """Return in words how exactly the tables of one specimen's stiffness are interpolated."""
-    whose = "healthy teeth" if damage_is_geometry(config.dynamics) else "teeth in all states"
-    try:
-        error = f"within {100.0 * worst_table_error(config, specimen_id):.2g} %"
-    except ValueError as refusal:
-        error = f"nowhere: {refusal}"
-    return (
-        f"tables of {config.stiffness.table_points} points, as simulations use them, interpolate the stiffness of "
-        f"{whose} of specimen {specimen_id} {error}"
-    )
 
 
 def mesh_stiffness_curves(

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
 from siggen.gears.errors.gear_errors import profiles_m
+from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.errors import MadeGear, specimen_errors
@@ -19,11 +21,15 @@ from siggen.specimen.gears import gear_pair
 
 @dataclass(frozen=True, slots=True)
 class GearChart:
-    """One gear: `gear` names it, `made` is what was drawn, `profile_um` (z, points) runs from root end to tip."""
+    """One gear: `gear` names it, `made` is what was drawn, `profile_um` (z, points) runs from root end to tip.
+
+    `helix_um` (points,) runs across the face, alike on all teeth; None where nothing is missing across it.
+    """
 
     gear: str
     made: MadeGear
     profile_um: FloatArray
+    helix_um: FloatArray | None
 
 
 def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) -> tuple[GearChart, GearChart]:
@@ -47,12 +53,26 @@ def gear_charts(config: Config, specimen_id: int = 0, state: str | None = None) 
 
 
 def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:
-    """Return one row per tooth: gear, tooth and its deviations [um], positive where material is missing."""
-    return pa.Table.from_pylist([row for chart in charts for row in _rows(chart)])
+    """Return one row per tooth: gear, tooth and its deviations [um], positive where material is missing.
+
+    Where a gear misses material across the face, also its crowning, helix slope and form, alike for its teeth.
+    """
+    uneven = any(chart.helix_um is not None for chart in charts)
+    return pa.Table.from_pylist(
+        [{**row, **(_across(chart) if uneven else {})} for chart in charts for row in _rows(chart)]
+    )
 
 
 def _chart(pair: GearPair, which: str, made: MadeGear) -> GearChart:
-    return GearChart(which, made, 1e6 * profiles_m(pair, which, made.errors))
+    place = np.linspace(0.0, 1.0, HELIX_POINTS)
+    helix = None if made.helix.straight else 1e6 * made.helix.missing_m(place)
+    return GearChart(which, made, 1e6 * profiles_m(pair, which, made.errors), helix)
+
+
+def _across(chart: GearChart) -> dict[str, float]:
+    helix = chart.made.helix
+    found = {"crowning_um": helix.crowning_m, "helix_slope_um": helix.slope_m, "helix_form_um": np.ptp(helix.form_m)}
+    return {name: 1e6 * float(value) for name, value in found.items()}
 
 
 def _rows(chart: GearChart) -> Iterator[dict[str, object]]:

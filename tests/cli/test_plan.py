@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,22 @@ def test_the_table_shows_identity_splits_and_size(path):
     text = run("plan", path)
     for part in (config().identity, "train 60, validation 20, test 20", "540 Hz", "healthy 50%", "18.4 MB", "slight"):
         assert part in text
+
+
+def test_the_error_of_the_contact_tables_is_told_where_the_contact_is_solved_across_the_face() -> None:
+    face = ("--set", "dynamics.mesh.contact=face", "--json")
+    spall = "{kind: spall, face_length_mm: 10, profile_length_mm: 1.0, depth_mm: 0.2}"
+    errors = []
+    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
+    for points in (257, 1025):
+        chosen = (*face, "--set", states, "--set", f"stiffness.table_points={points}")
+        said = json.loads(run("plan", "quickstart", *chosen))["stiffness_tables"]
+        found = re.search(r"within ([\d.e-]+) % rms and ([\d.e-]+) % at most of the force at .* N m \(.*: (.*)\)", said)
+        assert found is not None, said
+        assert found[3] == "sound teeth, severe"
+        errors.append(float(found[1]))
+        assert 0.0 < float(found[1]) <= float(found[2]) < 5.0
+    assert errors[1] < 0.7 * errors[0]
 
 
 def test_the_error_of_the_stiffness_tables_is_told_and_falls_with_their_points(path):

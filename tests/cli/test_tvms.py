@@ -161,3 +161,31 @@ def test_no_two_of_sixteen_states_look_alike() -> None:
     assert len(loss) == 15
     (mildest, *_, worst) = figure.axes[0].lines
     assert mildest.get_zorder() > worst.get_zorder() > 2.0
+
+
+def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated(tmp_path: Path) -> None:
+    spall = "{kind: spall, face_length_mm: 10, profile_length_mm: 1.0, depth_mm: 0.2}"
+    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
+    face = ("--set", "dynamics.mesh.contact=face", "--set", "dynamics.mesh.tip_relief_um=0", "--set", states)
+    run("configs/quickstart.yaml", "--out", tmp_path / "face.parquet", "--parts", "--torque", 60, *face)
+    table = pyarrow.parquet.read_table(tmp_path / "face.parquet")
+    for state in ("healthy", "severe"):
+        parts = [n for n in table.column_names if n.startswith(f"{state}_") and n.endswith("_m_per_n")]
+        total = sum(table[name].to_numpy(zero_copy_only=False) for name in parts)
+        mesh, degrees = table[f"{state}_n_per_m"].to_numpy(), table["angle_deg"].to_numpy()
+        alone = (degrees > 14.5) & (degrees < 18.5)  # beyond the reach of corner contact, too
+        # Alone in contact the pair is the mesh: two ways from one table, solved by halving and by false position.
+        np.testing.assert_allclose(1.0 / total[alone], mesh[alone], rtol=1e-9)
+    land = table["severe_land_share"].to_numpy(zero_copy_only=False)
+    # Half of the face is spalled, and 200 slices tell it to one slice.
+    assert np.nanmin(land) == pytest.approx(0.5, abs=0.01)
+    assert np.nanmax(land) == 1.0
+
+
+@pytest.mark.parametrize("contact", ["slices", "face"])
+def test_a_torque_that_no_teeth_carry_is_refused_with_the_largest_of_the_set(tmp_path: Path, contact: str) -> None:
+    with pytest.raises(UsageError, match=r"torque: received 1e\+09 N m[,;] .*allowed: .*up to \d+"):
+        run(
+            "configs/quickstart.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9, "--pitches", 1,
+            "--set", f"dynamics.mesh.contact={contact}",
+        )  # fmt: skip

@@ -85,6 +85,17 @@ def test_a_misalignment_needs_slices_across_the_face() -> None:
     assert str(found).startswith("manufacture.lead_misalignment_um: received iso_1328; allowed: 0 with")
 
 
+def test_crowning_and_helix_need_slices_and_slopes_count_once() -> None:
+    raw = with_section(accuracy_class=6, crowning_um=5.0, helix="iso_1328")
+    raw["dynamics"]["mesh"]["damage"] = "stiffness"  # type: ignore[index]
+    found = [str(one) for one in parse(raw).problems]
+    assert found[0].startswith("manufacture.crowning_um: received 5.0; allowed: 0 with")
+    assert found[1].startswith("manufacture.helix: received iso_1328; allowed: off with")
+    assert "which has the helix slopes already" in problem(
+        accuracy_class=6, helix="iso_1328", lead_misalignment_um="iso_1328"
+    )
+
+
 def test_gears_outside_the_standard_are_refused_by_name() -> None:
     small = [
         "gears.module_mm=0.4",

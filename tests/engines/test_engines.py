@@ -9,7 +9,7 @@ import pytest
 
 from siggen.engines.processes import WINDOW_PER_WORKER, ProcessEngine, default_workers
 from siggen.engines.protocol import Engine
-from siggen.engines.registry import engine_of
+from siggen.engines.registry import engine_of, running
 from siggen.engines.serial import SerialEngine
 from siggen.errors import EngineError, UsageError
 from tests.engines.tasks import fail_at_three, slow_at_first, square
@@ -77,3 +77,27 @@ def test_an_unknown_engine_and_two_numbers_of_workers_are_refused() -> None:
         engine_of("ray", 2)
     with pytest.raises(UsageError, match="received workers 3 and an engine of 2 workers"):
         engine_of(ProcessEngine(2), 3)
+
+
+class _Without:
+    workers = 1
+
+
+class _Listing(_Without):
+    def map(self, function, tasks):
+        return list(enumerate(map(function, tasks)))
+
+
+class _Uncounted(_Listing):
+    workers = "two"
+
+
+@pytest.mark.parametrize("engine", [_Without(), _Uncounted(), object(), 3])
+def test_an_object_that_is_no_engine_is_refused_with_what_one_has(engine: object) -> None:
+    with pytest.raises(UsageError, match=r"received a \w+ with.* as an engine; allowed: an engine whose map"):
+        engine_of(engine, None)  # type: ignore[arg-type]
+
+
+def test_a_map_that_is_no_generator_is_refused_when_it_runs() -> None:
+    with pytest.raises(UsageError, match=r"map of a _Listing gave a list; allowed: "), running(_Listing(), abs, [1]):
+        pass

@@ -21,7 +21,7 @@ SIGGEN_ROOMS = (
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "loader", "training", "release", "recordings", "page",
-    "prediction", "audit", "report", "cli",
+    "prediction", "machine", "audit", "report", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

@@ -12,7 +12,7 @@ from siggen.columns.record import Record, label_names
 from siggen.config import Config
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate, simulate_specimen
+from siggen.record.simulation import simulate, simulate_specimen, specimen_state
 from siggen.specimen.errors import SpecimenErrors, specimen_errors
 from siggen.specimen.gears import gear_pair
 
@@ -156,6 +156,73 @@ def test_misaligned_shafts_change_healthy_and_damaged_records_alike() -> None:
         assert 0.05 < change < 1.0
         assert abs(after.labels["lead_misalignment_um"]) == pytest.approx(8.0)  # type: ignore[arg-type]
         assert after.labels["sink_depth_um"] == before.labels["sink_depth_um"]
+
+
+def with_helix(config: Config, **keys: object) -> Config:
+    section = {"accuracy_class": 6, **keys}
+    return Config.model_validate({**config.canonical(), "manufacture": section})
+
+
+def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_per_gear() -> None:
+    config = with_helix(CLASS_6, helix="iso_1328", crowning_um=5.0, crowning_gear_um=0.0)
+    for specimen in range(5):
+        one, before = errors_of(config, specimen), errors_of(misaligned("iso_1328"), specimen)
+        # Slope and form shrink alike where their total passes its limit; the form was at its own before.
+        drawn = (
+            made.helix.slope_m * made.tolerance_share * made.tolerances.helix_form_m / np.ptp(made.helix.form_m)
+            for made in (one.pinion, one.gear)
+        )
+        assert sum(drawn) == pytest.approx(before.lead_misalignment_m, rel=1e-9)
+        assert (one.pinion.helix.crowning_m, one.gear.helix.crowning_m) == pytest.approx((5e-6, 0.0), rel=1e-12)
+        place = (np.arange(100) + 0.5) / 100
+        expected = one.pinion.helix.missing_m(place) + one.gear.helix.missing_m(place)
+        np.testing.assert_allclose(one.lead_m(100), expected, atol=1e-18)
+        assert not np.allclose(one.pinion.helix.form_m, one.gear.helix.form_m)
+
+
+def test_new_keys_that_are_not_used_leave_identity_and_draws_as_they_were() -> None:
+    assert with_helix(CLASS_6, crowning_um=0.0, helix="off", helix_waves=None).identity == CLASS_6.identity
+    # Taken with the version before these keys; a default that is a distribution would count.
+    assert CLASS_6.identity == "7eadce477a0c4577760701bdce0092c9c5b7b98540ff00250ff7a9b65c2d30e0"
+    plain, crowned = errors_of(CLASS_6), errors_of(with_helix(CLASS_6, crowning_um=5.0, helix="iso_1328"))
+    np.testing.assert_array_equal(places(plain), places(crowned))
+    assert plain.even
+    assert not crowned.even
+
+
+def test_a_crowned_pair_at_rest_is_as_soft_as_its_parabola_says() -> None:
+    crown = 8e-6
+    config = with_helix(CLASS_6, tolerance_share=0.0, crowning_um=8.0, crowning_gear_um=0.0)
+    state = specimen_state(config, draw_specimen(config, 0), 0)
+    law, pair = state.static.slices, state.pair
+    assert law is not None
+    middle = 0.5 * pair.contact_start_m + 0.5 * (pair.contact_end_m)  # one pair carries alone
+    grid = law.start_m + np.arange(law.contact_n_per_m.size) / law.per_m
+    contact = float(np.interp(middle, grid, law.contact_n_per_m))
+    rest = 1.0 / float(np.interp(middle, grid, law.stiffness_n_per_m[0])) - 1.0 / contact
+    for torque in (3.0, 30.0, 90.0):
+        force = torque / pair.pinion.base_radius_m
+        # Independent springs under a parabola: (2/3) k δ √(δ/C) while the ends are open, k (δ - C/3) once they touch.
+        pressed = (1.5 * force * np.sqrt(crown) / contact) ** (2.0 / 3.0)
+        pressed = pressed if pressed <= crown else force / contact + crown / 3.0
+        expected = force / (pressed + rest * force)
+        at = np.array([(middle - pair.contact_start_m) / pair.base_pitch_m])
+        # 32 groups stand for 200 slices (slice_law).
+        assert state.static.stiffness_n_per_m(torque, at)[0] == pytest.approx(expected, rel=5e-3)
+
+
+def test_records_say_which_helix_and_crowning_were_drawn() -> None:
+    keys = {"helix": "iso_1328", "crowning_um": {"kind": "uniform", "low": 2.0, "high": 6.0}}
+    config = with_helix(CLASS_6, **keys)
+    record = records(config, [1])[0]
+    errors = errors_of(config, 0, 1)
+    assert set(record.labels) == set(label_names(config))
+    assert record.labels["crowning_gear_um"] == pytest.approx(1e6 * errors.gear.helix.crowning_m)
+    assert record.labels["helix_slope_pinion_um"] == pytest.approx(1e6 * errors.pinion.helix.slope_m)
+    assert record.labels["lead_misalignment_um"] == pytest.approx(1e6 * errors.lead_misalignment_m)
+    crowned = errors_of(with_helix(CLASS_6, crowning_um=6.0))
+    lead = crowned.lead_m(200)
+    np.testing.assert_allclose(lead, lead[::-1], atol=1e-18)
 
 
 def test_errors_shake_a_healthy_gearbox() -> None:

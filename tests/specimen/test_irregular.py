@@ -67,6 +67,50 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
         assert severe.depth_m >= moderate.depth_m >= slight.depth_m
 
 
+def test_neighbouring_teeth_are_in_stages_of_their_own_and_each_grows() -> None:
+    full = {**SPALL, "teeth": 3, "depth_mm": 0.1, **STRAIGHT}
+    config = config_with(
+        {**full, "stages": [0.5, 0.3, 0.2]}, {**full, "stages": [1.0, 0.6, 0.2]}, {**full, "teeth": 4, "stages": 1.0}
+    )
+    before = {one.tooth: one for one in damage_of(config, 1)}
+    for state, stages in ((1, (0.5, 0.3, 0.2)), (2, (1.0, 0.6, 0.2)), (3, (1.0, 1.0, 1.0, 1.0))):
+        found = damage_of(config, state)
+        teeth = [(found[0].tooth + i) % 18 for i in range(len(stages))]
+        assert [one.tooth for one in found] == teeth
+        for one, stage in zip(found, stages, strict=True):
+            gear = gear_pair(draw_specimen(config, 0).gears).pinion
+            assert one.profile_arc_m(gear) == pytest.approx(stage * 0.6e-3, rel=1e-9)
+            assert np.ptp([face for face, _, _ in one.stations_m]) == pytest.approx(stage * 5e-3, rel=1e-9)
+            assert one.depth_m == pytest.approx(stage * 0.1e-3, rel=1e-12)
+            if state > 1 and one.tooth in before:
+                assert holds(one, before[one.tooth])
+        before = {one.tooth: one for one in found}
+    labels = specimen_state(config, draw_specimen(config, 0), 2).labels
+    assert labels["faulty_teeth_pinion"] == sorted(one.tooth for one in damage_of(config, 2))
+    assert labels["damage_count"] == 3
+    assert labels["damaged_area_mm2"] == pytest.approx(0.6 * 5.0 * (1.0 + 0.36 + 0.04), rel=1e-3)
+
+
+def test_a_drawn_stage_keeps_its_rank_while_the_spall_grows_and_one_is_no_change() -> None:
+    drawn = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.2, "high": 0.5}}
+    later = {"teeth": 3, "stages": {"kind": "uniform", "low": 0.6, "high": 1.0}}
+    config = config_with({**SPALL, **drawn}, {**SPALL, **later})
+    milder, severe = damage_of(config, 1), damage_of(config, 2)
+    assert len({one.depth_m for one in milder}) == 3
+    for one, two in zip(milder, severe, strict=True):
+        assert holds(two, one)
+    assert config_with({**SPALL, "stages": 1.0}).identity == config_with(SPALL).identity
+
+
+@pytest.mark.parametrize(
+    ("changes", "received"),
+    [({"stages": [1.0, 0.5]}, "a list of 2"), ({"stages": [1.0, 0.5, 1.2]}, "1.2"), ({"stages": 0.0}, "0.0")],
+)
+def test_stages_that_fit_no_teeth_are_refused(changes: dict[str, Any], received: str) -> None:
+    with pytest.raises(ConfigError, match=rf"stages[.\d]*: received {received}; allowed: "):
+        config_with({**SPALL, "teeth": 3, **changes})
+
+
 def test_a_state_is_the_same_alone_and_after_any_others() -> None:
     config = config_with(*GROWN)
     alone = damage_of(config_with(*GROWN), 3)

@@ -42,6 +42,19 @@ def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point(shape: str) -
     assert not damage_problems(pair, (spall,))
 
 
+@pytest.mark.parametrize("shape", [BOX, {**BOX, "shape": "ellipse"}, V])
+def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one(shape: dict[str, Any]) -> None:
+    config = config_with({**shape, "teeth": 3, "stages": [0.9, 0.5, 0.3]}, {**shape, "teeth": 3})
+    slight, severe = damage_of(config, 1), damage_of(config, 2)
+    assert len(slight) == len(severe) == 3  # each full spall has taken in the smaller one
+    for one, full, stage in zip(slight, severe, (0.9, 0.5, 0.3), strict=True):
+        assert one.tooth == full.tooth
+        assert np.ptp(one.outline.face_range_m) == pytest.approx(stage * np.ptp(full.outline.face_range_m), rel=1e-9)
+        assert one.depth_m == pytest.approx(stage * full.depth_m, rel=1e-12)
+        assert full.hides(one)
+    assert config_with({**shape, "stages": 1.0}).identity == config_with(shape).identity
+
+
 def test_axial_lengths_are_heights() -> None:
     (spall,) = damage_of(config_with({**BOX, "height_reading": "axial", "centre_height_mm": 2.0}), 1)
     assert spall.outline.height_range_m == pytest.approx((1.5e-3, 2.5e-3), rel=1e-12)
@@ -107,6 +120,8 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
         (BOX, {"depth_law": "length_squared"}, "depth_mm", "a value", "depth_coefficient_um_per_mm2"),
         (BOX, {"depth_coefficient_um_per_mm2": 20.0}, "depth_coefficient_um_per_mm2", "a value", "takes depth_mm"),
         (BOX, {"upper_width_mm": 3.0}, "upper_width_mm", "a value", "shape rectangle takes face_length_mm"),
+        (BOX, {"teeth": 3, "stages": [1.0, 0.5]}, "stages", "a list of 2", "one for each of the 3 damaged teeth"),
+        (POLYGON, {"teeth": 1, "stages": 0.5}, "stages", "a value", "a polygon is as large as its vertices say"),
         (BOX, {"shape": "star"}, "shape", "'star'", "rectangle, ellipse, v, polygon"),
         (BOX, {"teeth": [18]}, "teeth", "tooth 18", "0 to 17"),
         (V, {"lower_width_mm": 0.0, "upper_width_mm": 0.0}, "upper_width_mm", "0.0", "at least one width above 0"),

@@ -41,9 +41,10 @@ if TYPE_CHECKING:
     CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
     BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
     LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG, CONTACT_REACH,
-) = range(24)  # fmt: skip
+    CONTACT_TILT,
+) = range(25)  # fmt: skip
 """Places of single numbers in `PairLaw.scalars`."""
-SCALARS = 24
+SCALARS = 25
 
 (
     TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
@@ -86,6 +87,11 @@ class PairLaw(NamedTuple):
     def line_of_action_m(self) -> float:
         """Length T of the line of action [m]."""
         return float(self.scalars[LINE_M])
+
+    @property
+    def largest_tilt_rad(self) -> float:
+        """Tilt up to which the table of the contact holds; 0 without one [rad]."""
+        return float(self.scalars[CONTACT_TILT])
 
     @property
     def backlash_m(self) -> float:
@@ -236,6 +242,7 @@ def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTab
     ):  # fmt: skip
         packed.add(place, values)
     scalars[CONTACT_REACH], scalars[LEAD_M] = contact.reach_m, contact.lead_m
+    scalars[CONTACT_TILT] = contact.largest_tilt_rad
 
 
 def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:

@@ -117,6 +117,9 @@ class LinearMotion:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
         self._integrator.advance(pitches, inputs, trajectory)
 
+    def refuse_outside(self, states: FloatArray) -> None:
+        """Accept any state: parallel gears do not tilt."""
+
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:  # noqa: ARG002 - as every motion
         """Return at how many states no teeth touch: the approach is inside the backlash."""
         return _steps_in_gap(self.equations, self._law.half_backlash_m, states)

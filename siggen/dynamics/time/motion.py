@@ -30,6 +30,9 @@ class Motion(Protocol):
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
 
+    def refuse_outside(self, states: FloatArray) -> None:
+        """Raise ValueError if a state (k, 2n) lies outside what the mesh law was made for."""
+
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
         """Return at how many states no teeth touch."""
 

@@ -25,8 +25,6 @@ from siggen.dynamics.time.equations import Equations, equations_about, external_
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
-LARGEST_TILT_RAD = 1e-4
-"""At which the expansion in the tilt errs by 2.4 % of the force (`python -m benchmarks.contact loop`)."""
 LARGEST_SHIFT = 0.02
 """Of a base pitch: gears that shafts let move farther apart no longer mesh at their centre distance."""
 MOTION = ("approach_m", "approach_rate_m_s")
@@ -120,29 +118,41 @@ class PairMotion:
         pair_rate((self.pair_equations, self.law, self._pairs), state, pitches, rate)
         return rate
 
-    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
-        """Return at how many states no pair carries.
+    def refuse_outside(self, states: FloatArray) -> None:
+        """Raise if the gears tilt beyond the expansion of the contact in any of the states (k, 2n).
 
         Raises
         ------
         ValueError
-            If the gears tilt beyond the expansion of the contact.
+            With the tilt and its limit.
         """
         if self.structure.tilt_vector is not None:
             n = self.structure.tilt_vector.size
             tilt = self.pair_equations.static_tilt + states[:, :n] @ self.structure.tilt_vector
-            _refuse_tilt(float(np.abs(tilt).max(initial=0.0)), "in motion")
+            self._refuse_tilt(float(np.abs(tilt).max(initial=0.0)), "in motion")
+
+    def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
+        """Return at how many states no pair carries."""
         return _steps_apart(self.pair_equations, self.law, self._pairs, states, pitches)
 
     def _refuse_soft_shafts(self) -> None:
         """Raise where the static deflection alone is beyond the model."""
-        _refuse_tilt(abs(self.pair_equations.static_tilt), "under the mean torque")
+        self._refuse_tilt(abs(self.pair_equations.static_tilt), "under the mean torque")
         moved = dict(zip(self.structure.coordinates, self.equations.static_deflection, strict=True))
         shift = max(abs(moved[name]) for name in ("x_1", "y_1", "x_2", "y_2"))
         if not shift <= LARGEST_SHIFT * self.base_pitch_m:
             raise ValueError(
                 f"dynamics.shafts: a gear moves by {1e3 * shift:.3g} mm under the mean torque; allowed: at most "
                 f"{1e3 * LARGEST_SHIFT * self.base_pitch_m:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
+            )
+
+    def _refuse_tilt(self, tilt_rad: float, when: str) -> None:
+        limit = self.law.largest_tilt_rad
+        if not tilt_rad <= limit:
+            raise ValueError(
+                f"dynamics.shafts: the flanks tilt by {1e6 * tilt_rad:.3g} urad {when}; allowed: at most "
+                f"{1e6 * limit:.3g}. Take thicker or shorter shafts, a gear nearer the middle, a narrower face or a "
+                "smaller torque"
             )
 
     def pairs(self, states: FloatArray, pitches: FloatArray, inputs: FloatArray | None = None) -> FloatArray:
@@ -167,15 +177,6 @@ class PairMotion:
             approach += [pairs[:, 0, TILT], pairs[:, :, MOMENT].sum(axis=1)]
         moved = states[:, :n] + self.equations.static_deflection
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
-
-
-def _refuse_tilt(tilt_rad: float, when: str) -> None:
-    if not tilt_rad <= LARGEST_TILT_RAD:
-        raise ValueError(
-            f"dynamics.shafts: the flanks tilt by {1e6 * tilt_rad:.3g} urad {when}; allowed: at most "
-            f"{1e6 * LARGEST_TILT_RAD:.0f}. Take thicker or shorter shafts, a gear nearer the middle, less "
-            "misalignment or a smaller torque"
-        )
 
 
 def _names(structure: Structure) -> tuple[str, ...]:

@@ -202,6 +202,7 @@ def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, se
         for decimator in decimators:
             decimator.take(states)
         recorded = slice(max(0, -first), max(0, samples * steps - first))
+        run.motion.refuse_outside(states[recorded])
         lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
         if internals and first + len(states) > 0:  # nothing of the history
             inner.append(_inner_values(run, first, states, samples))

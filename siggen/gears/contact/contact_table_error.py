@@ -7,24 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.contact_table import (
-    FORCE,
-    NO_ENERGY,
-    SLOPE,
-    ContactTable,
-    KindRow,
-    TableOptions,
-    TableSolver,
-    face_slices,
-    first_touch,
-    kind_row,
-    pits_of_kind,
-    row_faces,
-    table_solver,
-)
-from siggen.gears.contact.face_gaps import FaceGaps
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.contact.force_curve import force_curve
+from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
 from siggen.gears.contact.newton_matrix import solver_room
+from siggen.gears.contact.table_columns import FORCE, NO_ENERGY, SLOPE, TableSolver, row_faces, table_solver
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -50,8 +38,9 @@ def contact_table_error(
     table: ContactTable,
     reference_n: float,
     places: int = 40,
+    lead_m: FloatArray | None = None,
 ) -> ContactTableError:
-    """Return the errors at places in the middle of fine intervals near damage, evenly spread (without lead).
+    """Return the errors at places in the middle of fine intervals near damage, evenly spread; of sound teeth without.
 
     Parameters
     ----------
@@ -62,13 +51,17 @@ def contact_table_error(
         Force that errors are shares of [N].
     places : int
         Per kind of damaged pair.
+    lead_m : (slices,) or None
+        Missing material across the face that the table was made with.
     """
-    solver = table_solver(pair, stiffness, options, np.zeros(face_slices(pair, options)))
+    lead = np.zeros(face_slices(pair, options)) if lead_m is None else lead_m - np.min(lead_m)
+    solver = table_solver(pair, stiffness, options, lead)
     fine = 2 * table.touch_m.shape[1] - 1  # every second point is the middle of an interval
     errors = [np.zeros(1)]
-    for row, kind in enumerate(pair_kinds(pair, damage)[1:], start=1):
+    kinds = pair_kinds(pair, damage)
+    for row, kind in [*enumerate(kinds)][1:] or [(0, kinds[0])]:
         middles = kind_row(pair, stiffness, options, fine, pits_of_kind(damage, kind))
-        near = np.flatnonzero(table.column[row] >= options.healthy_columns)
+        near = np.flatnonzero((table.column[row] >= options.healthy_columns) | (row == 0))
         for cell in near[:: max(1, near.size // places)].tolist():
             errors.append(_errors_at(solver, middles, table, row, cell))
     found = np.abs(np.concatenate(errors)) / reference_n
@@ -80,12 +73,9 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     from scipy.interpolate import CubicHermiteSpline
 
     place = np.array([2 * cell + 1])
-    here = KindRow(
-        row.position_m[place], FaceGaps(*(a[place] for a in row.gaps)), row.rest_m_per_n[place], row.edge_radius_m
-    )
-    only = np.zeros(1, dtype=np.int64)
-    approach = float(first_touch(solver, here, only)[0]) + np.array(APPROACHES) * table.reach_m
-    slices = row_faces(solver, here, only)[0]
+    touch = float(first_touch(solver.pair, row, place, solver.lead_m)[0])
+    approach = touch + np.array(APPROACHES) * table.reach_m
+    slices = row_faces(solver, row, place)[0]
     direct = force_curve(
         slices, approach, 0.0, np.zeros(solver.lead_m.size), solver_room(solver.lead_m.size), NO_ENERGY
     )

@@ -2,13 +2,13 @@ r"""Force and moment across the face of one tooth pair at one position, from the
 
 The face is cut into equal slices that carry the line loads q_j = u_j/κ >= 0. Derived: the complementary energy
 
-    Ψ = (w/κ) [½ u·K(a) u + Σ_j ∫ e_j du] + ½ C F²,   F = w Σ q_j,   a² = 2 R √(w Σ u²/L)
+    Ψ = (w/κ) [½ u·(K(a) + T) u + Σ_j ∫ e_j du] + ½ C F²,   F = w Σ q_j,   a² = 2 R √(w Σ u²/L)
 
-holds the elastic line with its neighbours (`line_kernel`), the sink e_j of a slice at the edges of missing material
-(`two_edges`) and the compliance C of everything else, rigid across the face. Its least value over u >= 0 at a given
-approach d and tilt θ solves
+holds the elastic line with its neighbours (`line_kernel`), the teeth that bend across the face (`tooth_kernel`), the
+sink e_j of a slice at the edges of missing material (`two_edges`) and the compliance C of everything else, rigid across
+the face. Its least value over u >= 0 at a given approach d and tilt θ solves
 
-    δ_j = d + θ y_j - lead_j = C F + (K u)_j + β u_j + e_j(u_j),   β = ¼ u·(dK/d ln a)u/u·u,
+    δ_j = d + θ y_j - lead_j = C F + ((K + T) u)_j + β u_j + e_j(u_j),   β = ¼ u·(dK/d ln a)u/u·u,
 
 a half width a that belongs to the load that is carried: the mean square over the length L. For an even load on the
 whole face it is Weber and Banaschek's secant law exactly, and β = -¼ makes good for the energy's ε. Force F and moment
@@ -26,10 +26,10 @@ from typing import NamedTuple
 from numba import njit
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.exponential_matrix import products
+from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
-from siggen.gears.contact.newton_matrix import SolverRoom, add_low_rank, solve_local
+from siggen.gears.contact.newton_matrix import Answers, SolverRoom, add_low_rank, solve_local
 
 TOLERANCE = 1e-5
 """Of the last Newton step over the largest load. Steps are squared from pass to pass (measured 1e-3, 1e-7), so loads
@@ -45,14 +45,15 @@ class FaceForce(NamedTuple):
     """What the pair answers to an approach and a tilt.
 
     `force_n`: F; `moment_n_m`: M, positive with the load at positive y; `stiffness_n_per_m`: dF/dd to 0.2 %;
-    `turning_n`: dM/dd = dF/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`: share of the load on
-    slices whose normal lies in damage; `passes` of the solver, -1: not solved.
+    `turning_n`: dM/dd = dF/dθ; `tilting_n_m`: dM/dθ; `carrying_m`: (Σ q)² w/Σ q², the length that carries; `on_damage`:
+    share of the load on slices whose normal lies in damage; `passes` of the solver, -1: not solved.
     """
 
     force_n: float
     moment_n_m: float
     stiffness_n_per_m: float
     turning_n: float
+    tilting_n_m: float
     carrying_m: float
     on_damage: float
     passes: int
@@ -87,18 +88,18 @@ def face_force(
         for i in range(loads_m.size):
             square += loads_m[i] * loads_m[i]
         if square == 0.0:
-            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
+            return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)
         chosen, settled = _assemble(slices, approach_m, tilt_rad, loads_m, 0.25 * work / square, damping, room)
         if not solve_local(slices, room, chosen):
             damping = max(2.0 * damping, DAMPING)
             continue
-        step, stiffness, turning = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
+        answers = add_low_rank(slices, room, chosen, loads_m, square, work / square, bend / square)
         largest, kept = _move(loads_m, room, chosen)
-        if settled and kept and step <= tolerance * largest:
-            return _answer(slices, loads_m, stiffness, turning, passes)
+        if settled and kept and answers.step_m <= tolerance * largest:
+            return _answer(slices, loads_m, answers, passes)
         damping = 0.5 * damping if damping > 0.1 * DAMPING else 0.0
-    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
+    return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1)
 
 
 @njit(cache=True)
@@ -107,7 +108,7 @@ def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatA
     for i in range(loads.size):
         if loads[i] > 0.0:
             return
-    own = 4.0 + slices.compliance_m_per_n * slices.carrying_m / slices.kappa_per_pa
+    own = 4.0 + slices.teeth.sum + slices.compliance_m_per_n * slices.carrying_m / slices.kappa_per_pa
     for i in range(loads.size):
         sunk = slice_sink(slices, i, 0.0).sink_m
         loads[i] = max(approach + tilt * slices.face_m[i] - slices.lead_m[i] - sunk, 0.0) / own
@@ -115,18 +116,16 @@ def _first_guess(slices: FaceSlices, approach: float, tilt: float, loads: FloatA
 
 @njit(cache=True)
 def _prepare(slices: FaceSlices, loads: FloatArray, square: float, room: SolverRoom) -> tuple[float, float]:
-    """Fill K u and (dK/d ln a) u into the room; return u·(dK/d ln a) u and what the bend of `reckoned_width` adds."""
+    """Fill (K + T) u and (dK/d ln a) u into the room; return u·(dK/d ln a) u and what the bend of a adds."""
     width, growth, bend = contact_half_width(slices, square)
     own, own_slope = diagonal(slices.kernel, width)
-    room.product[:] = 0.0
-    room.growth[:] = 0.0
-    if slices.kernel.coupled:
-        strengths(slices.kernel, width, room.strength, room.strength_slope)
-        products(slices.kernel.decay, room.strength, room.strength_slope, loads, room.product, room.growth)
-    room.diagonal[:] = own
+    strengths(slices.kernel, width, room.strength, room.strength_slope)
+    products(slices.kernel.decay, room.strength, room.strength_slope, loads, room.product, room.growth)
+    add_row_products(slices.teeth.strength, slices.teeth.decay, loads, room.product)
     work = 0.0
     for i in range(loads.size):
-        room.product[i] += own * loads[i]
+        room.diagonal[i] = own + slices.teeth.diagonal[i]
+        room.product[i] += room.diagonal[i] * loads[i]
         room.growth[i] = growth * (room.growth[i] + own_slope * loads[i])
         work += loads[i] * room.growth[i]
     return work, work * bend / growth if bend != 0.0 else 0.0
@@ -148,9 +147,9 @@ def _assemble(
     for i in range(loads.size):
         total += loads[i]
     rest = slices.compliance_m_per_n * per_load * total
-    own = room.diagonal[0]
     chosen, settled = 0, True
     for i in range(loads.size):
+        own = room.diagonal[i]
         gap = slice_sink(slices, i, loads[i])
         wanted = approach + tilt * slices.face_m[i] - slices.lead_m[i] - rest - room.product[i]
         residual = wanted - beta * loads[i] - gap.sink_m
@@ -169,6 +168,7 @@ def _assemble(
         room.right[i, 1] = 1.0
         room.right[i, 2] = loads[i]
         room.right[i, 3] = room.growth[i]
+        room.right[i, 4] = slices.face_m[i]
     return chosen, settled
 
 
@@ -190,7 +190,7 @@ def _move(loads: FloatArray, room: SolverRoom, chosen: int) -> tuple[float, bool
 
 
 @njit(cache=True)
-def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, turning: float, passes: int) -> FaceForce:
+def _answer(slices: FaceSlices, loads: FloatArray, answers: Answers, passes: int) -> FaceForce:
     total = square = moment = damaged = 0.0
     for i in range(loads.size):
         total += loads[i]
@@ -199,4 +199,13 @@ def _answer(slices: FaceSlices, loads: FloatArray, stiffness: float, turning: fl
         damaged += loads[i] * slices.on_damage[i]
     per_load = slices.kernel.cell_m / slices.kappa_per_pa
     length = slices.kernel.cell_m * total * total / square
-    return FaceForce(per_load * total, per_load * moment, stiffness, turning, length, damaged / total, passes)
+    return FaceForce(
+        per_load * total,
+        per_load * moment,
+        answers.stiffness_n_per_m,
+        answers.turning_n,
+        answers.tilting_n_m,
+        length,
+        damaged / total,
+        passes,
+    )

@@ -19,6 +19,8 @@ from siggen.gears.damage.flank_chords import FlankChords, depth_at
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 
+SAME_M = 1e-12
+
 
 class FaceGaps(NamedTuple):
     """What slices meet at positions, (positions, slices) each, in the terms of `two_edges.gap_sink` [m].
@@ -72,9 +74,12 @@ def _fill(
     room: FloatArray,
     gaps: FaceGaps,
 ) -> None:
+    # The floor in the middle of a gap stays the same while the contact moves over a pit of the pinion alone.
+    known_at, known = np.full(pinion.intervals.size, np.inf), np.zeros(pinion.intervals.size)
     for i in range(position.size):
         roll_1, roll_2 = position[i] / pinion.base_radius_m, (line - position[i]) / gear.base_radius_m
         arc_1, arc_2 = 0.5 * pinion.base_radius_m * roll_1**2, 0.5 * gear.base_radius_m * roll_2**2
+        height_1, height_2 = _height(pinion, arc_1), _height(gear, arc_2)
         for j in range(pinion.intervals.size):
             filled = 0
             for k in range(pinion.intervals[j]):
@@ -90,11 +95,14 @@ def _fill(
             gaps.left_m[i, j], gaps.right_m[i, j] = -low, high
             if low > -0.5 * NO_EDGE and high < 0.5 * NO_EDGE:
                 middle = 0.5 * (low + high)
-                gaps.notch_m[i, j] = _depth(pinion, gear, j, arc_1 + middle, arc_2 - middle)
+                if gear.intervals[j] > 0 or abs(arc_1 + middle - known_at[j]) > SAME_M:
+                    known_at[j] = arc_1 + middle
+                    known[j] = _depth(pinion, gear, j, _height(pinion, arc_1 + middle), _height(gear, arc_2 - middle))
+                gaps.notch_m[i, j] = known[j]
             for k in range(damaged):
                 if room[0, k] < 0.0 < room[1, k]:
                     gaps.on_damage[i, j] = 1.0
-                    gaps.floor_m[i, j] = _depth(pinion, gear, j, arc_1, arc_2)
+                    gaps.floor_m[i, j] = _depth(pinion, gear, j, height_1, height_2)
 
 
 @njit(cache=True)
@@ -117,13 +125,19 @@ def _nearest(room: FloatArray, count: int) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _depth(pinion: FlankChords, gear: FlankChords, j: int, arc_1: float, arc_2: float) -> float:
+def _height(flank: FlankChords, arc: float) -> float:
+    """Return the height of a point of the flank at an arc, NaN beside the involute [m]."""
+    if arc <= 0.0:
+        return np.nan
+    return involute.height(sqrt(2.0 * arc / flank.base_radius_m), flank.base_radius_m, flank.half_angle_rad)
+
+
+@njit(cache=True)
+def _depth(pinion: FlankChords, gear: FlankChords, j: int, height_1: float, height_2: float) -> float:
     """Return the depth of both flanks together at a point of the tangent of slice j."""
     total = 0.0
-    for side in range(2):
-        flank, arc = (pinion, arc_1) if side == 0 else (gear, arc_2)
-        if flank.intervals[j] > 0 and arc > 0.0:
-            roll = sqrt(2.0 * arc / flank.base_radius_m)
-            height = involute.height(roll, flank.base_radius_m, flank.half_angle_rad)
-            total += depth_at(height, flank.face_m[j], flank.pits)
+    if pinion.intervals[j] > 0 and not np.isnan(height_1):
+        total += depth_at(height_1, pinion.face_m[j], pinion.pits)
+    if gear.intervals[j] > 0 and not np.isnan(height_2):
+        total += depth_at(height_2, gear.face_m[j], gear.pits)
     return total

@@ -9,6 +9,7 @@ from numba import njit
 
 from siggen.arrays import FloatArray
 from siggen.gears.contact.line_kernel import LineKernel, reckoned_width
+from siggen.gears.contact.tooth_kernel import ToothKernel
 from siggen.gears.contact.two_edges import GapSink, gap_sink
 
 
@@ -17,8 +18,8 @@ class FaceSlices(NamedTuple):
 
     `left_m`, `right_m`, `notch_m`, `floor_m`: the gap that each slice meets, as for `two_edges.gap_sink`; `on_damage`:
     1 where the normal lies in a gap of the damage, 0 elsewhere; `lead_m`: missing material across the face, of any
-    sign; `face_m`: y from the middle of the face; `kernel`: K; `radius_m`: R; `rounding_m`: radius of the edges;
-    `kappa_per_pa`: κ; `compliance_m_per_n`: C; `carrying_m`: L.
+    sign; `face_m`: y from the middle of the face; `kernel`: K; `teeth`: T; `radius_m`: R; `rounding_m`: radius of the
+    edges; `kappa_per_pa`: κ; `compliance_m_per_n`: C, of what is rigid across the face; `carrying_m`: L.
     """
 
     left_m: FloatArray
@@ -29,6 +30,7 @@ class FaceSlices(NamedTuple):
     lead_m: FloatArray
     face_m: FloatArray
     kernel: LineKernel
+    teeth: ToothKernel
     radius_m: float
     rounding_m: float
     kappa_per_pa: float

@@ -25,6 +25,7 @@ class ForceCurve(NamedTuple):
     moment_n_m: FloatArray
     stiffness_n_per_m: FloatArray
     turning_n: FloatArray
+    tilting_n_m: FloatArray
     carrying_m: FloatArray
     on_damage: FloatArray
 
@@ -37,12 +38,13 @@ def force_curve(
     loads_m: FloatArray,
     room: SolverRoom,
     nodes: FloatArray,
+    tolerance: float = TOLERANCE,
 ) -> ForceCurve:
     """Return the answers to ascending approaches (k,) [m] at one tilt.
 
-    `loads_m` (n,): guess at the first approach (zeros are allowed), the loads at the last one afterwards. Every
-    solution starts from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy
-    is computed (it costs up to as much as the rest where gaps carry) and `energy_j` is 0.
+    `loads_m` (n,): guess at the first approach (zeros are allowed), the loads there afterwards. Every solution starts
+    from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy is computed (it
+    costs up to as much as the rest where gaps carry) and `energy_j` is 0.
 
     Raises
     ------
@@ -50,27 +52,31 @@ def force_curve(
         If an approach cannot be solved.
     """
     count = approach_m.size
-    out = np.zeros((7, count))
+    out = np.zeros((8, count))
     before = np.zeros(loads_m.size)
     last = np.zeros(loads_m.size)
+    loads = loads_m.copy()
     for j in range(count):
         if j > 1:
             ratio = (approach_m[j] - approach_m[j - 1]) / (approach_m[j - 1] - approach_m[j - 2])
             for i in range(loads_m.size):
-                if loads_m[i] > 0.0 and before[i] > 0.0:
-                    loads_m[i] = max(loads_m[i] + ratio * (loads_m[i] - before[i]), 0.1 * loads_m[i])
+                if loads[i] > 0.0 and before[i] > 0.0:
+                    loads[i] = max(loads[i] + ratio * (loads[i] - before[i]), 0.1 * loads[i])
         if j > 0:
             before[:] = last
-        answer = face_force(slices, approach_m[j], tilt_rad, loads_m, room, TOLERANCE)
+        answer = face_force(slices, approach_m[j], tilt_rad, loads, room, tolerance)
         if answer.passes < 0:
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
-        last[:] = loads_m
+        last[:] = loads
+        if j == 0:
+            loads_m[:] = loads
         if nodes.shape[1]:
-            out[0, j] = stored_energy(slices, approach_m[j], tilt_rad, loads_m, room, nodes)
+            out[0, j] = stored_energy(slices, approach_m[j], tilt_rad, loads, room, nodes)
         out[1, j] = answer.force_n
         out[2, j] = answer.moment_n_m
         out[3, j] = answer.stiffness_n_per_m
         out[4, j] = answer.turning_n
-        out[5, j] = answer.carrying_m
-        out[6, j] = answer.on_damage
-    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6])
+        out[5, j] = answer.tilting_n_m
+        out[6, j] = answer.carrying_m
+        out[7, j] = answer.on_damage
+    return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7])

@@ -21,6 +21,7 @@ takes n steps (`exponential_matrix`). Fitted error: 1e-3 κ at most on each entr
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import asinh, exp, log, sqrt
 from typing import NamedTuple
 
@@ -70,6 +71,7 @@ class KernelFamily(NamedTuple):
     cell_m: float
 
 
+@lru_cache(maxsize=8)
 def kernel_family(cells: int, cell_m: float, depth_m: float) -> KernelFamily:
     """Return the exponentials of a face of equal cells; `depth_m` is a typical h, which sets the longest decay.
 
@@ -91,7 +93,10 @@ def kernel_family(cells: int, cell_m: float, depth_m: float) -> KernelFamily:
     t = widths**2 / (widths**2 + 0.25)
     at_widths = np.stack([fit @ _near(offset, x) for x in widths])
     near = np.linalg.lstsq(t[:, None] ** np.arange(POWERS), at_widths, rcond=None)[0]
-    return KernelFamily(decay, np.array(near, dtype=np.float64), fit, cell_m)
+    family = KernelFamily(decay, np.array(near, dtype=np.float64), fit, cell_m)
+    for array in family[:3]:
+        array.setflags(write=False)
+    return family
 
 
 def line_kernel(family: KernelFamily, depth_m: float, poisson_ratio: float, *, coupled: bool = True) -> LineKernel:

@@ -1,4 +1,4 @@
-"""The matrix of Newton's method for the slices: a diagonal, exponentials of the distance, and three vectors."""
+"""The matrix of Newton's method for the slices: a diagonal, decaying terms of the distance, and three vectors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, solve_rows
+from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, TERMS, solve_rows
 from siggen.gears.contact.face_slices import FaceSlices
 
 
@@ -16,7 +16,7 @@ class SolverRoom(NamedTuple):
     """Arrays that the solver reuses, made by `solver_room`.
 
     `rows` (n,): slices that carry; `losses` (n,): how often a slice lost touch; `product`, `growth` (n,): K u and
-    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 4): right sides residual, 1, u, v, then the solutions; `steps`,
+    v = (dK/d ln a) u; `diagonal` (n,); `right` (n, 5): right sides residual, 1, u, v, y, then the solutions; `steps`,
     `factors`: of `solve_rows`; `strength`, `strength_slope` (m,): of the kernel.
     """
 
@@ -41,8 +41,8 @@ def solver_room(slices: int) -> SolverRoom:
         diagonal=np.zeros(slices),
         right=np.zeros((slices, SIDES)),
         growth=np.zeros(slices),
-        steps=np.zeros((slices, EXPONENTIALS)),
-        factors=np.zeros((slices, EXPONENTIALS + 1)),
+        steps=np.zeros((slices, TERMS)),
+        factors=np.zeros((slices, TERMS + 1)),
         strength=np.zeros(EXPONENTIALS),
         strength_slope=np.zeros(EXPONENTIALS),
     )
@@ -50,25 +50,35 @@ def solver_room(slices: int) -> SolverRoom:
 
 @njit(cache=True)
 def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
-    """Solve for the four right sides with the local part of the matrix."""
-    if slices.kernel.coupled:
-        return solve_rows(
-            slices.kernel.decay, room.strength, room.diagonal, room.rows, chosen, room.right, room.steps, room.factors
-        )
-    for n in range(chosen):
-        i = room.rows[n]
-        if room.diagonal[i] <= 0.0:
-            return False
-        for side in range(SIDES):
-            room.right[i, side] /= room.diagonal[i]
-    return True
+    """Solve for the five right sides with the matrix but for its three vectors; False if not positive definite."""
+    return solve_rows(
+        slices.kernel.decay,
+        room.strength,
+        slices.teeth.strength,
+        slices.teeth.decay,
+        room.diagonal,
+        room.rows,
+        chosen,
+        room.right,
+        room.steps,
+        room.factors,
+    )
+
+
+class Answers(NamedTuple):
+    """Largest step of a load [m], dF/dd [N/m], dM/dd = dF/dθ [N] and dM/dθ [N m]."""
+
+    step_m: float
+    stiffness_n_per_m: float
+    turning_n: float
+    tilting_n_m: float
 
 
 @njit(cache=True)
 def add_low_rank(
     slices: FaceSlices, room: SolverRoom, chosen: int, loads: FloatArray, square: float, slope: float, bend: float
-) -> tuple[float, float, float]:
-    """Add what C and the growth of a with the load do to the solution; return the largest step, dF/dd and dM/dd.
+) -> Answers:
+    """Add what C and the growth of a with the load do to the solution; return the step and what answers to d and θ.
 
     With v = (dK/d ln a) u the matrix gains c 1 1ᵀ + p (v uᵀ + u vᵀ) - p (s - ¼ s') u uᵀ, p = 1/(2 u·u), s = u·v/u·u
     (`slope`), s' = u·(d²K/d(ln a)²)u/u·u, of which `bend` is all but a part that an even load does not have.
@@ -77,15 +87,18 @@ def add_low_rank(
     c = slices.compliance_m_per_n * per_load
     p = 0.5 / square
     gram = np.zeros((3, SIDES))
+    along = np.zeros(SIDES)
     for n in range(chosen):
         i = room.rows[n]
         for side in range(SIDES):
             gram[0, side] += room.right[i, side]
             gram[1, side] += loads[i] * room.right[i, side]
             gram[2, side] += room.growth[i] * room.right[i, side]
+            along[side] += slices.face_m[i] * room.right[i, side]
     # x = z_b - z_1 c (1·x) - z_u (p (v·x) - p s (u·x)) - z_v p (u·x); unknown are 1·x, u·x, v·x
     matrix = np.zeros((3, 3))
-    sides = np.zeros((3, 2))
+    # first the step, then the answers to a unit approach and to a unit tilt
+    sides = np.zeros((3, 3))
     for j in range(3):
         matrix[j, 0] = c * gram[j, 1]
         matrix[j, 1] = p * (gram[j, 3] - (slope - 0.25 * bend) * gram[j, 2])
@@ -93,26 +106,27 @@ def add_low_rank(
         matrix[j, j] += 1.0
         sides[j, 0] = gram[j, 0]
         sides[j, 1] = gram[j, 1]
+        sides[j, 2] = gram[j, 4]
     _solve_three(matrix, sides)
-    # first the step, then the answer to a unit approach
-    weights = np.zeros((3, 2))
-    for k in range(2):
+    weights = np.zeros((3, 3))
+    for k in range(3):
         weights[0, k] = c * sides[0, k]
         weights[1, k] = p * (sides[2, k] - (slope - 0.25 * bend) * sides[1, k])
         weights[2, k] = p * sides[1, k]
-    largest, turning = 0.0, 0.0
+    largest = 0.0
     for n in range(chosen):
         i = room.rows[n]
-        one, load, growth = room.right[i, 1], room.right[i, 2], room.right[i, 3]
-        room.right[i, 0] -= weights[0, 0] * one + weights[1, 0] * load + weights[2, 0] * growth
+        change = weights[0, 0] * room.right[i, 1] + weights[1, 0] * room.right[i, 2] + weights[2, 0] * room.right[i, 3]
+        room.right[i, 0] -= change
         largest = max(largest, abs(room.right[i, 0]))
-        turning += slices.face_m[i] * ((1.0 - weights[0, 1]) * one - weights[1, 1] * load - weights[2, 1] * growth)
-    return largest, per_load * sides[0, 1], per_load * turning
+    turning = along[1] - weights[0, 1] * along[1] - weights[1, 1] * along[2] - weights[2, 1] * along[3]
+    tilting = along[4] - weights[0, 2] * along[1] - weights[1, 2] * along[2] - weights[2, 2] * along[3]
+    return Answers(largest, per_load * sides[0, 1], per_load * turning, per_load * tilting)
 
 
 @njit(cache=True)
 def _solve_three(matrix: FloatArray, sides: FloatArray) -> None:
-    """Solve three equations for two right sides in place, by elimination with pivots (LAPACK would cost more)."""
+    """Solve three equations for three right sides in place, by elimination with pivots (LAPACK would cost more)."""
     for j in range(3):
         best = j
         for k in range(j + 1, 3):
@@ -120,15 +134,15 @@ def _solve_three(matrix: FloatArray, sides: FloatArray) -> None:
                 best = k
         for k in range(3):
             matrix[j, k], matrix[best, k] = matrix[best, k], matrix[j, k]
-        for k in range(2):
+        for k in range(3):
             sides[j, k], sides[best, k] = sides[best, k], sides[j, k]
         for i in range(3):
             if i != j:
                 ratio = matrix[i, j] / matrix[j, j]
                 for k in range(j, 3):
                     matrix[i, k] -= ratio * matrix[j, k]
-                for k in range(2):
+                for k in range(3):
                     sides[i, k] -= ratio * sides[j, k]
     for j in range(3):
-        for k in range(2):
+        for k in range(3):
             sides[j, k] /= matrix[j, j]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi
 from typing import NamedTuple
 
@@ -11,6 +12,8 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
+from siggen.gears.contact.pair_rest import PairRest
+from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
 
@@ -36,7 +39,7 @@ def pair_faces(
     pair: GearPair,
     gaps: FaceGaps,
     position_m: FloatArray,
-    rest_m_per_n: FloatArray,
+    rest: PairRest,
     options: FaceOptions,
     lead_m: FloatArray | None = None,
 ) -> list[FaceSlices]:
@@ -48,8 +51,8 @@ def pair_faces(
     gaps : FaceGaps
         At these positions, (k, n).
     position_m : (k,)
-    rest_m_per_n : (k,)
-        Compliance C of the pair without its contact.
+    rest : PairRest
+        Compliance of the pair without its contact, (k,).
     options : FaceOptions
     lead_m : (n,) or None
         Missing material across the face, of any sign; None: none.
@@ -60,9 +63,9 @@ def pair_faces(
         If the arrays do not fit.
     """
     count = gaps.left_m.shape[1]
-    if gaps.left_m.shape[0] != position_m.size or rest_m_per_n.shape != position_m.shape:
+    if gaps.left_m.shape[0] != position_m.size or rest.rigid_m_per_n.shape != position_m.shape:
         raise ValueError(
-            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest_m_per_n.size} positions; "
+            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest.rigid_m_per_n.size} positions; "
             f"allowed: as many as positions ({position_m.size})"
         )
     lead = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
@@ -76,7 +79,8 @@ def pair_faces(
     depth = np.sqrt(first * second)
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
     kappa = contact_kappa(pair)
-    family = kernel_family(count, cell, float(np.median(depth)))
+    unit = unit_tooth(count, pair.face_width_m, rest.length_m)
+    family = kernel_family(count, cell, _typical_depth(pair))
     out = []
     for i in range(position_m.size):
         here = FaceGaps(*(np.ascontiguousarray(array[i]) for array in gaps))
@@ -90,14 +94,26 @@ def pair_faces(
             lead_m=lead,
             face_m=face,
             kernel=line_kernel(family, float(depth[i]), pair.poisson_ratio, coupled=options.coupled),
+            teeth=tooth_kernel(unit, float(rest.tooth_m_per_n[i]), pair.face_width_m, kappa),
             radius_m=float(radius[i]),
             rounding_m=options.edge_radius_m,
             kappa_per_pa=kappa,
-            compliance_m_per_n=float(rest_m_per_n[i]),
+            compliance_m_per_n=float(rest.rigid_m_per_n[i]),
             carrying_m=carrying_length(here.left_m, here.right_m, here.floor_m, lead, cell, float(radius[i]), load),
         )
         out.append(slices)
     return out
+
+
+@lru_cache(maxsize=8)
+def _typical_depth(pair: GearPair) -> float:
+    """Return Weber and Banaschek's depth in the middle of the path [m]."""
+    middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
+    rolls = {
+        "pinion": middle / pair.pinion.base_radius_m,
+        "gear": (pair.line_of_action_m - middle) / pair.gear.base_radius_m,
+    }
+    return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
 
 
 def carrying_length(

@@ -7,7 +7,7 @@ from numba import njit
 
 from siggen.arrays import FloatArray
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.exponential_matrix import products
+from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths
 from siggen.gears.contact.newton_matrix import SolverRoom
@@ -47,6 +47,7 @@ def stored_energy(
     own = diagonal(kernel, width)[0]
     strengths(kernel, width, room.strength, room.strength_slope)
     products(kernel.decay, room.strength, room.strength_slope, loads_m, room.product, room.growth)
+    add_row_products(slices.teeth.strength, slices.teeth.decay, loads_m, room.product)
     work = 0.0
     for i in range(loads_m.size):
         if loads_m[i] == 0.0:
@@ -57,7 +58,7 @@ def stored_energy(
                 x = nodes[0, k]
                 sunk += 2.0 * x * nodes[1, k] * slice_sink(slices, i, loads_m[i] * x * x).sink_m
         reached = approach_m + tilt_rad * slices.face_m[i] - slices.lead_m[i]
-        work += loads_m[i] * (reached - 0.5 * (own * loads_m[i] + room.product[i]) - sunk)
+        work += loads_m[i] * (reached - 0.5 * ((own + slices.teeth.diagonal[i]) * loads_m[i] + room.product[i]) - sunk)
     per_load = kernel.cell_m / slices.kappa_per_pa
     force = per_load * total
     return per_load * work - 0.5 * slices.compliance_m_per_n * force * force

@@ -6,6 +6,7 @@ Derived. Sufficient conditions: a hidden row that is not recognised costs time o
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import sqrt
 
 import numpy as np
@@ -110,6 +111,25 @@ def hides(one: FloatArray, two: FloatArray) -> bool:
         two[HEIGHT] * two[DEPTH] ** 2 / two[SEMI_HEIGHT] ** 2 - one[HEIGHT] * one[DEPTH] ** 2 / one[SEMI_HEIGHT] ** 2
     ) / curve
     return not two[LOWEST] < vertex < two[HIGHEST] or _square_excess(one, two, vertex) >= 0.0
+
+
+def cut_row(row: FloatArray, heights_m: FloatArray) -> list[FloatArray]:
+    """Return a trapezoid as the pieces (14,) between heights; an ellipse, or what none of them cuts, as it is.
+
+    A polygon is several trapezoids, of which none may hold all of another polygon: its pieces may lie in one each.
+    """
+    inside = np.unique(heights_m[(heights_m > row[LOWEST]) & (heights_m < row[HIGHEST])])
+    if row[TRAPEZOID] == 0.0 or not inside.size:
+        return [row]
+    ends = [row[LOWEST], *inside, row[HIGHEST]]
+    pieces = []
+    for low, high in pairwise(ends):
+        piece = row.copy()
+        piece[LOWEST], piece[HIGHEST] = low, high
+        piece[LEFT_LOW], piece[RIGHT_LOW] = _sides_at(row, low)
+        piece[LEFT_HIGH], piece[RIGHT_HIGH] = _sides_at(row, high)
+        pieces.append(piece)
+    return pieces
 
 
 @njit(cache=True)

@@ -12,9 +12,10 @@ from typing import Protocol
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.covering import hides
+from siggen.gears.damage.covering import cut_row, hides
 from siggen.gears.damage.heights import flank_heights, profile_arc_m
 from siggen.gears.damage.outlines import Outline
+from siggen.gears.damage.row_columns import HIGHEST, LOWEST
 from siggen.gears.damage.tooth_damage import Refusal, ToothDamage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -75,8 +76,10 @@ class OnFlank:
         """Return whether `other` lies wholly inside on the same flank and nowhere deeper; False where it is unsure."""
         if (self.gear, self.tooth) != (other.gear, other.tooth) or other.outline is None:
             return False
-        own, rows = np.array(self.rows()), np.array(other.rows())
-        return all(any(hides(larger, row) for larger in own) for row in rows)
+        own = np.array(self.rows())
+        ends = own[:, (LOWEST, HIGHEST)].ravel()
+        pieces = (piece for row in np.array(other.rows()) for piece in cut_row(row, ends))
+        return all(any(hides(larger, piece) for larger in own) for piece in pieces)
 
     def own_problems(self: Outlined) -> Iterator[Refusal]:
         """Yield an unknown floor, an impossible outline, a depth that is none."""

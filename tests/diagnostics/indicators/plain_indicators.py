@@ -142,6 +142,28 @@ def modulation_depths(average: np.ndarray, teeth: int) -> dict[str, float]:
     return values
 
 
+BANDS = [round(75 * 2 ** (k / 2)) for k in range(-6, 7)]
+"""Edges [shaft orders]; the band from the k-th to the (k + 2)-th."""
+
+
+def band_indicators(average: np.ndarray, name: str, teeth: int, carried: float) -> dict[str, float]:
+    """Return both indicators of every band, its lines by correlation, its envelope by scipy, pitch by pitch."""
+    angle, pitch = 2 * np.pi * np.arange(average.size) / average.size, average.size // teeth
+    values = {}
+    for low, high in zip(BANDS, BANDS[2:], strict=False):
+        orders = [o for o in range(low, high) if o % teeth and o <= carried]
+        part = np.zeros(average.size)
+        for o in orders:
+            part += 2 * np.real(np.mean(average * np.exp(-1j * o * angle)) * np.exp(1j * o * angle))
+        known = sum(low <= o <= carried for o in range(low, high)) >= (high - low) / 2
+        energy = np.abs(signal.hilbert(part)) ** 2
+        most = max(np.take(energy, range(i, i + pitch), mode="wrap").mean() for i in range(average.size))
+        ending = f"{name}_o{low}_{high}"
+        values[f"band_kurtosis_{ending}"] = stats.kurtosis(part, fisher=False) if known else math.nan
+        values[f"band_localised_energy_{ending}"] = most / energy.mean() if known else math.nan
+    return values
+
+
 def cepstral_peaks(steps: np.ndarray, turns: int, teeth: tuple[int, int], highest: int) -> dict[str, float]:
     """Return the largest of three direct cosine sums round the quefrency of each shaft's revolution."""
     amplitude = np.abs(np.fft.rfft(steps * signal.windows.hann(steps.size, sym=False)))

@@ -88,6 +88,12 @@ CLOSED_ON_AVERAGES = {
     "sideband_asymmetry_pinion_h1": (BOTH, 20 * math.log10((COMMON + jv(1, 0.2)) / (COMMON - jv(1, 0.2)))),
     "amplitude_modulation_pinion_h1": (AM + tone(2 * Z) + tone(40), MODULATION),
     "phase_modulation_pinion_h1": (PM + tone(2 * Z) + tone(40), 0.2),
+    "band_kurtosis_pinion_o75_150": (MIXED + tone(100, 0.3), 1.5),
+    # two lines beat once per revolution: energy 1 + cos(angle), its mean over the best of the pitches of 128 steps
+    "band_localised_energy_pinion_o75_150": (
+        MIXED + tone(100, 0.3) + tone(101, 0.3),
+        1 + np.cos(ANGLE[np.arange(PER_TOOTH) - PER_TOOTH // 2]).mean(),
+    ),
 }
 """Column: one revolution of the pinion, and its value."""
 
@@ -248,10 +254,33 @@ def second_computation(seed: int) -> dict[str, float]:
 def test_every_column_by_a_second_computation() -> None:
     record, pulses, _ = record_and_truth(3)
     found, expected = whole_record(record, pulses).values(ALL), second_computation(3)
+    found = {name: value for name, value in found.items() if not name.startswith("band_")}  # empty of lines here
     assert set(found) == set(expected)
     for name, value in expected.items():
         # resampling errs by 3e-5 of the amplitude at most; eighth moments and energies multiply that by up to ten
         assert found[name] == pytest.approx(value, rel=3e-4), name
+
+
+def test_every_band_by_a_second_computation() -> None:
+    rng = np.random.default_rng(4)
+    # of a gear that turns 2.6 times slower, half the sampling rate is its order 1000: lines in all bands of both
+    orders = np.concatenate([np.arange(4, 300, 1.37), Z / TEETH[1] * np.arange(4, 560, 2)])
+    lines = [(o, rng.uniform(0.1, 1.0), rng.uniform(0.0, 6.3)) for o in orders]
+    time_s = np.arange(round(1.61 * FS_HZ)) / FS_HZ
+    record = written_out(lines, START * time_s)
+    found = whole_record(record, np.arange(1, TURNS + 2) / START).values(ALL)
+    steps = written_out(lines, 1 + np.arange(TURNS * PER_TURN) / PER_TURN)
+    expected = {}
+    for name, teeth in zip(("pinion", "gear"), TEETH, strict=True):
+        carried = FS_HZ / 2 / START * teeth / Z
+        expected |= plain.band_indicators(plain.plain_average(steps, teeth * PER_TOOTH), name, teeth, carried)
+    assert set(expected) == {name for name in found if name.startswith("band_")}
+    for name, value in expected.items():
+        # up to 0.4 of the rate resampling errs by 1e-3 of the amplitude, fourth moments by four times that
+        assert found[name] == pytest.approx(value, rel=4e-3, nan_ok=True), name
+    assert [name for name, value in expected.items() if math.isnan(value)] == [
+        f"band_{kind}_pinion_o300_600" for kind in ("kurtosis", "localised_energy")
+    ]
 
 
 def test_every_history_by_a_second_computation() -> None:
@@ -284,4 +313,5 @@ def test_every_definition_has_a_closed_form_and_a_second_computation() -> None:
     assert {base_name(name) for table in tables for name in table} | SEPARATE == set(BY_NAME)
     record, pulses, _ = record_and_truth(3)
     by_column = {base_name(name) for name in whole_record(record, pulses).values(ALL)}
+    assert base_name("band_kurtosis_gear_o75_150__lid") == "band_kurtosis"
     assert by_column | set(CLOSED_OF_HISTORIES) == set(BY_NAME)

@@ -109,14 +109,30 @@ def test_a_part_of_one_feature_and_one_of_ten_are_exceeded_as_often() -> None:
     assert 0.06 < ten < 0.14
 
 
-def test_strangest_features_are_those_of_the_part_farthest_off() -> None:
+def test_strangest_features_are_those_farthest_off_whatever_their_part() -> None:
     rng = np.random.default_rng(5)
     logs, speed, specimen = family(rng, 40)
     every = np.ones(specimen.size, dtype=bool)
     found = calibrated_distance(logs, speed, PARTS, SpecimenSplit(every, ~every, ~every, ()), specimen)
     record = np.array([3.0, 0.0, 0.0, 9.0, 0.0])
     assert found.strangest(record, 35.0)[0][0] == "noise_floor_200hz__a"
-    assert {name for name, _ in found.strangest(record, 35.0)} == set(PARTS[1])
+    assert [abs(off) for _, off in found.strangest(record, 35.0)] == sorted(
+        (abs(off) for _, off in found.strangest(record, 35.0)), reverse=True
+    )
+
+
+def test_one_feature_infinitely_far_does_not_stay_inside() -> None:
+    """The distance counts it as six spreads; the bound on single features of new gearboxes does not."""
+    logs, speed, specimen = family(np.random.default_rng(5), 40)
+    every = np.ones(specimen.size, dtype=bool)
+    found = calibrated_distance(logs, speed, PARTS, SpecimenSplit(every, ~every, ~every, ()), specimen)
+    near, far = logs[:1].copy(), logs[:1].copy()
+    near[0, 0] += 6.0 * found.parts[0].spread[0]
+    far[0, 0] += 1e3
+    assert found.distance(far, speed[:1]) == pytest.approx(found.distance(near, speed[:1]), rel=0.2)
+    assert found.farthest(far, speed[:1])[0] > found.largest_spreads
+    assert np.mean(found.farthest(logs, speed) > found.largest_spreads) <= 0.02
+    assert distance_from_facts(distance_facts(found)).largest_spreads == found.largest_spreads
 
 
 def test_a_saved_distance_gives_the_same_numbers() -> None:

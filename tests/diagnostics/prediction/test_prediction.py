@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pyarrow import parquet
 
 from diagnostics.cli.app import main
 from diagnostics.prediction.prediction import predict_recording
@@ -43,6 +44,12 @@ def save(path: Path, dataset: Any, record: int, gain: float = 1.0) -> Path:
     return path
 
 
+def save_as_siggen_does(path: Path, dataset: Any, record: int) -> Path:
+    table = dataset.table.slice(record, 1).replace_schema_metadata({"siggen.identity": "0"})
+    parquet.write_table(table, path)
+    return path
+
+
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", *arguments])
     with pytest.raises(SystemExit) as stop:
@@ -58,7 +65,7 @@ def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
     folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)  # severe
+    file = save_as_siggen_does(tmp_path / "run.parquet", make_dataset(("test",) * 2, seed=8), 2)  # severe
     assert run(monkeypatch, str(folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
     assert "answer:               severe" in capsys.readouterr().out
     found = json.loads((tmp_path / "out" / "prediction.json").read_text())
@@ -69,6 +76,22 @@ def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
     )
     assert (tmp_path / "out" / "sidebands_bearing_vertical.png").read_bytes().startswith(b"\x89PNG")
     assert "severe" in (tmp_path / "out" / "prediction.html").read_text()
+
+
+def test_no_state_of_a_measured_recording_is_named_without_a_healthy_one(
+    folder: Path, make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """The same samples as above, from a file that siggen did not write."""
+    file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
+    assert run(monkeypatch, str(folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    said = capsys.readouterr().out
+    assert "answer:               abstains" in said
+    assert "named only beside healthy recordings" in said
+    found = json.loads((tmp_path / "out" / "prediction.json").read_text())
+    assert (found["state"], found["probabilities"]) == ("abstains", {})
+    assert found["distance"]["value"] > 0.0
+    assert found["indicators"]
 
 
 def test_a_foreign_level_and_foreign_teeth_get_no_answer(
@@ -208,7 +231,7 @@ def test_probabilities_are_calibrated_as_the_models_own_are(
 ) -> None:
     model = load_model(folder)
     file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
-    recording = read_recording(file, model.facts.channels, RecordingFacts(FS_HZ))
+    recording = replace(read_recording(file, model.facts.channels, RecordingFacts(FS_HZ)), simulated=True)
     found = {}
     for temperature in (1.0, 3.0):
         tempered_model = replace(model, classifier=replace(model.classifier, temperature=temperature))

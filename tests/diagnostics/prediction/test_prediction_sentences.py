@@ -20,6 +20,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
     )
     return SimpleNamespace(
         contradiction="",
+        own_state=None,
         classes=("healthy", "severe"),
         votes=votes,
         nearness=Nearness(distance, 2.0, ()),

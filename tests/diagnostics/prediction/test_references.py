@@ -16,16 +16,19 @@ import pytest
 from pyarrow import parquet
 from scipy.signal import resample_poly
 
+from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
-from diagnostics.release.log_features import healthy_referenced, healthy_references, reference_speed_ratio
+from diagnostics.records.healthy_references import healthy_references
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training.classifier_file import load_classifier
+from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.referenced import referenced_classifiers
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import train_models
 
@@ -123,7 +126,7 @@ def trained(
 def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
     """Return two gearboxes that nobody trained on, three states each, written as one record per row."""
     found = make_dataset(("test",) * 2, seed=11)
-    parquet.write_table(found.table, trained[1])
+    parquet.write_table(found.table.replace_schema_metadata({"siggen.identity": "0"}), trained[1])
     return found
 
 
@@ -180,7 +183,9 @@ def test_test_records_do_not_widen_the_speeds_at_which_references_may_run(
     speed = np.select([rows["validation"], rows["test"]], [33.0, 45.0], 30.0)
     position = features_of_measured.schema.get_field_index("speed_hz")
     table = features_of_measured.set_column(position, "speed_hz", pa.array(speed))
-    training: Any = SimpleNamespace(split=specimen_split(labels))
+    split = specimen_split(labels)
+    found = referenced_classifiers(feature_matrix(table), split, [], None, 0, NetworkOptions(cnn=False), silent_stage)
+    training: Any = SimpleNamespace(split=split, referenced=found)
     assert release(training, table, measured).facts.reference_speed_ratio == pytest.approx(33.0 / 30.0)
 
 
@@ -250,3 +255,21 @@ def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
     for said, message in ((file, "--reference FILE:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
         assert predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(said))[0] == 2
         assert message in "".join(capsys.readouterr().err.split("\n")).replace("  ", " ")
+
+
+def test_the_change_comes_first_and_no_state_is_named_against_it(
+    trained: tuple[Path, Path], make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One gearbox measured healthy nine times, in files that siggen did not write: eight serve as references."""
+    folder, _ = trained
+    again = [make_dataset(("test",) * 2, seed=40 + k) for k in range(9)]
+    for k, found in enumerate(again):
+        np.savez(tmp_path / f"healthy_{k}.npz", **channels(found, 0))
+    np.savez(tmp_path / "severe.npz", **channels(again[0], 2))
+    references = [text for k in range(1, 9) for text in ("--reference", str(tmp_path / f"healthy_{k}.npz"))]
+    severe = predict(monkeypatch, folder, tmp_path / "severe.npz", tmp_path / "a", *references)[1]
+    healthy = predict(monkeypatch, folder, tmp_path / "healthy_0.npz", tmp_path / "b", *references)[1]
+    assert severe["against_own_healthy_state"]["verdict"] == "changed"
+    assert healthy["against_own_healthy_state"]["verdict"] == "unchanged"
+    assert severe["state"] in {"severe", "slight", "abstains"}
+    assert healthy["state"] in {"healthy", "abstains"}

@@ -40,7 +40,9 @@ def signals(make_dataset: Callable[..., Any]) -> dict[str, np.ndarray]:
 
 
 def predicted(model: ReleasedModel, signals: dict[str, np.ndarray]) -> Prediction:
-    return predict_recording(model, MeasuredRecording(Path("run.npz"), signals, FS_HZ, None), (18, 47), (20.0, 50.0))
+    return predict_recording(
+        model, MeasuredRecording(Path("run.npz"), signals, FS_HZ, None, True), (18, 47), (20.0, 50.0)
+    )
 
 
 def with_network(monkeypatch: pytest.MonkeyPatch, probability: tuple[float, ...]) -> None:

@@ -47,7 +47,7 @@ def test_test_records_bring_no_teeth_and_no_shorter_averages(dataset: Any, featu
 
 
 def test_the_card_says_whose_ranges_they_are(dataset: Any, features: pa.Table) -> None:
-    training: Any = SimpleNamespace(split=specimen_split(feature_matrix(features).labels))
+    training: Any = SimpleNamespace(split=specimen_split(feature_matrix(features).labels), referenced=None)
     found = release(training, features, dataset)
     found = replace(found, facts=replace(found.facts, speed_range_hz=(20.0, 30.0)))
     assert "20 to 30 Hz pinion speed, 60 to 60 N m in training and validation. Outside these" in release_card(found)

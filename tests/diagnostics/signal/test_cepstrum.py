@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import stft
 
-from diagnostics.signal.cepstrum import cepstrum_at, log_amplitude, long_pass, real_cepstrum, short_pass, without_lines
+from diagnostics.signal.cepstrum import cepstrum_at, without_lines
 from diagnostics.signal.spectral_kurtosis import spectral_kurtosis
 from siggen.errors import UsageError
 
@@ -15,26 +15,17 @@ def test_echo_gives_half_its_share_at_its_delay() -> None:
     # log|1 + a exp(-jw tau)| = a cos(w tau) - a^2/2 cos(2 w tau) + ..., and a cosine splits into two quefrencies
     impulse = np.zeros(1024)
     impulse[0], impulse[100] = 1.0, 0.4
-    cepstrum = real_cepstrum(np.log(np.abs(np.fft.rfft(impulse))))
+    cepstrum = cepstrum_at(np.log(np.abs(np.fft.rfft(impulse))), np.arange(512))
     assert cepstrum[100] == pytest.approx(0.2)
     assert cepstrum[200] == pytest.approx(-0.04)
-    assert np.argmax(cepstrum[10:512]) + 10 == 100
-
-
-def test_lifters_share_the_cepstrum_without_overlap() -> None:
-    noise = np.random.default_rng(1).standard_normal(512)
-    cepstrum = real_cepstrum(log_amplitude(noise))
-    np.testing.assert_allclose(short_pass(cepstrum, 20) + long_pass(cepstrum, 20), cepstrum)
-    assert np.count_nonzero(short_pass(cepstrum, 20)) == 39  # -19 ... 19
-    back = np.fft.rfft(cepstrum).real
-    np.testing.assert_allclose(back, log_amplitude(noise), atol=1e-9)
+    assert np.argmax(cepstrum[10:]) + 10 == 100
 
 
 def test_removed_lines_leave_no_rahmonic() -> None:
     log_spectrum = np.zeros(1001)
     log_spectrum[::50] = 5.0
     # a line of log height 5 every 50 of 2000 bins: 5/50 at quefrency 2000/50
-    assert real_cepstrum(log_spectrum)[40] == pytest.approx(0.1)
+    assert cepstrum_at(log_spectrum, np.array([40])) == pytest.approx(0.1)
     np.testing.assert_allclose(without_lines(log_spectrum, 50)[26:], 0.0)
 
 
@@ -84,7 +75,7 @@ def test_record_of_too_few_frames_is_refused() -> None:
 @pytest.mark.parametrize("size", [3, 100, 1001, 204_537])
 def test_cepstrum_at_a_few_quefrencies_is_that_of_the_transform(size: int) -> None:
     log_spectrum = np.random.default_rng(5).standard_normal(size)
-    whole = real_cepstrum(log_spectrum)
+    whole = np.fft.irfft(log_spectrum, n=2 * (size - 1))
     few = np.array([0, 1, size // 2, size - 1, whole.size - 1])
     # both sum rounding errors of 1e-16 of values of order one
     np.testing.assert_allclose(cepstrum_at(log_spectrum, few), whole[few], rtol=1e-12, atol=1e-15)

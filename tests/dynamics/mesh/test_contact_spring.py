@@ -9,7 +9,8 @@ from siggen.dynamics.mesh.pair_columns import CARRYING, NORMAL, PENETRATION, POS
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.contact.contact_table import ContactTable, TableOptions, contact_table
+from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
@@ -60,7 +61,7 @@ def test_the_force_of_a_single_pair_is_that_of_its_column() -> None:
                 gear_pair().contact_end_m - gear_pair().contact_start_m
             )
             column = place * (table.curves.shape[0] - 1)
-            node = table.reach_m * (np.arange(16) / 15.0) ** 2
+            node = table.reach_m * (np.arange(10) / 9.0) ** 2
             low, high = (
                 np.interp(pairs[i, PENETRATION], node, table.curves[k, :, 0]) for k in (int(column), int(column) + 1)
             )

@@ -11,7 +11,8 @@ from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, SLIDING
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gears.contact.contact_table import TableOptions, contact_table
+from siggen.gears.contact.contact_table import contact_table
+from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material

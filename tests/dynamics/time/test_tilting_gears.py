@@ -17,7 +17,8 @@ from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.structure.tilting_shaft import Shaft
-from siggen.gears.contact.contact_table import TableOptions, contact_table, face_slices
+from siggen.gears.contact.contact_table import contact_table
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
@@ -31,7 +32,7 @@ SHAFT = Shaft(0.1, 0.4, 0.025, 206e9, 0.3, 3e-4)
 STIFF = replace(SHAFT, gear_share=0.5, diameter_m=1e3)
 TEETH = StiffnessOptions()
 POINTS = 513
-TILTING = TableOptions(3000.0, tilt_rad=2e-5)
+TILTING = TableOptions(3000.0, tilts=True)
 
 
 def one_sided() -> Damage:
@@ -82,7 +83,7 @@ def test_a_closed_loop_of_approach_and_tilt_does_no_work(pitches: float) -> None
 
 def test_stiff_shafts_leave_the_motion_of_parallel_gears() -> None:
     step = 1.0 / (51200 * 4)
-    parallel = motion(make_structure(), tilting_law(options=TILTING._replace(tilt_rad=0.0)), step_s=step)
+    parallel = motion(make_structure(), tilting_law(options=TILTING._replace(tilts=False)), step_s=step)
     tilting = motion(structure(STIFF), tilting_law(), step_s=step)
     found = []
     for run in (parallel, tilting):

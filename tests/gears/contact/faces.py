@@ -12,13 +12,27 @@ from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernel
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import carrying_length
+from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
 RADIUS, DEPTH, WIDTH = 6.676e-3, 2.2e-3, 20e-3
 REST = 0.78 / 1.99e8
+STIFF, BENDING = (np.inf, 0.0), (4.8e-3, 0.75 * REST)
+"""Length and compliance of teeth; with soft ones a quarter of the rest stays rigid."""
 
 
-def face(gap=None, left=None, right=None, depth=0.0, slices=200, coupled=True, lead=None, rounding=0.0, rest=REST):
+def face(
+    gap=None,
+    left=None,
+    right=None,
+    depth=0.0,
+    slices=200,
+    coupled=True,
+    lead=None,
+    rounding=0.0,
+    rest=REST,
+    teeth=STIFF,
+):
     """Slices of which those of the mask `gap` have edges at the distances `left` and `right` [m]."""
     gap = np.zeros(slices, bool) if gap is None else gap
     x1, x2 = (np.where(gap, np.inf if x is None else x, -NO_EDGE) for x in (left, right))
@@ -29,6 +43,7 @@ def face(gap=None, left=None, right=None, depth=0.0, slices=200, coupled=True, l
         left_m=x1, right_m=x2, notch_m=d, floor_m=d, on_damage=((x1 > 0.0) & (x2 > 0.0)).astype(float),
         lead_m=lead, face_m=cell * (np.arange(slices) + 0.5) - 0.5 * WIDTH,
         kernel=line_kernel(kernel_family(slices, cell, DEPTH), DEPTH, 0.3, coupled=coupled),
+        teeth=tooth_kernel(unit_tooth(slices, WIDTH, teeth[0]), teeth[1], WIDTH, KAPPA),
         radius_m=RADIUS, rounding_m=rounding, kappa_per_pa=KAPPA, compliance_m_per_n=rest,
         carrying_m=carrying_length(x1, x2, d, lead, cell, RADIUS, KAPPA * 60e3),
     )  # fmt: skip

@@ -8,6 +8,7 @@ import pytest
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
+from siggen.gears.contact.pair_rest import rigid_rest
 from siggen.gears.damage.flank_chords import contact_chords, flank_chords
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
@@ -91,6 +92,6 @@ def test_arrays_that_do_not_fit_are_refused():
         face_gaps(PAIR, flanks()[0], other, np.array([PAIR.pitch_point_m]))
     gaps = face_gaps(PAIR, *flanks(), np.array([PAIR.pitch_point_m]))
     with pytest.raises(ValueError, match="as many as positions"):
-        pair_faces(PAIR, gaps, np.zeros(2), np.zeros(2), FaceOptions(60e3))
+        pair_faces(PAIR, gaps, np.zeros(2), rigid_rest(np.zeros(2)), FaceOptions(60e3))
     with pytest.raises(ValueError, match="one for each slice"):
-        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), np.zeros(1), FaceOptions(60e3), np.zeros(3))
+        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), rigid_rest(np.zeros(1)), FaceOptions(60e3), np.zeros(3))

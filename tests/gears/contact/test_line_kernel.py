@@ -7,7 +7,7 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from siggen.gears.contact.exponential_matrix import products, solve_rows
+from siggen.gears.contact.exponential_matrix import SIDES, TERMS, add_row_products, products, solve_rows
 from siggen.gears.contact.line_kernel import (
     EXPONENTIALS,
     diagonal,
@@ -17,6 +17,7 @@ from siggen.gears.contact.line_kernel import (
     reckoned_width,
     strengths,
 )
+from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
 
 CELL, DEPTH, CELLS = 0.1e-3, 2.2e-3, 200
 
@@ -77,20 +78,22 @@ def test_rows_are_solved_like_a_full_matrix():
     kernel = line_kernel(kernel_family(CELLS, CELL, DEPTH), DEPTH, 0.3)
     strength, slope = np.zeros(EXPONENTIALS), np.zeros(EXPONENTIALS)
     strengths(kernel, 67e-6, strength, slope)
-    matrix = fitted(67e-6)
-    own = 1.0 + rng.random(CELLS)
+    teeth = tooth_kernel(unit_tooth(CELLS, CELLS * CELL, 4e-3), 3e-9, CELLS * CELL, 5.6e-12)
+    matrix = fitted(67e-6) + tooth_matrix(teeth)
+    own = np.diag(matrix) + rng.random(CELLS)
     np.fill_diagonal(matrix, own)
     rows = np.sort(rng.choice(CELLS, 120, replace=False))
-    right = rng.random((CELLS, 4))
+    right = rng.random((CELLS, SIDES))
     x = right.copy()
-    room = np.zeros((CELLS, EXPONENTIALS)), np.zeros((CELLS, EXPONENTIALS + 1))
+    room = np.zeros((CELLS, TERMS)), np.zeros((CELLS, TERMS + 1))
     padded = np.append(rows, np.zeros(80, np.int64))
-    assert solve_rows(kernel.decay, strength, own, padded, 120, x, *room)
+    assert solve_rows(kernel.decay, strength, teeth.strength, teeth.decay, own, padded, 120, x, *room)
     np.testing.assert_allclose(matrix[np.ix_(rows, rows)] @ x[rows], right[rows], atol=1e-12)
     product, other = np.zeros(CELLS), np.zeros(CELLS)
     products(kernel.decay, strength, slope, right[:, 0].copy(), product, other)
+    add_row_products(teeth.strength, teeth.decay, right[:, 0].copy(), product)
     np.testing.assert_allclose(product, matrix @ right[:, 0] - own * right[:, 0], atol=1e-12)
-    assert not solve_rows(kernel.decay, strength, own - 2.0, padded, 120, x, *room)
+    assert not solve_rows(kernel.decay, strength, teeth.strength, teeth.decay, own - 30.0, padded, 120, x, *room)
 
 
 def test_impossible_faces_are_refused():

@@ -244,6 +244,34 @@ def test_what_a_deeper_damage_hides_changes_no_bit():
     assert np.array_equal(pair_stiffness(PAIR, S, OPTIONS, [box(), *inside]), pair_stiffness(PAIR, S, OPTIONS, [box()]))
 
 
+def ring(scale: float, shift_mm: float = 0.0, corners: int = 7, depth: float = 0.2):
+    """Return a spall of many corners about one middle: several trapezoids, none of which holds another ring."""
+    angle = 2.0 * pi * np.arange(corners) / corners + 0.3
+    heights, faces = 2.5 + 0.8 * scale * np.sin(angle), 9.0 + shift_mm + 4.0 * scale * np.cos(angle)
+    return Spall(
+        "pinion", 0, Polygon(tuple(zip((heights * MM).tolist(), (faces * MM).tolist(), strict=True))), depth * MM
+    )
+
+
+def test_a_polygon_of_many_corners_hides_a_smaller_one_and_no_bit_changes():
+    large, small = ring(1.0), ring(0.8, depth=0.1)
+    assert large.hides(small)
+    assert not small.hides(large)
+    assert not ring(1.0, depth=0.05).hides(small)
+    assert np.array_equal(pair_stiffness(PAIR, S, OPTIONS, [large, small]), pair_stiffness(PAIR, S, OPTIONS, [large]))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.3, 1.1), st.floats(-3.0, 3.0), st.integers(3, 9), st.integers(3, 9))
+def test_what_a_polygon_hides_adds_nothing_to_the_union(scale: float, shift: float, corners: int, others: int):
+    large, small = ring(1.0, corners=corners), ring(scale, shift, others)
+    grown = union_area_m2(GEAR, [large, small], WIDTH) / union_area_m2(GEAR, [large], WIDTH) - 1.0
+    if large.hides(small):
+        assert grown == pytest.approx(0.0, abs=1e-12)
+    else:
+        assert grown > 0.0
+
+
 @pytest.mark.parametrize(
     ("outline", "received"),
     [

@@ -1,0 +1,62 @@
+"""`siggen-diagnostics check`: whether a machine has changed against its healthy recordings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from diagnostics.cli.recording_options import Rate, file_rows
+
+
+def check(
+    machine: Annotated[
+        Path, typer.Argument(metavar="MACHINE", help="Folder that `baseline` wrote.", show_default=False)
+    ],
+    new: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NEW...", help="Recordings to judge, as those of `baseline`, the same channels.", show_default=False
+        ),
+    ],
+    fs: Rate = None,
+    load: Annotated[float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`.")] = None,
+    keep: Annotated[bool, typer.Option(help="Whether to add the verdicts to the machine's history.")] = True,
+) -> None:
+    """Say of every recording: unchanged, changed, other load or speed, or cannot tell. No fault is named.
+
+    Writes a page with the trend into the machine's folder. Exit codes: 0 nothing has changed, 4 something has.
+
+    Example: siggen-diagnostics check rig august.csv september.csv
+    """
+    from diagnostics.base.extras import require_packages
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.machine.check import CHANGED, check_recording, rate_sentence
+    from diagnostics.machine.check_history import add_checks
+    from diagnostics.machine.machine import load_machine
+    from diagnostics.machine.machine_page import write_machine_page
+    from diagnostics.recordings.measured_recording import read_recording
+    from siggen.errors import EXIT_MISMATCH
+
+    require_packages("the page of a machine", "matplotlib")
+    known = load_machine(machine)
+    sources = [source for said in new for source in file_rows(said)]
+    found = []
+    with terminal_stage("recordings", len(sources)) as advance:
+        for path, row in sources:
+            facts = replace(known.facts, row=row, fs_hz=fs or known.facts.fs_hz)
+            name = path.name if row is None else f"{path.name}:{row}"
+            found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
+            advance()
+    if keep:
+        add_checks(machine, found)
+    for one in found:
+        typer.echo(f"{one.recording}: {one.verdict}: {one.reason}")
+    used = [one.used for one in found if one.score is not None]
+    if used:
+        typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
+    typer.echo(str(write_machine_page(known, machine, found)))
+    if any(one.verdict == CHANGED for one in found):
+        raise typer.Exit(EXIT_MISMATCH)

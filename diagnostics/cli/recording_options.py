@@ -1,0 +1,88 @@
+"""Options that several commands share: how a recorded file is read."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from siggen.errors import UsageError
+
+ROWS = re.compile(r"\d+(,\d+)*")
+
+Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed for WAV files.")]
+Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
+SpeedRange = Annotated[
+    str | None,
+    typer.Option("--speed-range", metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho."),
+]
+Channel = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--channel", metavar="NAME=COLUMN", help="Name of a channel and its column of the file. Default: all columns."
+    ),
+]
+Unit = Annotated[str, typer.Option("--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V.")]
+Sensitivity = Annotated[
+    float | None, typer.Option("--sensitivity", help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
+]
+FullScale = Annotated[
+    float | None, typer.Option("--full-scale", help="Full scale of an integer WAV file, in its unit.")
+]
+Tacho = Annotated[
+    str | None, typer.Option("--tacho", metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
+]
+TachoPulses = Annotated[int, typer.Option("--tacho-pulses", min=1, help="Tacho pulses per pinion revolution.")]
+
+
+def file_rows(said: str) -> list[tuple[Path, int | None]]:
+    """Return file and row of every recording that FILE or FILE:ROW,ROW names; a file of that very name goes first."""
+    file, colon, rows = said.rpartition(":")
+    if not colon or Path(said).exists() or not ROWS.fullmatch(rows):
+        return [(Path(said), None)]
+    return [(Path(file), int(row)) for row in rows.split(",")]
+
+
+def two_numbers(said: str, option: str, example: str) -> tuple[float, float]:
+    """Return two numbers with a comma between.
+
+    Raises
+    ------
+    UsageError
+        If they are not; names the option and an example.
+    """
+    try:
+        first, second = (float(part) for part in said.split(","))
+    except ValueError as error:
+        raise UsageError(f"{option}: received {said!r}; allowed are two numbers with a comma: {example}") from error
+    return first, second
+
+
+def two_gears(said: str) -> tuple[int, int]:
+    """Return teeth of pinion and gear.
+
+    Raises
+    ------
+    UsageError
+        If they are not two whole numbers from 3 on.
+    """
+    first, second = two_numbers(said, "--teeth", "18,47")
+    if min(first, second) < 3 or first % 1 or second % 1:
+        raise UsageError(f"--teeth: received {said}; allowed are two whole numbers from 3 on")
+    return int(first), int(second)
+
+
+def named_column(said: str) -> tuple[str, str]:
+    """Return channel and column of NAME=COLUMN.
+
+    Raises
+    ------
+    UsageError
+        If it has another form.
+    """
+    name, equals, column = said.partition("=")
+    if not equals or not name or not column:
+        raise UsageError(f"--channel: received {said!r}; allowed is NAME=COLUMN, e.g. bearing_vertical=ch1")
+    return name, column

@@ -1,0 +1,149 @@
+"""Windows of a set by number, for samplers, `DataLoader(batch_size=...)` and trainers that want a length.
+
+    windows = WindowDataset(siggen.open("data/set"), "train", cache=Path("cache"))
+    loader = DataLoader(windows, batch_size=64, sampler=RowGroupSampler(windows), num_workers=2)
+
+Batches are the same for any number of workers, since the sampler stays in one process.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch.utils.data import Dataset as TorchDataset
+from torch.utils.data import Sampler
+
+from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks
+from diagnostics.loader.row_group_signals import RowGroupSignals
+from diagnostics.loader.window_index import StreamSettings, window_index
+from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
+from siggen.dataset.reading import Dataset
+
+KEPT_RECORDS = 32
+"""Decoded records that a process keeps; windows of one record overlap and come close together from the sampler."""
+
+
+class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type checker does not read torch
+    """Windows of one split; `dataset[k]` is a dict with `windows` (channels, samples) float32 and the labels.
+
+    Without a cache a window in random order costs the reading of its row group. With `RowGroupSampler` or a cache it
+    does not.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    split : str
+        Split to read.
+    settings : StreamSettings, optional
+        Default: windows of 8 pinion revolutions of 288 angle steps, every 4 revolutions.
+    labels : sequence of str
+        Further labels, see `diagnostics.loader.window_labels`.
+    transform : callable, optional
+        Takes a sample and a generator, and returns what the model gets. The generator depends on seed, window and how
+        often the window was drawn.
+    seed : int
+        Of these generators.
+    cache : Path, optional
+        Folder for decoded records, read through memory mapping.
+
+    Raises
+    ------
+    UsageError
+        If a label is unknown or a number is out of range.
+    DatasetError
+        If no record of the split holds a whole window.
+    """
+
+    def __init__(
+        self,
+        dataset: Dataset,
+        split: str,
+        settings: StreamSettings | None = None,
+        *,
+        labels: Sequence[str] = (),
+        transform: Transform | None = None,
+        seed: int = 0,
+        cache: Path | None = None,
+    ) -> None:
+        chosen = settings or StreamSettings()
+        self.index = window_index(dataset, split, chosen, labels)
+        self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
+        self.transform, self.seed = transform, seed
+        # shared, so that copies in worker processes count on where an earlier epoch's stopped
+        self._drawn = torch.zeros(self.index.size, dtype=torch.int64).share_memory_()
+        self._records: dict[tuple[int, int], Sequence[np.ndarray]] = {}
+
+    def __len__(self) -> int:
+        """Return the windows of the split."""
+        return self.index.size
+
+    def __getitem__(self, number: int) -> Any:
+        """Return a window with its labels, transformed."""
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"window {number} of {len(self)}")
+        number = int(number) % len(self)
+        sample = window_sample(self.index, number, self._record(number))
+        if self.transform is None:
+            return sample
+        drawn = int(self._drawn[number])
+        self._drawn[number] += 1
+        return transformed(sample, self.transform, self.seed, drawn, number)
+
+    def _record(self, number: int) -> Sequence[np.ndarray]:
+        """Return the decoded channels of a window's record; the latest records stay in memory."""
+        group, row = int(self.index.group[number]), int(self.index.row[number])
+        if (group, row) not in self._records:
+            while len(self._records) >= KEPT_RECORDS:
+                del self._records[next(iter(self._records))]
+            self._records[group, row] = self.signals.read(group, [row])[row]
+        return self._records[group, row]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what goes to a worker process: everything but the decoded records."""
+        return {**self.__dict__, "_records": {}}
+
+
+class RowGroupSampler(Sampler[int]):  # type: ignore[misc]
+    """Numbers of windows in the shuffled order of a `WindowDataset`, another one in every epoch.
+
+    Records that lie together on disk are drawn close to each other, so that each is decoded few times. The order
+    depends on seed, epoch and rank alone.
+
+    Parameters
+    ----------
+    windows : WindowDataset
+        What is drawn from.
+    shuffling : Shuffling, optional
+        Seed, and row groups that are mixed.
+    rank, world_size : int
+        Which of how many processes this is.
+    """
+
+    def __init__(
+        self, windows: WindowDataset, shuffling: Shuffling | None = None, *, rank: int = 0, world_size: int = 1
+    ) -> None:
+        self.group = windows.index.group
+        self.shuffling, self.part = shuffling or Shuffling(), Part(rank, world_size)
+        self.epoch = 0
+
+    def __len__(self) -> int:
+        """Return the windows of this rank."""
+        return int(sum(chunk.size for chunk in self._chunks(0)))
+
+    def __iter__(self) -> Iterator[int]:
+        """Yield the numbers of the next epoch."""
+        epoch, self.epoch = self.epoch, self.epoch + 1
+        for chunk in self._chunks(epoch):
+            yield from chunk.tolist()
+
+    def set_epoch(self, epoch: int) -> None:
+        """Let the next iteration be that of a given epoch; trainers call it, nobody has to."""
+        self.epoch = epoch
+
+    def _chunks(self, epoch: int) -> list[np.ndarray]:
+        return epoch_chunks(self.group, epoch, self.part, 1, self.shuffling)

@@ -1,0 +1,163 @@
+"""Check: whether a new recording of a machine differs from its healthy ones; no state is named.
+
+Source: derived; the test of the change is `change_score`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from diagnostics.machine.healthy_state import pieces_of
+from diagnostics.machine.machine import Machine
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
+from diagnostics.training.log_features import log_values
+from siggen.errors import UsageError
+
+UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
+SPEED_RATIO = 1.05
+"""Up to which indicators are compared: a line moves by less than the width of most modes."""
+LOAD_RATIO = 1.2
+LARGEST_LEVEL_DB = 25.0
+"""Of all channels alike: more than damage does, so a wrong unit or gain."""
+LISTED = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """An indicator that moved: which, on which channel, by what factor, and by how many spreads."""
+
+    indicator: str
+    channel: str
+    factor: float
+    spreads: float
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What is said about one recording.
+
+    Attributes
+    ----------
+    recording : str
+    verdict : str
+        UNCHANGED, CHANGED, OTHER_CONDITIONS or CANNOT_TELL.
+    reason : str
+        In one sentence.
+    speed_hz : float
+        NaN where it was not found.
+    score : ChangeScore or None
+    moved : tuple of Moved
+        Largest deviations first.
+    used : int
+        References at the same speed and load.
+    """
+
+    recording: str
+    verdict: str
+    reason: str
+    speed_hz: float
+    score: ChangeScore | None = None
+    moved: tuple[Moved, ...] = ()
+    used: int = 0
+
+
+def check_recording(machine: Machine, recording: MeasuredRecording, name: str, load: float | None = None) -> Check:
+    """Return the verdict on a recording.
+
+    Parameters
+    ----------
+    machine : Machine
+    recording : MeasuredRecording
+        With the machine's channels.
+    name : str
+        What the recording is called.
+    load : float, optional
+        As the references' loads were given.
+    """
+    try:
+        if recording.duration_s < 0.9 * machine.duration_s:
+            told = f"{recording.duration_s:.3g} s; pieces of the references are {machine.duration_s:.3g} s long"
+            raise UsageError(f"{recording.path}: is too short: {told}")
+        pieces, pulses = pieces_of(recording, machine.fs_hz, machine.teeth, machine.speed_range_hz, machine.duration_s)
+    except UsageError as error:
+        return Check(name, CANNOT_TELL, str(error), float("nan"))
+    logs = log_values(pieces.medians(machine.names)[None])[0]
+    alike = _alike(machine, pulses.speed_hz, load)
+    if np.count_nonzero(alike) < FEWEST:
+        return Check(name, OTHER_CONDITIONS, _conditions(machine, pulses.speed_hz, load), pulses.speed_hz)
+    healthy = log_values(machine.values[alike])
+    if (level := _level_db(machine, healthy, logs)) is not None:
+        reason = f"all channels are {level:+.0f} dB off; is the unit, sensitivity or gain that of the references?"
+        return Check(name, CANNOT_TELL, reason, pulses.speed_hz)
+    try:
+        score = change_score(healthy, logs, machine.false_alarms)
+    except UsageError as error:
+        return Check(name, CANNOT_TELL, str(error), pulses.speed_hz)
+    moved = _moved(machine, healthy, logs, score)
+    verdict = CHANGED if score.changed else UNCHANGED
+    return Check(name, verdict, _reason(score, moved), pulses.speed_hz, score, moved, int(np.count_nonzero(alike)))
+
+
+def rate_sentence(references: int, wanted: float) -> str:
+    """Return how many false alarms to expect, and what more recordings would give."""
+    promised = attainable_rate(references, wanted)
+    if promised <= wanted:
+        return f"Of 100 recordings of the unchanged machine about {100 * wanted:.0f} will be called changed."
+    needed = int(np.ceil(1.0 / wanted - 1.0 - 1e-9))
+    return (
+        f"With {references} references at most {100 * promised:.0f} of 100 recordings of the unchanged machine will be "
+        f"called changed; about {100 * wanted:.0f} if scores are log-normal. A promise of {100 * wanted:.0f} takes "
+        f"{needed} references."
+    )
+
+
+def _alike(machine: Machine, speed_hz: float, load: float | None) -> np.ndarray:
+    """Return which references ran at the same speed and load."""
+    same = np.abs(np.log(machine.speed_hz / speed_hz)) <= log(SPEED_RATIO)
+    if load is not None and np.isfinite(machine.load).all():
+        same &= np.abs(machine.load - load) <= (LOAD_RATIO - 1.0) * np.abs(machine.load)
+    return np.asarray(same)
+
+
+def _conditions(machine: Machine, speed_hz: float, load: float | None) -> str:
+    told = f"{speed_hz:.4g} Hz" + ("" if load is None else f" and load {load:g}")
+    speeds = f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz"
+    known = np.isfinite(machine.load).all()
+    loads = f", loads {machine.load.min():g} to {machine.load.max():g}" if known else ""
+    return (
+        f"at {told} fewer than {FEWEST} references ran within {100 * (SPEED_RATIO - 1):.0f} % of the speed and "
+        f"{100 * (LOAD_RATIO - 1):.0f} % of the load; the references: {speeds}{loads}"
+    )
+
+
+def _level_db(machine: Machine, healthy: np.ndarray, logs: np.ndarray) -> float | None:
+    """Return by how much all channels are off in level [dB] where that is more than damage does."""
+    levels = [k for k, name in enumerate(machine.names) if name.startswith("rms__")]
+    if not levels:
+        return None
+    off = 20.0 / np.log(10.0) * (logs[levels] - healthy[:, levels].mean(axis=0))
+    alike = np.isfinite(off).all() and np.ptp(off) < 10.0
+    return float(off.mean()) if alike and np.abs(off).min() > LARGEST_LEVEL_DB else None
+
+
+def _moved(machine: Machine, healthy: np.ndarray, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:
+    found = []
+    for k in np.argsort(-np.nan_to_num(np.abs(score.deviation)))[:LISTED]:
+        indicator, _, channel = machine.names[k].partition("__")
+        factor = float(np.exp(logs[k] - healthy[:, k].mean()))
+        found.append(Moved(indicator, channel, factor, float(score.deviation[k])))
+    return tuple(found)
+
+
+def _reason(score: ChangeScore, moved: tuple[Moved, ...]) -> str:
+    side = "above" if score.changed else "not above"
+    first = "" if not score.changed else f"; most: {_names(moved)}"
+    return f"its distance {score.score:.3g} is {side} the limit {score.limit:.3g}{first}"
+
+
+def _names(moved: tuple[Moved, ...]) -> str:
+    return ", ".join(f"{m.indicator} on {m.channel} x {m.factor:.3g}" for m in moved[:3])

@@ -1,0 +1,120 @@
+"""From healthy recordings to a Machine: common rate and length of pieces, one row of indicators per recording."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.base.progress import Advance
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.machine.machine import Machine
+from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
+from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.statistics.change_score import FEWEST
+from siggen.errors import UsageError
+
+LONGEST_PIECE_S = 10.0
+FEWEST_TURNS = 10
+"""Of the pinion in a piece; averages of fewer leave the noise in."""
+
+Source = tuple[Path, int | None]
+"""A file, and which row of it."""
+
+
+def healthy_state(
+    sources: Sequence[Source],
+    channels: tuple[str, ...],
+    facts: RecordingFacts,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+    loads: Sequence[float],
+    false_alarms: float,
+    advance: Advance,
+) -> Machine:
+    """Return a machine from its healthy recordings.
+
+    Parameters
+    ----------
+    sources : sequence of (Path, int or None)
+        Files and rows, three at least.
+    channels, facts, teeth, speed_range_hz, false_alarms : see `Machine`
+    loads : sequence of float
+        One per recording, one for all, or none.
+    advance : callable
+        Told of every recording that is done.
+
+    Raises
+    ------
+    UsageError
+        If there are too few, one comes twice, or one cannot be used; names the file.
+    """
+    if len(sources) < FEWEST:
+        raise UsageError(
+            f"{len(sources)} healthy recordings; allowed: at least {FEWEST}, and 20 for a rate of false alarms of 5 %"
+        )
+    if len(loads) not in {0, 1, len(sources)}:
+        raise UsageError(f"--load: received {len(loads)} numbers; allowed: one, or one per recording ({len(sources)})")
+    read = [read_recording(path, channels, _row(facts, row)) for path, row in sources]
+    _refuse_twice(read)
+    fs_hz = min(recording.fs_hz for recording in read)
+    duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read))
+    rows, speeds = [], []
+    for recording in read:
+        pieces, pulses = pieces_of(recording, fs_hz, teeth, speed_range_hz, duration_s)
+        rows.append(pieces)
+        speeds.append(pulses.speed_hz)
+        advance()
+    names = rows[0].names
+    values = np.stack([pieces.medians(names) for pieces in rows])
+    load = np.full(len(read), np.nan) if not loads else np.broadcast_to(np.asarray(loads, dtype=np.float64), len(read))
+    called = tuple(f"{path.name}:{row}" if row is not None else path.name for path, row in sources)
+    return Machine(
+        teeth, channels, facts, speed_range_hz, fs_hz, duration_s, false_alarms, names, values, called,
+        np.array(speeds), np.array(load),
+    )  # fmt: skip
+
+
+def pieces_of(
+    recording: MeasuredRecording,
+    fs_hz: float,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+    duration_s: float,
+) -> tuple[RecordPieces, ShaftPulses]:
+    """Return the indicators of a recording's pieces at the machine's rate, and the pulses of its pinion.
+
+    Raises
+    ------
+    UsageError
+        If it was sampled too slowly, no speed is found, or a piece holds too few turns.
+    """
+    if recording.fs_hz < fs_hz * (1.0 - 1e-6):
+        raise UsageError(
+            f"{recording.path}: sampled at {recording.fs_hz:g} Hz, the references at {fs_hz:g} Hz; allowed: no less"
+        )
+    slow = at_rate(recording, fs_hz)
+    pulses = shaft_pulses(slow, teeth, speed_range_hz)
+    if duration_s * pulses.speed_hz < FEWEST_TURNS:
+        raise UsageError(
+            f"{recording.path}: pieces of {duration_s:.3g} s hold {duration_s * pulses.speed_hz:.1f} turns of the "
+            f"pinion; allowed: at least {FEWEST_TURNS}. Use longer recordings"
+        )
+    return record_pieces(slow, pulses, teeth, duration_s, IndicatorSettings()), pulses
+
+
+def _row(facts: RecordingFacts, row: int | None) -> RecordingFacts:
+    return replace(facts, row=row)
+
+
+def _refuse_twice(read: Sequence[MeasuredRecording]) -> None:
+    """Refuse a recording that comes twice: references that repeat each other have no spread."""
+    seen: dict[bytes, Path] = {}
+    for recording in read:
+        start = next(iter(recording.channels.values()))[:4096].tobytes()
+        if start in seen:
+            raise UsageError(f"{recording.path}: has the same samples as {seen[start]}; give every recording once")
+        seen[start] = recording.path

@@ -1,0 +1,113 @@
+"""The page of a machine: the newest verdicts, the trend over all checks, and what moved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnostics.machine.check import CHANGED, UNCHANGED, Check, rate_sentence
+from diagnostics.machine.check_history import PastCheck, past_checks
+from diagnostics.machine.machine import Machine
+from diagnostics.page import html
+from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.wording import capitalised
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PAGE = "machine.html"
+TREND = "Distance from the healthy recordings over all checks, oldest first; the bar is the limit of each."
+NO_STATE = (
+    "This page says whether the machine has changed against its own healthy recordings. It names no fault: that takes "
+    "recordings of known faults, or a model of this machine."
+)
+
+
+def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) -> Path:
+    """Write `machine.html` into the machine's folder; return its path."""
+    history = past_checks(folder)
+    with styled():
+        figure = png_bytes(_trend(history))
+    parts = [
+        html.heading(f"Machine {folder.name}: {_headline(checks)}", 1),
+        *html.summary(
+            [_headline_sentence(checks), NO_STATE, rate_sentence(_used(machine, checks), machine.false_alarms)]
+        ),
+        html.figure_grid([html.figure_block(figure, TREND)]),
+        html.table(
+            ("Recording", "Verdict", "Reason", "Speed [Hz]"),
+            [
+                [html.Cell(c.recording), html.Cell(c.verdict), html.Cell(c.reason), html.Cell(f"{c.speed_hz:.4g}")]
+                for c in checks
+            ],
+            caption="Newest checks.",
+            text=True,
+        ),
+        *(_moved_table(check) for check in checks if check.moved),
+        html.heading("References"),
+        html.table(
+            ("Recording", "Speed [Hz]", "Load"),
+            [
+                [html.Cell(name), html.Cell(f"{speed:.4g}"), html.Cell("-" if np.isnan(load) else f"{load:g}")]
+                for name, speed, load in zip(machine.references, machine.speed_hz, machine.load, strict=True)
+            ],
+            caption="Healthy recordings that everything is compared with.",
+            tall=True,
+        ),
+    ]
+    page = folder / PAGE
+    page.write_text(html.page(f"Machine {folder.name}", parts), encoding="utf-8")
+    return page
+
+
+def _headline(checks: Sequence[Check]) -> str:
+    return ", ".join(dict.fromkeys(check.verdict for check in checks))
+
+
+def _headline_sentence(checks: Sequence[Check]) -> str:
+    counts = {
+        verdict: sum(check.verdict == verdict for check in checks)
+        for verdict in dict.fromkeys(c.verdict for c in checks)
+    }
+    return capitalised("; ".join(f"{count} of {len(checks)} {verdict}" for verdict, count in counts.items())) + "."
+
+
+def _used(machine: Machine, checks: Sequence[Check]) -> int:
+    return min((check.used for check in checks if check.score is not None), default=len(machine.references))
+
+
+def _moved_table(check: Check) -> str:
+    rows = [
+        [
+            html.Cell(moved.indicator),
+            html.Cell(moved.channel),
+            html.Cell(f"{moved.factor:.3g}", value=moved.factor),
+            html.Cell(f"{moved.spreads:+.1f}", value=moved.spreads),
+        ]
+        for moved in check.moved
+    ]
+    caption = f"{check.recording} ({check.verdict}): indicators farthest from the healthy recordings."
+    return html.table(("Indicator", "Channel", "Factor", "Spreads"), rows, caption=caption, sortable=True)
+
+
+def _trend(history: Sequence[PastCheck]) -> Figure:
+    figure, axes = new_figure(height_in=2.8)
+    axis = axes[0, 0]
+    known = [(k, past) for k, past in enumerate(history, start=1) if past.score is not None and past.limit is not None]
+    for verdict, colour, marker in ((UNCHANGED, HEALTHY_COLOUR, "o"), (CHANGED, FAULT_COLOURS[2], "D")):
+        places = [(k, past.score) for k, past in known if past.verdict == verdict]
+        if places:
+            axis.plot(*zip(*places, strict=True), marker, color=colour, label=verdict, markersize=5)
+    for k, past in known:
+        axis.plot([k - 0.4, k + 0.4], [past.limit, past.limit], color="#1c2733", linewidth=1.2)
+    axis.set_yscale("log")
+    axis.yaxis.set_major_formatter("{x:g}")
+    axis.yaxis.set_minor_formatter("{x:g}")
+    axis.set_xlabel("check")
+    axis.set_ylabel("distance [spreads]")
+    if known:
+        axis.legend(loc="upper left")
+    return figure

@@ -1,0 +1,106 @@
+"""Indicators, speed and orders of one measured recording: the one call for programs, and what the command prints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.indicators.record import record_values
+from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.recordings.file_channels import file_channels
+from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingIndicators:
+    """What one recording gave.
+
+    Attributes
+    ----------
+    name : str
+        The file's, with the row of a Parquet file.
+    recording : MeasuredRecording
+        In m/s².
+    teeth : (int, int)
+    pulses : ShaftPulses
+        Of the pinion, from the tacho or from the mesh lines.
+    values : dict of str to float
+        Indicators of the whole recording, `<indicator>__<channel>`; NaN where undefined.
+    revolutions : (int, int)
+        Whole revolutions of pinion and gear that were averaged.
+    note : str
+        What is undefined, and why.
+    """
+
+    name: str
+    recording: MeasuredRecording
+    teeth: tuple[int, int]
+    pulses: ShaftPulses
+    values: dict[str, float]
+    revolutions: tuple[int, int]
+    note: str
+
+    @property
+    def mesh_hz(self) -> float:
+        """Mean mesh frequency."""
+        return self.pulses.speed_hz * self.teeth[0]
+
+    def channel(self, name: str) -> dict[str, float]:
+        """Return the indicators of one channel by their own names."""
+        ending = f"__{name}"
+        return {key.removesuffix(ending): value for key, value in self.values.items() if key.endswith(ending)}
+
+
+def recording_indicators(
+    path: Path,
+    teeth: tuple[int, int],
+    facts: RecordingFacts | None = None,
+    speed_range_hz: tuple[float, float] | None = None,
+) -> RecordingIndicators:
+    """Return all indicators of a recording that is no record of a set.
+
+    Parameters
+    ----------
+    path : Path
+        .csv, .txt, .mat, .wav, .parquet, .npy or .npz.
+    teeth : (int, int)
+        Of pinion and gear.
+    facts : RecordingFacts, optional
+        Rate, columns, unit, tacho. Channels are its columns, or else all columns of numbers but time and tacho.
+    speed_range_hz : (float, float), optional
+        Where to look for the pinion's speed; needed without a tacho.
+
+    Raises
+    ------
+    UsageError
+        If the file cannot be read or used, or no speed is found; names the file and the way out.
+    """
+    facts = facts or RecordingFacts()
+    names = tuple(facts.columns) or file_channels(path, facts.tacho, facts.row)
+    recording = read_recording(path, names, facts)
+    pulses = shaft_pulses(recording, teeth, speed_range_hz)
+    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, IndicatorSettings())
+    name = path.name if facts.row is None else f"{path.name}:{facts.row}"
+    return RecordingIndicators(name, recording, teeth, pulses, found.values, found.revolutions, found.notes)
+
+
+def indicator_title(name: str) -> str:
+    """Return an indicator's name for readers, with its column's parts where it has several."""
+    known = [entry for key, entry in BY_NAME.items() if name == key or name.startswith(f"{key}_")]
+    if not known:
+        return name
+    entry = max(known, key=lambda one: len(one.name))
+    rest = name.removeprefix(entry.name).strip("_").replace("_", " ")
+    return f"{entry.title}, {rest}" if rest else entry.title
+
+
+def indicator_matrix(found: RecordingIndicators) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the indicators' names and their values (indicators, channels); NaN where undefined."""
+    channels = list(found.recording.channels)
+    names = tuple(dict.fromkeys(key.rpartition("__")[0] for key in found.values))
+    values = [[found.values.get(f"{name}__{channel}", np.nan) for channel in channels] for name in names]
+    return names, np.array(values, dtype=np.float64).reshape(len(names), len(channels))

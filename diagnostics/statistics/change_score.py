@@ -1,0 +1,129 @@
+"""ChangeScore: how far a recording stands from healthy ones of the same machine, and how rare that is.
+
+Every recording of a bag (the references and the new one) is judged against all others of the bag in the same way, so
+healthy recordings are exchangeable and the rank of the new one's score has a known distribution whatever the
+features are: conformal prediction (Vovk et al. 2005). Among n references no smaller rate of false alarms than
+1/(n + 1) can be had by ranks alone. Below that the logarithm of the score is compared with those of the references,
+as if these were normally distributed (Student's t): a second condition, which can only take alarms away.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from siggen.errors import UsageError
+
+FEWEST = 3
+"""References below which nothing can be said."""
+PRIOR_RECORDINGS = 3.0
+"""Weight, in recordings, of the median spread over all features in the spread of each."""
+SHARE = 0.1
+"""Share of the features, those farthest off, that make the score."""
+LEAST_SPREAD = 1e-3
+"""Of a logarithm: what no recording repeats to."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeScore:
+    """What one recording gave.
+
+    Attributes
+    ----------
+    score : float
+        Root mean square of the largest tenth of the deviations, in spreads.
+    limit : float
+        Score from which it is called a change.
+    rank_p, normal_p : float
+        Share of healthy recordings that stand as far off: by rank, and by the references' spread of log scores.
+    references : (n,) float64
+        Scores of the references, each against the others and the new one.
+    deviation : (features,) float64
+        Of the new recording from the mean of the references, in spreads; NaN where undefined.
+    changed : bool
+    """
+
+    score: float
+    limit: float
+    rank_p: float
+    normal_p: float
+    references: np.ndarray
+    deviation: np.ndarray
+    changed: bool
+
+
+def attainable_rate(references: int, wanted: float) -> float:
+    """Return the rate of false alarms that ranks among so many references can promise: `wanted`, or 1/(n + 1)."""
+    return max(wanted, 1.0 / (references + 1.0))
+
+
+def change_score(healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.05) -> ChangeScore:
+    """Return how far a recording stands from healthy ones.
+
+    Parameters
+    ----------
+    healthy : (n, features) float64
+        Logarithms of the features of the references, NaN where undefined.
+    new : (features,) float64
+    false_alarms : float
+        Wanted rate of false alarms.
+
+    Raises
+    ------
+    UsageError
+        If there are fewer than three references, or no feature is defined in all recordings.
+    """
+    if len(healthy) < FEWEST:
+        raise UsageError(f"{len(healthy)} healthy recordings; allowed: at least {FEWEST}, and 20 for a rate of 5 %")
+    bag = np.vstack([healthy, new])
+    known = np.isfinite(bag).all(axis=0)
+    if not known.any():
+        raise UsageError(
+            "no indicator is defined in all recordings; use longer recordings with two whole turns or more"
+        )
+    scores = np.array([_score(_deviation(bag[:, known], i)) for i in range(len(bag))])
+    references, score = scores[:-1], float(scores[-1])
+    rank_p = (1.0 + np.count_nonzero(references >= score)) / len(bag)
+    normal_p, normal_limit = _normal(np.log(references), float(np.log(score)), false_alarms)
+    rate = attainable_rate(len(healthy), false_alarms)
+    allowed_above = int(np.floor(rate * len(bag) + 1e-9)) - 1
+    rank_limit = float(np.sort(references)[::-1][allowed_above])
+    few = rate > false_alarms
+    deviation = np.full(bag.shape[1], np.nan)
+    deviation[known] = _deviation(bag[:, known], len(healthy))
+    return ChangeScore(
+        score,
+        max(rank_limit, normal_limit) if few else rank_limit,
+        rank_p,
+        normal_p,
+        references,
+        deviation,
+        bool(rank_p <= rate and (not few or normal_p <= false_alarms)),
+    )
+
+
+def _deviation(bag: np.ndarray, i: int) -> np.ndarray:
+    """Return how far row i stands from the mean of the others (features,), in spreads."""
+    others = np.delete(bag, i, axis=0)
+    variance = others.var(axis=0, ddof=1)
+    typical = max(float(np.median(variance)), LEAST_SPREAD**2)
+    degrees = len(others) - 1.0
+    shrunk = (PRIOR_RECORDINGS * typical + degrees * variance) / (PRIOR_RECORDINGS + degrees)
+    return np.asarray((bag[i] - others.mean(axis=0)) / np.sqrt(shrunk * (1.0 + 1.0 / len(others))))
+
+
+def _score(deviation: np.ndarray) -> float:
+    count = max(1, round(SHARE * deviation.size))
+    return float(np.sqrt(np.mean(np.sort(np.abs(deviation))[-count:] ** 2)))
+
+
+def _normal(references: np.ndarray, new: float, rate: float) -> tuple[float, float]:
+    """Return the share of log scores above the new one, and the score that `rate` of them exceed."""
+    from scipy.stats import t
+
+    spread = max(float(references.std(ddof=1)), LEAST_SPREAD) * sqrt(1.0 + 1.0 / references.size)
+    middle, degrees = float(references.mean()), references.size - 1
+    limit = np.exp(middle + spread * t.isf(rate, degrees))
+    return float(t.sf((new - middle) / spread, degrees)), float(limit)

@@ -1,0 +1,149 @@
+"""Synchronous averages of a set for a network: lines of one pinion revolution, written out as rows of equal length.
+
+The lines are those that the one table of a set keeps, so no record is read again. A row has the same number of angle
+steps whatever the number of teeth. Source: residual as of `diagnostics.signal.difference_signal`; the rest derived.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnostics.indicators.table import RecordTable
+from diagnostics.signal.difference_signal import SHAFT_ORDERS
+from siggen.errors import DatasetError
+
+STEPS = 1024
+"""Angle steps of a row; it holds shaft orders up to 511."""
+
+
+@dataclass(frozen=True, slots=True)
+class AveragedRecords:
+    """Averages of one pinion revolution, from its first pulse on.
+
+    Attributes
+    ----------
+    lines : (records, channels, orders) complex64
+        Amplitude and phase [m/s²] at shaft orders 0, 1, 2 ...; zero where a record holds less.
+    teeth : (records,) int
+        Teeth of the pinion.
+    channels : tuple of str
+        Channel names.
+    healthy : (records, channels, orders) complex64, optional
+        Mean of the same gearbox's healthy averages; None where records stand alone.
+    """
+
+    lines: np.ndarray
+    teeth: np.ndarray
+    channels: tuple[str, ...]
+    healthy: np.ndarray | None = None
+
+    @property
+    def rows(self) -> int:
+        """Rows that a record gives: two per channel alone, four beside a healthy reference."""
+        return len(self.channels) * (2 if self.healthy is None else 4)
+
+    def chosen(self, places: np.ndarray) -> AveragedRecords:
+        """Return some of the records."""
+        healthy = None if self.healthy is None else self.healthy[places]
+        return replace(self, lines=self.lines[places], teeth=self.teeth[places], healthy=healthy)
+
+
+def averaged_records(table: RecordTable) -> AveragedRecords:
+    """Return the pinion averages of all records of a table.
+
+    Raises
+    ------
+    DatasetError
+        If a record holds fewer than two pinion revolutions.
+    """
+    found = table.complex_rows("waveform")
+    numbers = table.select(["record_id", "teeth_pinion"]).to_pydict()
+    short = [int(k) for k, row in zip(numbers["record_id"], found, strict=True) if min(map(len, row)) == 0]
+    if short:
+        raise DatasetError(
+            f"records {short[:5]} hold fewer than two whole pinion revolutions; the network on the average needs them. "
+            "Use longer records (`duration_s`) or leave the networks out (--no-cnn)."
+        )
+    return AveragedRecords(padded_lines(found), np.asarray(numbers["teeth_pinion"]), table.channels)
+
+
+def padded_lines(waveforms: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
+    """Return lines (k,) by record and channel as one array (records, channels, 512), zero where there are fewer."""
+    lines = np.zeros((len(waveforms), len(waveforms[0]), STEPS // 2), dtype=np.complex64)
+    for place, row in enumerate(waveforms):
+        for channel, values in enumerate(row):
+            lines[place, channel, : values.size] = values[: STEPS // 2]
+    return lines
+
+
+def with_references(records: AveragedRecords, places: np.ndarray, references: list[np.ndarray]) -> AveragedRecords:
+    """Return some of the records, each beside the mean of those that it refers to.
+
+    Parameters
+    ----------
+    records : AveragedRecords
+        All records of the set.
+    places : (k,) int
+        Which of them.
+    references : k of (m,) int
+        Places of the healthy records that each refers to, one or more, see `diagnostics.records.healthy_references`.
+    """
+    healthy = np.stack([records.lines[rows].mean(axis=0) for rows in references])
+    return replace(records.chosen(places), healthy=healthy)
+
+
+def average_rows(records: AveragedRecords) -> np.ndarray:
+    """Return what the network takes, (records, rows, 1024) float32 in m/s².
+
+    Per channel: the average and its residual; with a healthy reference residual, residual of the reference, difference
+    of the averages, and the difference's residual.
+    """
+    if records.healthy is None:
+        parts = [records.lines, residual_lines(records.lines, records.teeth)]
+    else:
+        difference = records.lines - records.healthy
+        parts = [
+            *(residual_lines(lines, records.teeth) for lines in (records.lines, records.healthy)),
+            *(difference, residual_lines(difference, records.teeth)),
+        ]
+    lines = np.concatenate(parts, axis=1)
+    lines[:, :, 0] = 0.0
+    return np.asarray(np.fft.irfft(lines * (STEPS / 2.0), n=STEPS, axis=2), dtype=np.float32)
+
+
+def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
+    """Return lines (records, channels, orders) without shaft orders 0 to 2 and multiples of the (records,) teeth."""
+    order = np.arange(lines.shape[2])
+    kept = (order > SHAFT_ORDERS) & (order % teeth[:, None] != 0)
+    return np.where(kept[:, None, :], lines, 0.0)
+
+
+def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, terms: int = 8) -> AveragedRecords:
+    """Return the records as seen from another tooth and through another smooth path, for training only.
+
+    Record and reference are turned together and pass one path per channel: a gearbox has one. Source: derived
+    (domain randomisation, as of `diagnostics.loader.augmentation`).
+
+    Parameters
+    ----------
+    records : AveragedRecords
+        Training records.
+    rng : numpy.random.Generator
+        Draws angles and paths.
+    gain_db : float
+        Standard deviation of a path's gain at any order [dB]; its phase scatters by 0.25 rad per 1 dB.
+    terms : int
+        Terms of the cosine series that a path is; more make it rougher.
+    """
+    count, channels, orders = records.lines.shape
+    place = np.arange(orders) / (orders - 1)
+    series = np.cos(np.pi * np.arange(terms)[:, None] * place) / np.sqrt((1 + terms) / 2.0)
+    gain = gain_db * np.log(10.0) / 20.0 * (rng.standard_normal((count, channels, terms)) @ series)
+    phase = 0.25 * gain_db * (rng.standard_normal((count, channels, terms)) @ series)
+    turn = 2.0 * np.pi * rng.uniform(size=(count, 1, 1)) * np.arange(orders)
+    factor = np.exp(gain + 1j * (phase + turn)).astype(np.complex64)
+    healthy = None if records.healthy is None else records.healthy * factor
+    return replace(records, lines=records.lines * factor, healthy=healthy)

@@ -1,0 +1,47 @@
+"""Edges of damage that are rounder than the contact across the face holds for.
+
+Derived: the law of a rounded edge (`siggen.gears.contact.edge_law`) lets the sink fall with a growing distance inside
+the gap only while r/(R + r) is at most 1/8, so r at most R/7. R is taken at the pitch point. Beyond, contacts of some
+gearboxes are not solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from siggen.config import Dynamics, Number, bounds
+from siggen.errors import Problem
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.contact import solves_across_the_face
+
+LARGEST_SHARE = 1.0 / 7.0
+"""Radius of an edge over the relative radius of curvature at the pitch point."""
+
+
+def edge_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Iterator[Problem]:
+    """Yield edge radii that are too large at the bounds of all numbers, for the gears that are possible."""
+    dynamics: Dynamics | None = sections.get("dynamics")
+    if dynamics is None or not pairs or not solves_across_the_face(dynamics):
+        return
+    most_mm = 1e3 * LARGEST_SHARE * min(_pitch_radius_m(pair) for pair in pairs)
+    damages = {i: s.damage for i, s in sections.get("states", {}).items() if s.damage is not None}
+    radii: dict[str, Number] = {
+        f"states.{index}.damage.edge_radius_mm": damage.edge_radius_mm
+        for index, damage in damages.items()
+        if damage.drawn_edges
+    }
+    if len(radii) < len(damages):
+        radii["dynamics.mesh.pit_edge_radius_mm"] = dynamics.mesh.pit_edge_radius_mm
+    for path, radius in radii.items():
+        if bounds(radius)[1] > most_mm:
+            allowed = (
+                f"allowed: at most {most_mm:.3g}, a seventh of the flanks' relative radius at the pitch point, with "
+                "dynamics.mesh.contact: face; or contact: slices"
+            )
+            yield Problem(path, str(radius), allowed)
+
+
+def _pitch_radius_m(pair: GearPair) -> float:
+    position, line = pair.pitch_point_m, pair.line_of_action_m
+    return position * (line - position) / line

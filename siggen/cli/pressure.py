@@ -1,0 +1,53 @@
+"""`siggen pressure`: load and pressure over one flank while its tooth goes through mesh in a record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+
+def pressure(
+    source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
+    record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
+    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, a row per position and slice.")],
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    gear: Annotated[
+        Literal["pinion", "gear"] | None, typer.Option("--gear", help="Whose flank; by default the damaged gear's.")
+    ] = None,
+    tooth: Annotated[
+        int | None, typer.Option("--tooth", min=0, help="Index of the tooth; by default the first damaged one.")
+    ] = None,
+    roll: Annotated[
+        list[float] | None,
+        typer.Option("--roll", help="Turn of the pinion since the pair entered contact [degrees] at which the load is "
+                     "drawn across the face; may be given several times.", metavar="DEG"),
+    ] = None,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Replace a value, such as duration_s=0.5.")
+    ] = None,
+) -> None:  # fmt: skip
+    """Simulate one record and write how the force of a tooth spreads over its flank: load per length and pressure.
+
+    Force and tilt are those of the motion. How they spread is solved across the face, with damage, crowning, helix and
+    misalignment, and with the elastic pressure at the edges of damage as round as they were drawn.
+
+    Example: siggen pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
+    """
+    from siggen.cli.record_choice import chosen_config
+    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.views.face_pressure import face_pressure, pressure_table
+    from siggen.views.picture_file import check_picture_file
+    from siggen.views.pressure_figure import chosen_positions, largest_text, save_pressure_figure
+
+    check_table_file(out)
+    if png is not None:
+        check_picture_file(png)
+    found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
+    positions = chosen_positions(found, roll or ())
+    write_table_file(pressure_table(found), out)
+    if png is not None:
+        save_pressure_figure(found, positions, png)
+    typer.echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
+    typer.echo(str(out))

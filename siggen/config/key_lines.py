@@ -1,0 +1,89 @@
+"""Lines of YAML files that keys stand on, and problems of a configuration with the line or option they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+from siggen.config.yaml_source import yaml_node
+from siggen.errors import Problem
+
+MERGE = "tag:yaml.org,2002:merge"
+MOST_MERGES = 20
+"""Merged mappings within each other that are followed; a mapping may merge itself."""
+
+
+class KeyLine(NamedTuple):
+    """Where a path leads in a file: the line, from 1, of the last part that is there, and how many parts are there.
+
+    `own`: whether what is missing is missing in this file, since nothing below is taken from a file that it extends:
+    entries of lists, and mappings with a `kind`.
+    """
+
+    line: int
+    depth: int
+    own: bool
+
+
+def key_line(node: yaml.Node | None, path: str) -> KeyLine | None:
+    """Return where a key such as `states.1.damage.teeth` stands; None if not even its first part is there.
+
+    A key that an anchor brings stands where it is written.
+    """
+    found, own = None, False
+    for depth, part in enumerate(path.split("."), start=1):
+        child = _child(node, part)
+        if child is None:
+            break
+        line, node = child
+        own |= not isinstance(node, yaml.MappingNode) or _child(node, "kind") is not None
+        found = KeyLine(line, depth, own)
+    return found
+
+
+def placed(problems: Iterable[Problem], files: Sequence[Path] = (), overrides: Sequence[str] = ()) -> list[Problem]:
+    """Return problems that say where their value comes from: the last override that set it, else a line.
+
+    `files`: the configuration's and those that it extends.
+    """
+    roots = [(file.name, yaml_node(file.read_text(encoding="utf-8"))) for file in files]
+    return [one if one.where else replace(one, where=_where(one.path, roots, overrides)) for one in problems]
+
+
+def _where(path: str, roots: Sequence[tuple[str, yaml.Node | None]], overrides: Sequence[str]) -> str:
+    for override in reversed(overrides):
+        key = override.partition("=")[0].strip()
+        if path == key or path.startswith(f"{key}."):
+            return f"--set {key}"
+    best: KeyLine | None = None
+    file = ""
+    for name, root in roots:
+        found = key_line(root, path)
+        if found is not None and (best is None or found.depth > best.depth):
+            best, file = found, name
+        if best is not None and (best.own or best.depth == len(path.split("."))):
+            break
+    if best is None:
+        return ""
+    return f"line {best.line}" if file == roots[0][0] else f"line {best.line} of {file}, which this file extends"
+
+
+def _child(node: yaml.Node | None, part: str, merges: int = 0) -> tuple[int, yaml.Node] | None:
+    """Return line and value of a key of a mapping or an entry of a list; own keys go before merged ones."""
+    if isinstance(node, yaml.SequenceNode) and part.isdecimal() and int(part) < len(node.value):
+        entry = node.value[int(part)]
+        return entry.start_mark.line + 1, entry
+    if not isinstance(node, yaml.MappingNode) or merges > MOST_MERGES:
+        return None
+    merged: list[yaml.Node] = []
+    for key, value in node.value:
+        if key.tag == MERGE:
+            merged += value.value if isinstance(value, yaml.SequenceNode) else [value]
+        elif isinstance(key, yaml.ScalarNode) and key.value == part:
+            return key.start_mark.line + 1, value
+    found = (_child(one, part, merges + 1) for one in merged)
+    return next((one for one in found if one is not None), None)

@@ -1,0 +1,140 @@
+"""KindRow: one kind of pair along its path, as gaps of damage and tips and as compliance of the teeth.
+
+Gaps are found where damage may be felt; elsewhere they are those of the healthy pair.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray, IntArray
+from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.contact.pair_rest import PairRest, pair_rest
+from siggen.gears.contact.table_options import TableOptions, face_slices, half_width
+from siggen.gears.damage.flank_chords import FlankChords, flank_chords
+from siggen.gears.damage.tooth_damage import Damage, pits_of
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.mesh_stiffness import rolls_at
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+
+FELT_HALF_WIDTHS = 4.0
+"""Gaps farther from the contact than this many Hertz half widths are not felt."""
+
+
+class KindRow(NamedTuple):
+    """One kind of pair on the fine grid (points,): positions, gaps, compliance of all but the contact, radius of edges.
+
+    `gaps` are those of the points from `first` on, `elsewhere` those of the healthy pair at all points; `edge_radius_m`
+    is the mean of those that the damage of both teeth states, or else that of the options.
+    """
+
+    position_m: FloatArray
+    gaps: FaceGaps
+    first: int
+    elsewhere: FaceGaps
+    rest: PairRest
+    edge_radius_m: float
+
+    def gaps_at(self, chosen: IntArray) -> FaceGaps:
+        """Return the gaps at fine points (chosen,)."""
+        inside = chosen - self.first
+        here = (inside >= 0) & (inside < len(self.gaps.left_m))
+        found = []
+        for near, far in zip(self.gaps, self.elsewhere, strict=True):
+            values = far[chosen]
+            values[here] = near[inside[here]]
+            found.append(values)
+        return FaceGaps(*found)
+
+
+def pits_of_kind(damage: Damage, kind: tuple[int, int]) -> tuple[Damage, Damage]:
+    """Return the damage of pinion and gear tooth of a kind of pair."""
+    return pits_of(damage, "pinion", kind[0]), pits_of(damage, "gear", kind[1])
+
+
+def kind_row(
+    pair: GearPair,
+    stiffness: StiffnessOptions,
+    options: TableOptions,
+    points: int,
+    pits: tuple[Damage, Damage] = ((), ()),
+    healthy: KindRow | None = None,
+) -> KindRow:
+    """Return one kind of pair on a grid of points from s_A to s_E; without `healthy` its gaps are found everywhere."""
+    position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
+    rolls, flanks = rolls_at(pair, position), ("pinion", "gear")
+    slices = face_slices(pair, options)
+    chords = [
+        flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
+        for which, of_tooth in zip(flanks, pits, strict=True)
+    ]
+    # What shows on no flank acts through the tooth alone, as in `slice_law`.
+    acting = [tuple(d for d in of_tooth if options.section_loss or d.outline is None) for of_tooth in pits]
+    if healthy is not None and not any(acting):
+        rest = healthy.rest
+    else:
+        teeth = [
+            tooth_compliance(pair, which, roll, stiffness, of_tooth)
+            for which, roll, of_tooth in zip(flanks, rolls, acting, strict=True)
+        ]
+        rest = pair_rest(pair, (teeth[0], teeth[1]), stiffness)
+    stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
+    stated = stated[stated > 0.0]
+    edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
+    window = slice(0, points) if healthy is None else _window(pair, chords, position, options.largest_force_n)
+    gaps = face_gaps(pair, chords[0], chords[1], position[window])
+    return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
+
+
+def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray, force_n: float) -> slice:
+    """Return the points from the first to the last at which damage of either flank may be felt."""
+    along = (position_m, pair.line_of_action_m - position_m)
+    reach = FELT_HALF_WIDTHS * half_width(pair, position_m, force_n)
+    near = np.zeros(position_m.size, dtype=bool)
+    for flank, path in zip(chords, along, strict=True):
+        holds = np.arange(flank.low.shape[1]) < flank.intervals[:, None]
+        if not holds.any():
+            continue
+        arc = path**2 / (2.0 * flank.base_radius_m)
+        near |= (arc > flank.low[holds].min() - reach) & (arc < flank.high[holds].max() + reach)
+    found = np.flatnonzero(near)
+    return slice(int(found[0]), int(found[-1]) + 1) if found.size else slice(0, 0)
+
+
+def felt(pair: GearPair, row: KindRow, healthy: KindRow, force_n: float) -> np.ndarray:
+    """Return at which fine points (points,) a kind differs from a healthy pair under loads up to a force."""
+    everywhere = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
+    found = np.full(row.position_m.size, everywhere)
+    window = slice(row.first, row.first + len(row.gaps.left_m))
+    left, right = row.gaps.left_m, row.gaps.right_m
+    other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])
+    reach = FELT_HALF_WIDTHS * half_width(pair, row.position_m[window], force_n)
+    found[window] |= np.any(other & (-np.minimum(left, right) < reach[:, None]), axis=1)
+    return found
+
+
+def first_touch(pair: GearPair, row: KindRow, chosen: IntArray, lead_m: FloatArray) -> FloatArray:
+    """Return the least rigid sink of all slices, missing material across the face included (chosen,) [m]."""
+    return _least_sink(pair, row.position_m[chosen], row.gaps_at(chosen), row.edge_radius_m, lead_m)
+
+
+def touch_along(pair: GearPair, row: KindRow, healthy_m: FloatArray, lead_m: FloatArray) -> FloatArray:
+    """Return `first_touch` at all fine points, from that of the healthy pair (points,) [m]."""
+    touch = healthy_m.copy()
+    window = slice(row.first, row.first + len(row.gaps.left_m))
+    touch[window] = _least_sink(pair, row.position_m[window], row.gaps, row.edge_radius_m, lead_m)
+    return touch
+
+
+def _least_sink(
+    pair: GearPair, position_m: FloatArray, gaps: FaceGaps, edge_radius_m: float, lead_m: FloatArray
+) -> FloatArray:
+    line = pair.line_of_action_m
+    radius = position_m * (line - position_m) / line + edge_radius_m
+    near = np.maximum(np.minimum(gaps.left_m, gaps.right_m), 0.0)
+    floor = np.where(gaps.floor_m > 0.0, gaps.floor_m, np.inf)
+    sunk = np.minimum(near**2 / (2.0 * radius[:, None]), floor)
+    return np.asarray((sunk + lead_m).min(axis=1))

@@ -1,0 +1,47 @@
+"""TableOptions: how finely the contact is tabulated, and the slices that follow from it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.stiffness.hertz import contact_half_width
+from siggen.gears.stiffness.mesh_stiffness import rolls_at
+
+FEWEST_SLICES, MOST_SLICES = 40, 100
+
+
+class TableOptions(NamedTuple):
+    """How finely the contact is tabulated.
+
+    `largest_force_n`: at which the nodes end; `edge_radius_m`: of damage; `cell_widths`: width of a slice in Hertz half
+    widths of that force; `nodes`: approaches; `healthy_columns`; `finest`: intervals of the fine grid below which
+    columns are not refined; `section_loss`: whether damage also weakens the tooth's sections; `coupled`: whether slices
+    feel each other; `tilts`: whether gears do.
+    """
+
+    largest_force_n: float
+    edge_radius_m: float = 0.1e-3
+    cell_widths: float = 1.6
+    nodes: int = 10
+    healthy_columns: int = 65
+    finest: int = 2
+    section_loss: bool = False
+    coupled: bool = True
+    tilts: bool = False
+
+
+def face_slices(pair: GearPair, options: TableOptions) -> int:
+    """Return the number of slices: cells of the width at which the kernel holds, within bounds of cost."""
+    middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
+    width = options.cell_widths * float(half_width(pair, middle, options.largest_force_n)[0])
+    return int(np.clip(round(pair.face_width_m / width), FEWEST_SLICES, MOST_SLICES))
+
+
+def half_width(pair: GearPair, position_m: FloatArray, force_n: float) -> FloatArray:
+    """Return Hertz's half width of the whole face (k,) [m]."""
+    length = np.full(position_m.shape, pair.face_width_m)
+    return contact_half_width(pair, *rolls_at(pair, position_m), length, force_n)

@@ -1,0 +1,190 @@
+"""FacePressure: load and pressure over one flank while its tooth goes through mesh in a record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil, pi
+
+import numpy as np
+import pyarrow as pa
+
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.errors import UsageError
+from siggen.gears.contact.kind_row import KindRow, kind_row
+from siggen.gears.contact.loads_under_force import loads_under_force
+from siggen.gears.contact.slice_pressures import slice_pressures
+from siggen.gears.contact.table_columns import TableSolver, row_faces, table_solver
+from siggen.gears.contact.table_options import face_slices
+from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, has_extent, pits_of
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.plan import PlannedRecord, planned_record
+from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.record.internals import record_internals
+from siggen.record.simulation import SpecimenState, refused_as
+from siggen.specimen.contact import face_options, largest_force_n
+from siggen.specimen.errors import specimen_errors
+from siggen.views.flank_views import FlankView, flank_view
+
+POSITIONS = 161
+"""Along the path of contact: every 0.09 mm of arc on the flanks of a module of 3 mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class FacePressure:
+    """One engagement of a record.
+
+    Attributes
+    ----------
+    view : the flank that is looked at, with its damage
+    point : speed and torque of the record
+    roll_deg : (k,) turn of the pinion since the pair entered contact
+    arc_mm : (k,) of the contact above the base circle, on that flank
+    face_mm : (n,) middles of the slices
+    force_n, tilt_rad : (k,) of this pair, and of the flanks against each other, in the record
+    line_load_n_per_mm, pressure_mpa : (k, n)
+    at_edge : (k, n) whether edges of damage carry more than Hertz's pressure
+    edge_radius_mm : of the damage, as drawn
+    """
+
+    view: FlankView
+    point: OperatingPoint
+    roll_deg: FloatArray
+    arc_mm: FloatArray
+    face_mm: FloatArray
+    force_n: FloatArray
+    tilt_rad: FloatArray
+    line_load_n_per_mm: FloatArray
+    pressure_mpa: FloatArray
+    at_edge: FloatArray
+    edge_radius_mm: float
+
+
+def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth: int | None = None) -> FacePressure:
+    """Return load and pressure over a flank while its tooth goes through mesh, first in a record.
+
+    Force of the pair and tilt are those of the motion; how they spread is solved across the face, with damage,
+    crowning, helix and misalignment, whatever contact the record itself was simulated with.
+
+    Parameters
+    ----------
+    config : Config
+    record_id : int
+    gear, tooth : 'pinion' or 'gear', and an index; None: the first damaged tooth, else tooth 0 of the pinion
+
+    Raises
+    ------
+    UsageError
+        If there is no such tooth, it is not in mesh in the record, or the mesh law has no pairs.
+    SolverFailure
+        If the record cannot be simulated, or a contact cannot be solved.
+    """
+    if config.dynamics.mesh.law != "pairs":
+        raise UsageError(
+            "dynamics.mesh.law: received linear; allowed: pairs, whose tooth pairs have forces of their own"
+        )
+    record = planned_record(config, record_id)
+    state, point, angle_rad, found = record_internals(config, record)
+    gear, tooth = _looked_at(state.pair, state.damage, gear, tooth)
+    engagement = _engagement(state.pair, angle_rad, gear, tooth)
+    with refused_as("outside_model"):
+        return _solved(config, record, state, point, (gear, tooth, engagement), angle_rad, found)
+
+
+def pressure_table(pressure: FacePressure) -> pa.Table:
+    """Return one row per position and slice."""
+    k, n = pressure.pressure_mpa.shape
+    columns = {
+        "roll_deg": np.repeat(pressure.roll_deg, n),
+        "arc_mm": np.repeat(pressure.arc_mm, n),
+        "face_mm": np.tile(pressure.face_mm, k),
+        "pair_force_n": np.repeat(pressure.force_n, n),
+        "tilt_rad": np.repeat(pressure.tilt_rad, n),
+        "line_load_n_per_mm": pressure.line_load_n_per_mm.ravel(),
+        "largest_pressure_mpa": pressure.pressure_mpa.ravel(),
+        "at_edge": pressure.at_edge.ravel() > 0.0,
+    }
+    return pa.table(columns)
+
+
+def _looked_at(pair: GearPair, damage: Damage, gear: str | None, tooth: int | None) -> tuple[str, int]:
+    damaged = [(which, index) for which in ("pinion", "gear") for index in damaged_teeth(damage, which)]
+    if gear is None:
+        gear = damaged[0][0] if damaged and tooth is None else "pinion"
+    if tooth is None:
+        tooth = next((index for which, index in damaged if which == gear), 0)
+    count = pair.member(gear).teeth
+    if not 0 <= tooth < count:
+        raise UsageError(f"--tooth {tooth}: the {gear} has {count} teeth; allowed: 0 to {count - 1}")
+    return gear, tooth
+
+
+def _engagement(pair: GearPair, angle_rad: FloatArray, gear: str, tooth: int) -> int:
+    """Return the number of the first engagement of a tooth that lies within the record."""
+    pitch, teeth = 2.0 * pi / pair.pinion.teeth, pair.member(gear).teeth
+    first = ceil(float(angle_rad[0]) / pitch)
+    number = first + (tooth - first) % teeth
+    last = number * pitch + (pair.contact_end_m - pair.contact_start_m) / pair.pinion.base_radius_m
+    if last > angle_rad[-1]:
+        turns = (angle_rad[-1] - angle_rad[0]) / (2.0 * pi)
+        raise UsageError(
+            f"{gear} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the pinion; "
+            "allowed: another --tooth, or a longer record (--set duration_s=...)"
+        )
+    return number
+
+
+def _solved(
+    config: Config,
+    record: PlannedRecord,
+    state: SpecimenState,
+    point: OperatingPoint,
+    looked_at: tuple[str, int, int],
+    angle_rad: FloatArray,
+    found: Mapping[str, FloatArray],
+) -> FacePressure:
+    gear, tooth, number = looked_at
+    pair, specimen = state.pair, draw_specimen(config, record.specimen_id)
+    options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
+    errors = specimen_errors(config, pair, record.specimen_id, record.state_id)
+    slices = face_slices(pair, options)
+    lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
+    solver = table_solver(pair, state.options, options, lead - lead.min())
+    shown = tuple(one for one in state.damage if has_extent(one))
+    pits = tuple(pits_of(shown, which, number % pair.member(which).teeth) for which in ("pinion", "gear"))
+    row = kind_row(pair, state.options, options, POSITIONS, (pits[0], pits[1]))
+    entered = number * 2.0 * pi / pair.pinion.teeth
+    roll = (row.position_m - pair.contact_start_m) / pair.pinion.base_radius_m
+    slot = number % sum(name.endswith("_force_n") and name.startswith("pair_") for name in found)
+    force = np.interp(entered + roll, angle_rad, found[f"pair_{slot}_force_n"])
+    tilt = np.interp(entered + roll, angle_rad, found.get("mesh_tilt_rad", np.zeros(angle_rad.size)))
+    load, pressure, at_edge = _over_positions(solver, row, force, tilt)
+    member = pair.member(gear)
+    along = row.position_m if gear == "pinion" else pair.line_of_action_m - row.position_m
+    return FacePressure(
+        view=flank_view(pair, config.states[record.state_id].name, gear, tooth, pits_of(shown, gear, tooth)),
+        point=point,
+        roll_deg=np.degrees(roll),
+        arc_mm=1e3 * along**2 / (2.0 * member.base_radius_m),
+        face_mm=1e3 * pair.face_width_m * (np.arange(slices) + 0.5) / slices,
+        force_n=force,
+        tilt_rad=tilt,
+        line_load_n_per_mm=1e-3 * load,
+        pressure_mpa=1e-6 * pressure,
+        at_edge=at_edge,
+        edge_radius_mm=1e3 * row.edge_radius_m,
+    )
+
+
+def _over_positions(
+    solver: TableSolver, row: KindRow, force_n: FloatArray, tilt_rad: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return load [N/m], pressure [Pa] and whether edges press hardest, (k, n) each."""
+    faces = row_faces(solver, row, np.arange(row.position_m.size))
+    answers = [
+        slice_pressures(slices, loads_under_force(slices, float(force), float(tilt)))
+        for slices, force, tilt in zip(faces, force_n, tilt_rad, strict=True)
+    ]
+    load, pressure, at_edge = (np.stack(values) for values in zip(*answers, strict=True))
+    return load, pressure, at_edge

@@ -1,0 +1,111 @@
+"""A machine from healthy recordings, and what is said of later ones: through the commands, on recordings made here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from diagnostics.cli.app import app
+from diagnostics.machine.check_history import past_checks
+from siggen.errors import SiggenError
+
+FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
+
+
+def write_recording(
+    file: Path, seed: int, speed_hz: float = 25.0, gain: float = 1.0, seconds: float = SECONDS, knock: float = 0.0
+) -> Path:
+    """Mesh lines, weak sidebands, noise; one knock per turn where a tooth is damaged."""
+    rng = np.random.default_rng(seed)
+    turn = speed_hz * (1.0 + 1e-3 * rng.normal()) * np.arange(round(seconds * FS_HZ)) / FS_HZ + rng.uniform()
+    signal = sum(np.cos(2 * np.pi * TEETH * h * turn + h) / h for h in (1, 2, 3))
+    signal = signal * (1.0 + 0.03 * np.cos(2 * np.pi * turn) + 0.01 * np.cos(2 * np.pi * turn * TEETH / 31))
+    phase = turn % 1.0
+    signal = signal + knock * np.exp(-phase / 0.01) * np.sin(2 * np.pi * 90.0 * phase)
+    other = np.roll(signal, 3) * 0.7
+    noise = 0.1 * rng.normal(size=(2, turn.size))
+    time = np.arange(turn.size) / FS_HZ
+    np.savez(file, t=time, lid=gain * (signal + noise[0]), side=gain * (other + noise[1]))
+    return file
+
+
+def run(*arguments: object) -> tuple[int, str]:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
+    return result.exit_code, result.output
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("machine")
+    files = [write_recording(folder / f"healthy_{k}.npz", seed=k) for k in range(6)]
+    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30")
+    code, said = run("baseline", *files, *facts, "--load", "40", "--out", folder / "rig")
+    assert code == 0
+    assert "6 recordings, 2 channels, pinion at 24.9" in said
+    assert "takes 19 references" in said
+    return folder / "rig"
+
+
+def test_the_machine_again_is_unchanged_and_a_knocking_tooth_is_a_change(machine: Path, tmp_path: Path) -> None:
+    healthy = write_recording(tmp_path / "healthy.npz", seed=50)
+    knocking = write_recording(tmp_path / "knocking.npz", seed=51, knock=0.8)
+    code, said = run("check", machine, healthy)
+    assert (code, "healthy.npz: unchanged" in said) == (0, True), said
+    code, said = run("check", machine, knocking)
+    assert (code, "knocking.npz: changed" in said) == (4, True), said
+    page = (machine / "machine.html").read_text()
+    assert "knocking.npz" in page
+    assert [past.verdict for past in past_checks(machine)][-2:] == ["unchanged", "changed"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "verdict", "reason"),
+    [
+        ({"speed_hz": 28.0}, "other load or speed", "24.9"),
+        ({"gain": 1000.0}, "cannot tell", "is the unit, sensitivity or gain"),
+        ({"seconds": 0.7}, "cannot tell", "too short"),
+    ],
+)
+def test_what_cannot_be_compared_is_said(
+    machine: Path, tmp_path: Path, changed: dict[str, float], verdict: str, reason: str
+) -> None:
+    code, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=60, **changed), "--no-keep")
+    assert code == 0
+    assert f"new.npz: {verdict}" in said
+    assert reason in said
+
+
+def test_another_load_is_not_compared(machine: Path, tmp_path: Path) -> None:
+    _, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=61), "--load", "80", "--no-keep")
+    assert "other load or speed" in said
+
+
+def test_slips_are_named(tmp_path: Path) -> None:
+    files = [write_recording(tmp_path / f"{k}.npz", seed=k, seconds=0.8) for k in range(3)]
+    facts = ("--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    for arguments, told in (
+        ((*files[:2], *facts), "at least 3"),
+        ((*files, files[0], *facts), "give every recording once"),
+        ((*files, *facts, "--load", "1,2"), "one per recording"),
+        ((*files, "--fs", FS_HZ, "--out", tmp_path / "rig"), "--teeth: received nothing"),
+        ((*files, *facts[:4], "--out", tmp_path / "rig"), "neither tacho nor speed"),
+    ):
+        with pytest.raises(SiggenError, match=told):
+            run("baseline", *arguments)
+    with pytest.raises(SiggenError, match="is no machine"):
+        run("check", tmp_path / "nothing", files[0])
+
+
+def test_a_damaged_folder_is_named(machine: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "copy"
+    folder.mkdir()
+    for file in ("machine.json", "references.parquet"):
+        (folder / file).write_bytes((machine / file).read_bytes())
+    table = bytearray((folder / "references.parquet").read_bytes())
+    table[200] ^= 1
+    (folder / "references.parquet").write_bytes(table)
+    with pytest.raises(SiggenError, match="is damaged"):
+        run("check", folder, write_recording(tmp_path / "new.npz", seed=1))

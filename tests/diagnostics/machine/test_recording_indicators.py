@@ -1,0 +1,63 @@
+"""Indicators of one recording: the same as those of the record of a set, by the command and by the call."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from diagnostics.cli.app import app
+from diagnostics.machine.recording_indicators import indicator_title, recording_indicators
+from diagnostics.recordings.measured_recording import RecordingFacts
+from siggen.errors import SiggenError
+
+FS_HZ = 8000.0
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("recording") / "run.csv"
+    time = np.arange(16_000) / FS_HZ
+    rng = np.random.default_rng(0)
+    turn = 25.0 * time
+    lines = 3.0 * np.cos(2 * np.pi * 20 * turn) + np.cos(2 * np.pi * 40 * turn) + np.cos(2 * np.pi * 60 * turn)
+    signal = lines * (1.0 + 0.2 * np.cos(2 * np.pi * turn)) + 0.1 * rng.normal(size=16_000)
+    np.savetxt(file, np.stack([time, signal], axis=1), delimiter=",", header="t,lid", comments="")
+    return file
+
+
+def test_closed_forms_of_a_modulated_line(recording: Path) -> None:
+    found = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ), (20.0, 30.0))
+    assert list(found.recording.channels) == ["lid"]
+    assert found.pulses.speed_hz == pytest.approx(25.0, abs=0.01)  # the phase at the ends errs by 0.01 turns in 2 s
+    values = found.channel("lid")
+    # Half the squares of the amplitudes, sidebands and noise: (9 + 1 + 1)/2 (1 + 0.2²/2) + 0.01.
+    assert values["rms"] == pytest.approx(np.sqrt(5.5 * 1.02 + 0.01), rel=2e-3)
+    assert values["mesh_amplitude_h1"] == pytest.approx(3.0, rel=0.01)
+    assert indicator_title("mesh_amplitude_h1").endswith("h1")
+
+
+def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_path: Path) -> None:
+    facts = ["--fs", "8000", "--teeth", "20,31", "--speed-range", "20", "30", "--out", str(tmp_path / "found")]
+    result = CliRunner().invoke(app, ["indicators", str(recording), *facts], catch_exceptions=False)
+    assert result.exit_code == 0
+    assert "mesh 500.0" in result.output
+    with (tmp_path / "found" / "indicators.csv").open() as file:
+        (row,) = csv.DictReader(file)
+    called = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ), (20.0, 30.0))
+    assert float(row["rms"]) == pytest.approx(called.values["rms__lid"], rel=1e-12)
+    assert "run.csv" in (tmp_path / "found" / "indicators.html").read_text()
+
+
+def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
+    for arguments, told in (
+        ([str(recording)], "teeth unknown"),
+        ([str(recording), "--teeth", "20,31"], "sampling rate"),
+        ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
+        ([str(tmp_path), str(tmp_path)], "a second argument"),
+    ):
+        with pytest.raises(SiggenError, match=told):
+            CliRunner().invoke(app, ["indicators", *arguments], catch_exceptions=False)
