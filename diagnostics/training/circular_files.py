@@ -17,6 +17,7 @@ from safetensors.torch import load_file, save_file
 from diagnostics.training.average_rows import STEPS
 from diagnostics.training.circular_network import CircularNetwork
 from diagnostics.training.circular_training import TrainedCircularFile
+from diagnostics.training.cnn_files import check_finite
 from siggen.errors import UsageError
 
 FORMAT = "siggen-diagnostics circular network 1"
@@ -65,12 +66,17 @@ def load_circular(path: Path) -> tuple[CircularNetwork, CircularFacts]:
         raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
     if metadata.get("format") != FORMAT:
         raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {FORMAT!r}")
-    found = json.loads(metadata["facts"])
-    facts = CircularFacts(
-        tuple(found["classes"]), tuple(found["channels"]), str(found["identity"]), float(found["temperature"])
-    )
-    network = CircularNetwork(2 * len(facts.channels), len(facts.classes))
-    network.load_state_dict(load_file(path))
+    try:
+        found = json.loads(metadata["facts"])
+        facts = CircularFacts(
+            tuple(found["classes"]), tuple(found["channels"]), str(found["identity"]), float(found["temperature"])
+        )
+        network = CircularNetwork(2 * len(facts.channels), len(facts.classes))
+        network.load_state_dict(load_file(path))
+    except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
+        text = str(error).splitlines()[0]
+        raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
+    check_finite(path, network, facts.temperature)
     network.eval()
     return network, facts
 

@@ -84,17 +84,24 @@ def load_network(path: Path) -> tuple[WideKernelNetwork, NetworkFile]:
     except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
         text = str(error).splitlines()[0]
         raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
-    _check_finite(path, network, facts)
+    check_finite(path, network, facts.temperature)
     network.eval()
     return network, facts
 
 
-def _check_finite(path: Path, network: WideKernelNetwork, facts: NetworkFile) -> None:
+def check_finite(path: Path, network: torch.nn.Module, temperature: float) -> None:
+    """Check the values of a network that was read.
+
+    Raises
+    ------
+    UsageError
+        If a weight is not finite, or the temperature is not finite and above 0.
+    """
     infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
     if infinite:
         raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
-    if not (math.isfinite(facts.temperature) and facts.temperature > 0.0):
-        raise UsageError(f"{path}: received temperature {facts.temperature}; allowed: finite and above 0; train again")
+    if not (math.isfinite(temperature) and temperature > 0.0):
+        raise UsageError(f"{path}: received temperature {temperature}; allowed: finite and above 0; train again")
 
 
 def _facts(found: dict[str, object]) -> NetworkFile:
