@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks.finite_elements import comparison, coupling
+from benchmarks.finite_elements import comparison, coupling, face_kernel, face_losses, single_pair
 
 TABLES = {
     "models": comparison.model_table,
@@ -18,6 +18,10 @@ TABLES = {
     "variants": comparison.variants_table,
     "outside": comparison.outside_table,
     "spots": comparison.spots,
+    "face": face_kernel.kernel_table,
+    "face_losses": face_losses.loss_table,
+    "misalignment": face_losses.misalignment_table,
+    "single_pair": single_pair.single_pair_table,
 }
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 from scipy.spatial import cKDTree
 
 from benchmarks.finite_elements.tooth_mesh import DEFAULT_SIZE, ToothMesh, tooth_mesh, turned
@@ -131,22 +131,27 @@ def displacements(mesh: ToothMesh, way: np.ndarray, elasticity: PlaneElasticity)
     ValueError
         If a load point is no node of the mesh.
     """
-    basis = _basis(mesh)
+    basis = plane_basis(mesh)
     load = nodal_functionals(basis, mesh.load_points.reshape(-1, 2), way.reshape(-1, 2))
-    free = _free_dofs(basis, mesh.bore_radius)
-    # Symmetric positive definite: no pivoting, and a fill-reducing order of the symmetric pattern.
-    factor = splu(
-        _stiffness(basis, elasticity)[free][:, free].tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    out = np.zeros((basis.N, load.shape[0]))
-    out[free] = factor.solve(np.ascontiguousarray(load[:, free].toarray().T))
-    return basis, out
+    return basis, solve(basis, mesh.bore_radius, load.toarray().T, elasticity)
 
 
-def _basis(mesh: ToothMesh) -> Any:
+def solve(basis: Any, bore_radius: float, loads: np.ndarray, elasticity: PlaneElasticity) -> np.ndarray:
+    """Return the displacements (n, k) under load vectors (n, k) on the basis' degrees of freedom, bore clamped."""
+    free = free_dofs(basis, bore_radius)
+    out = np.zeros(loads.shape)
+    factor = factorised(_stiffness(basis, elasticity)[free][:, free])
+    out[free] = factor.solve(np.ascontiguousarray(loads[free]))
+    return out
+
+
+def factorised(matrix: sparse.csr_matrix) -> SuperLU:
+    """Return the factors of a symmetric positive definite matrix: no pivoting, and an order that keeps fill small."""
+    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def plane_basis(mesh: ToothMesh) -> Any:
+    """Return the scikit-fem basis of quadratic triangles of a mesh."""
     from skfem import Basis, ElementTriP2, ElementVector, MeshTri
 
     return Basis(MeshTri(mesh.points, mesh.triangles), ElementVector(ElementTriP2()), intorder=2)
@@ -158,7 +163,8 @@ def _stiffness(basis: Any, elasticity: PlaneElasticity) -> sparse.csr_matrix:
     return linear_elasticity(*elasticity.lame()).assemble(basis).tocsr()
 
 
-def _free_dofs(basis: Any, bore_radius: float) -> np.ndarray:
+def free_dofs(basis: Any, bore_radius: float) -> np.ndarray:
+    """Return the degrees of freedom off the clamped bore."""
     mesh = basis.mesh
     boundary = mesh.boundary_facets()
     radius = np.hypot(*mesh.p)[mesh.facets[:, boundary]]
