@@ -1,16 +1,17 @@
-"""How teeth give way across the face, in few numbers: a rigid share and a kernel of one length, against the extruded body.
+"""How teeth give way across the face in few numbers, rigid share and kernel of one length, beside the extruded body.
 
 A load q(y) deflects the line by a rigid part and by a part u with u - l² u'' = c b q, u' = 0 at both ends of the face:
 
     C(y, y') = c [(1 - k) + k b cosh(y_</l) cosh((b - y_>)/l)/(l sinh(b/l))],    y_< = min(y, y'), y_> = max(y, y')
 
 c is the plane compliance, since a uniform load deflects the line uniformly. In cos(n π y/b) it is diagonal,
-1/(1 + (n π l/b)²). The rule reads 1 - k from the twist of the ring (`ring_torsion`) and takes l from the module.
+1/(1 + (n π l/b)²). The rule reads 1 - k from the twist of the ring (`ring_torsion`) and takes l from module and face.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import exp
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -20,9 +21,10 @@ from benchmarks.finite_elements.face_losses import bench_pair
 from benchmarks.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
 from siggen.gears.stiffness.body_coupling import ring_torsion
 
-LENGTH = 1.65
-"""l of the rule, in modules."""
-WIDTHS = (2.0, 20 / 3, 10.0)
+LONGEST, NARROW = 1.7, 2.4
+"""The rule's l on a wide face, and the face width over which it gets there, in modules; fitted to pairs of bench's gears
+at mid-flank with b/m = 1 to 15."""
+WIDTHS = (2.0, 4.0, 20 / 3, 10.0)
 PLACES = (0.05, 0.5, 0.95)
 """Of the pinion's active flank; the gear touches it at the mirrored place."""
 LOADS = {
@@ -58,9 +60,17 @@ def fitted_kernel(modes: np.ndarray, width: float) -> tuple[float, float, float]
     return float(found.x[0]), float(found.x[1]), float(np.abs(found.fun).max())
 
 
+def rule_length(width: float) -> float:
+    """Return l of the rule for a face width, both in modules: a narrow tooth tilts as a whole, like a twisted beam."""
+    return LONGEST * (1.0 - exp(-width / NARROW))
+
+
 def rule_errors(modes: np.ndarray, uniform: np.ndarray, torsion: np.ndarray, width: float) -> np.ndarray:
     """Return relative errors under `LOADS` of the rule for gears of compliances and ring torsions (g,), times E b."""
-    kernel = sum(c * kernel_modes(1 - t / c, LENGTH, width, len(modes)) for c, t in zip(uniform, torsion, strict=True))
+    kernel = sum(
+        c * kernel_modes(1 - t / c, rule_length(width), width, len(modes))
+        for c, t in zip(uniform, torsion, strict=True)
+    )
     return np.asarray(deflections(np.diag(kernel)) / deflections(modes) - 1)
 
 

@@ -90,7 +90,7 @@ def loss_table() -> Iterator[str]:
 
 def misalignment_table() -> Iterator[str]:
     """Lines of the moment of a misaligned pair at 1,200 N."""
-    yield "| misalignment over the face [µm] | moment [N m], teeth rigid across the face | three-dimensional teeth | ratio |"
+    yield "| misalignment over the face [µm] | moment [N m], teeth rigid across it | three-dimensional teeth | ratio |"
     yield "|---|---|---|---|"
     for lead in MISALIGNMENTS_M:
         rigid, elastic = (-answer(kind, 0.0, None, lead).moment_nm for kind in ("rigid", "three_dimensional"))

@@ -66,8 +66,8 @@ def single_pair_table() -> Iterator[str]:
     teeth = extruded_teeth(pair, at)
     scale = pair.youngs_modulus_pa / WIDTHS_PER_M
     yield (
-        "| load [N/mm] | resolved, plane strain | plane stress | extruded teeth | siggen, Weber and Banaschek | error of c' "
-        "| over single contact | siggen, linear |"
+        "| load [N/mm] | resolved, plane strain | plane stress | extruded teeth | siggen, Weber and Banaschek "
+        "| error of c' | over single contact | siggen, linear |"
     )
     yield "|---|---|---|---|---|---|---|---|"
     linear = library(pair, at, None).max()
