@@ -22,8 +22,8 @@ from benchmarks.finite_elements.tooth_compliance_fem import PlaneElasticity, too
 from siggen.gears.stiffness.body_coupling import ring_torsion
 
 LONGEST, NARROW = 1.7, 2.4
-"""The rule's l on a wide face, and the face width over which it gets there, in modules; fitted to pairs of bench's gears
-at mid-flank with b/m = 1 to 15."""
+"""The rule's l on a wide face, and the face width over which it gets there, in modules; fitted to the pair of bench at
+mid-flank with b/m = 1 to 15."""
 WIDTHS = (2.0, 4.0, 20 / 3, 10.0)
 PLACES = (0.05, 0.5, 0.95)
 """Of the pinion's active flank; the gear touches it at the mirrored place."""
