@@ -36,18 +36,10 @@ class FaceCase:
         return 4.0 * (1.0 - self.poisson_ratio**2) / (pi * self.youngs_modulus_pa)
 
 
-def approach_at(
-    case: FaceCase,
-    land: np.ndarray,
-    force_n: float,
-    reach: float = 2.6,
-    body: np.ndarray | None = None,
-    lead: np.ndarray | None = None,
-) -> tuple[float, np.ndarray]:
+def approach_at(case: FaceCase, land: np.ndarray, force_n: float, reach: float = 2.6) -> tuple[float, np.ndarray]:
     """Return the approach [m] and the line load (k,) [N/m] of a face of which the cells `land` (k,) carry.
 
-    `reach` is the half width of the grid in Hertz half widths of the whole face. `body` (k, k) is what the teeth give
-    way at the depth h, from cell to cell [m/N]; None: nothing. `lead` (k,) is missing material across the face [m].
+    `reach` is the half width of the grid in Hertz half widths of the whole face.
 
     Raises
     ------
@@ -58,9 +50,9 @@ def approach_at(
     dx = width / case.cells_per_width
     count = 2 * int(reach * case.cells_per_width) + 1
     x = (np.arange(count) - count // 2) * dx
-    gap = (x * x / (2.0 * case.radius_m))[:, None] + (np.zeros(land.size) if lead is None else lead)[None, :]
+    gap = np.broadcast_to((x * x / (2.0 * case.radius_m))[:, None], (count, land.size))
     carries = np.broadcast_to(land[None, :], gap.shape)
-    operator = _Operator(case, dx, count, land.size, body)
+    operator = _Operator(case, dx, count, land.size)
     load = _gradients(operator, gap, carries, force_n)
     if load[0].any() or load[-1].any():
         raise RuntimeError(f"pressure reaches the rim of the grid; allowed: a reach above {reach}")
@@ -98,8 +90,8 @@ def _gradients(operator: _Operator, gap: np.ndarray, carries: np.ndarray, force:
 class _Operator:
     """Displacement of the cells' middles [m] under loads on the cells [N], relative to the depth h."""
 
-    def __init__(self, case: FaceCase, dx: float, rows: int, columns: int, body: np.ndarray | None = None) -> None:
-        self.rows, self.columns, self.body = rows, columns, body
+    def __init__(self, case: FaceCase, dx: float, rows: int, columns: int) -> None:
+        self.rows, self.columns = rows, columns
         i, j = np.arange(-rows, rows) * dx, np.arange(-columns, columns) * case.cell_m
         # Love: the corners' sum of the integral of 1/r over a cell
         total = np.zeros((i.size, j.size))
@@ -115,8 +107,7 @@ class _Operator:
 
     def __call__(self, load: np.ndarray) -> np.ndarray:
         shape = (2 * self.rows, 2 * self.columns)
-        out = np.fft.irfft2(np.fft.rfft2(load, shape) * self._spectrum, shape)[: self.rows, : self.columns]
-        return out if self.body is None else out + (self.body @ load.sum(axis=0))[None, :]
+        return np.fft.irfft2(np.fft.rfft2(load, shape) * self._spectrum, shape)[: self.rows, : self.columns]
 
 
 def _deep(t: np.ndarray, case: FaceCase) -> np.ndarray:
