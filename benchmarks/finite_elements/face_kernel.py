@@ -17,11 +17,11 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from benchmarks.finite_elements.face_compliance import MODES, face_compliance, load_on, norms, tilt_load
-from benchmarks.finite_elements.face_losses import bench_pair
+from benchmarks.finite_elements.spatial_pair import bench_pair
 from benchmarks.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
 from siggen.gears.stiffness.body_coupling import ring_torsion
 
-LONGEST, NARROW = 1.7, 2.4
+LONGEST, NARROW = 1.75, 2.4
 """The rule's l on a wide face, and the face width over which it gets there, in modules; fitted to the pair of bench at
 mid-flank with b/m = 1 to 15."""
 WIDTHS = (2.0, 4.0, 20 / 3, 10.0)

@@ -13,41 +13,50 @@ import numpy as np
 
 from benchmarks.contact.face_contact import FaceCase, land_of_gap
 from benchmarks.finite_elements.face_compliance import FaceCompliance, face_compliance
-from benchmarks.finite_elements.spatial_pair import SpatialPair, spatial_pair
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from benchmarks.finite_elements.face_kernel import kernel_modes, rule_length
+from benchmarks.finite_elements.spatial_pair import SpatialPair, bench_pair, spatial_pair
+from siggen.gears.stiffness.body_coupling import ring_torsion
 
-MODULE_M, FORCE_N = 3e-3, 1200.0
+FORCE_N = 1200.0
 MODES = 16
 CELL_M = 0.1e-3
 """Length of a pressure cell; half of it changes the losses by less than 0.15 points."""
+KINDS = ("rigid", "three_dimensional", "rule")
 GAPS = ((0.3, None), (0.5, None), (0.8, None), (0.3, 0.0), (0.5, 0.0), (0.8, 0.0))
 MISALIGNMENTS_M = (2e-6, 5e-6, 10e-6, 20e-6)
 """Missing material from one end of the face to the other."""
-
-
-def bench_pair() -> GearPair:
-    """Return the 18/47 pair of bench without errors."""
-    gears = [SpurGear(z, MODULE_M, radians(20.0), 0.0, 1.0, 0.25, b) for z, b in ((18, 10e-3), (47, 15e-3))]
-    return GearPair(gears[0], gears[1], face_width_m=0.02, youngs_modulus_pa=206e9, poisson_ratio=0.3)
 
 
 @lru_cache(maxsize=1)
 def tooth_faces() -> tuple[FaceCompliance, FaceCompliance]:
     """Return both teeth at the pitch point."""
     pair, roll = bench_pair(), np.array([tan(radians(20.0))])
-    width = pair.face_width_m / MODULE_M
+    width = pair.face_width_m / pair.pinion.module_m
     return face_compliance(pair.pinion, roll, width, modes=MODES), face_compliance(pair.gear, roll, width, modes=MODES)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)
 def body_matrix(kind: str, cells: int) -> np.ndarray:
-    """Return (cells, cells) [m/N]: how both teeth give way, `three_dimensional`, or `rigid` across the face."""
+    """Return (cells, cells) [m/N]: how both teeth give way: `three_dimensional`, by the `rule`, or `rigid`."""
     pair = bench_pair()
     scale = 1.0 / (pair.youngs_modulus_pa * pair.face_width_m)
     if kind == "rigid":
         return np.full((cells, cells), scale * sum(float(t.uniform[0]) for t in tooth_faces()))
     y = (np.arange(cells) + 0.5) / cells
-    return np.asarray(scale * sum(t.matrix(y)[0] for t in tooth_faces()))
+    faces = tooth_faces() if kind == "three_dimensional" else rule_faces(cells)
+    return np.asarray(scale * sum(t.matrix(y)[0] for t in faces))
+
+
+def rule_faces(count: int) -> tuple[FaceCompliance, ...]:
+    """Return both teeth by the rule of `face_kernel`, in `count` cosines."""
+    pair = bench_pair()
+    found = []
+    for gear, face in zip((pair.pinion, pair.gear), tooth_faces(), strict=True):
+        c = float(face.uniform[0])
+        share = 1.0 - ring_torsion(gear, pair.poisson_ratio) / c
+        modes = c * np.diag(kernel_modes(share, rule_length(face.width), face.width, count))
+        found.append(FaceCompliance(modes[None], face.width))
+    return tuple(found)
 
 
 def answer(
@@ -67,19 +76,19 @@ def loss(kind: str, share: float, start: float | None, cell_m: float = CELL_M) -
 
 def loss_table() -> Iterator[str]:
     """Lines of losses in per cent with rigid and with elastic teeth across the face."""
-    yield "| gap | teeth rigid across the face | three-dimensional teeth | moment, 3-D teeth [N m] |"
-    yield "|---|---|---|---|"
+    yield "| gap | teeth rigid across the face | three-dimensional teeth | by the rule | moment, 3-D teeth [N m] |"
+    yield "|---|---|---|---|---|"
     for share, start in GAPS:
         place = "in the middle" if start is None else "at one end"
-        rigid, elastic = (100 * loss(kind, share, start) for kind in ("rigid", "three_dimensional"))
+        rigid, elastic, rule = (100 * loss(kind, share, start) for kind in KINDS)
         moment = answer("three_dimensional", share, start).moment_nm
-        yield f"| {share:.0%} {place} | {rigid:.1f} | {elastic:.1f} | {abs(moment):.2f} |"
+        yield f"| {share:.0%} {place} | {rigid:.1f} | {elastic:.1f} | {rule:.1f} | {abs(moment):.2f} |"
 
 
 def misalignment_table() -> Iterator[str]:
     """Lines of the moment of a misaligned pair at 1,200 N."""
-    yield "| misalignment over the face [µm] | moment [N m], teeth rigid across it | three-dimensional teeth | ratio |"
+    yield "| misalignment over the face [µm] | moment [N m], rigid teeth | three-dimensional teeth | by the rule |"
     yield "|---|---|---|---|"
     for lead in MISALIGNMENTS_M:
-        rigid, elastic = (-answer(kind, 0.0, None, lead).moment_nm for kind in ("rigid", "three_dimensional"))
-        yield f"| {1e6 * lead:g} | {rigid:.2f} | {elastic:.2f} | {elastic / rigid:.2f} |"
+        moments = " | ".join(f"{-answer(kind, 0.0, None, lead).moment_nm:.2f}" for kind in KINDS)
+        yield f"| {1e6 * lead:g} | {moments} |"

@@ -7,11 +7,12 @@ know the same datum, the tooth's centre line, so their deflections add. Nothing 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import radians, sqrt
 
 import numpy as np
 
 from benchmarks.contact.face_contact import FaceCase, _gradients, _Operator
+from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 
 REACH = 8.0
 """Half width of the grid in Hertz half widths of the whole face."""
@@ -24,6 +25,12 @@ class SpatialPair:
     approach_m: float
     moment_nm: float
     line_load: np.ndarray
+
+
+def bench_pair() -> GearPair:
+    """Return the 18/47 pair of bench without errors."""
+    gears = [SpurGear(z, 3e-3, radians(20.0), 0.0, 1.0, 0.25, b) for z, b in ((18, 10e-3), (47, 15e-3))]
+    return GearPair(gears[0], gears[1], face_width_m=0.02, youngs_modulus_pa=206e9, poisson_ratio=0.3)
 
 
 class _TeethOperator(_Operator):
