@@ -24,13 +24,14 @@ from diagnostics.indicators.table import record_table
 from diagnostics.records.healthy_references import healthy_references
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
+from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training.classifier_file import load_classifier
 from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.referenced import referenced_classifiers
 from diagnostics.training.splits import specimen_split
-from diagnostics.training.training import train_models
+from diagnostics.training.training import Training, train_models, training_metrics
 
 FS_HZ = 12_800
 
@@ -112,13 +113,17 @@ def features_of_measured(measured: Any) -> pa.Table:
 
 
 @pytest.fixture(scope="module")
+def training(measured: Any, features_of_measured: pa.Table) -> Training:
+    return train_models(measured, features_of_measured, 0, network=NetworkOptions(cnn=False))
+
+
+@pytest.fixture(scope="module")
 def trained(
-    measured: Any, features_of_measured: pa.Table, tmp_path_factory: pytest.TempPathFactory
+    measured: Any, features_of_measured: pa.Table, training: Training, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, Path]:
     """Return the folder of the models and a Parquet file with records of another seed: rows 0 to 2 are one gearbox."""
     folder = tmp_path_factory.mktemp("referenced")
-    table = features_of_measured
-    save_models(train_models(measured, table, 0, network=NetworkOptions(cnn=False)), table, measured, folder)
+    save_models(training, features_of_measured, measured, folder)
     return folder, folder / "other.parquet"
 
 
@@ -159,6 +164,20 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     code, healthy = predict(monkeypatch, folder, file, tmp_path, "--row", "3", "--reference", f"{file}:0")
     assert code == 0
     assert healthy["state"] == "healthy"
+
+
+def test_a_reference_is_judged_against_none_on_the_records_that_have_one(training: Training) -> None:
+    assert training.referenced is not None
+    found = training_metrics(training)["beside_a_healthy_record"]
+    assert list(found["classifiers"]) == ["indicators", "healthy_referenced"]
+    # 4 test gearboxes, 3 states, 2 repeats: a damaged record without its twin still has the other repeat's
+    assert {own["test_records"] for own in found["classifiers"].values()} == {24}
+    (pair,) = found["comparisons"]
+    assert (pair["first"], pair["second"]) == ("healthy_referenced", "indicators")
+    areas = [own["macro_auroc"]["value"] for own in found["classifiers"].values()]
+    assert pair["macro_auroc"]["value"] == pytest.approx(areas[1] - areas[0])
+    tables = score_blocks(training)
+    assert any("logistic regression beside a healthy record − logistic regression" in table for table in tables)
 
 
 def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
