@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,12 +21,15 @@ from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.healthy_references import healthy_references
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
+from diagnostics.training import circular_network, circular_training
+from diagnostics.training.average_rows import averaged_records
+from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
 from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
@@ -108,8 +112,13 @@ def measured(make_dataset: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def features_of_measured(measured: Any) -> pa.Table:
-    return classifier_table(record_table(measured))
+def indicators_of_measured(measured: Any) -> RecordTable:
+    return record_table(measured)
+
+
+@pytest.fixture(scope="module")
+def features_of_measured(indicators_of_measured: RecordTable) -> pa.Table:
+    return classifier_table(indicators_of_measured)
 
 
 @pytest.fixture(scope="module")
@@ -178,6 +187,33 @@ def test_a_reference_is_judged_against_none_on_the_records_that_have_one(trainin
     assert pair["macro_auroc"]["value"] == pytest.approx(areas[1] - areas[0])
     tables = score_blocks(training)
     assert any("logistic regression beside a healthy record − logistic regression" in table for table in tables)
+
+
+def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
+    indicators_of_measured: RecordTable, features_of_measured: pa.Table, training: Training,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    few = partial(circular_network.CircularSettings, most_epochs=12)
+    monkeypatch.setattr(circular_network, "CircularSettings", few)
+    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
+    averages, options = averaged_records(indicators_of_measured), NetworkOptions()
+    matrix, split = feature_matrix(features_of_measured), training.split
+    trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
+    found = referenced_classifiers(matrix, split, [*training.judged, alone], averages, 0, options, silent_stage)
+    assert found is not None
+    by_name = {judged.name: judged for judged in found.judged}
+    assert list(by_name) == ["indicators", "circular", "healthy_referenced", "circular_referenced"]
+    # a dip of 15 and 50 % once per revolution; beside a record without it nothing else is left
+    assert by_name["circular"].scores.macro_auroc.value > 0.7
+    assert by_name["circular_referenced"].scores.macro_auroc.value > 0.8
+    assert [(pair.first, pair.second) for pair in found.comparisons] == [
+        ("healthy_referenced", "indicators"),
+        ("circular_referenced", "circular"),
+        ("circular_referenced", "healthy_referenced"),
+    ]
+    assert alone.permuted_auroc.shape == (1,)
+    every = circular_predictions_of(TrainedCircularFile(trained, averages.channels, "0"), averages, matrix)
+    np.testing.assert_array_equal(every.truth[split.test], alone.predictions.truth)
 
 
 def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(
