@@ -28,12 +28,12 @@ WithStudies = Annotated[
         "--studies", help="Also compare ways to split, draw a learning curve and run an ablation. This takes minutes."
     ),
 ]
-WithNetwork = Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the network too.")]
-Device = Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the network.")]
+WithNetwork = Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the networks too.")]
+Device = Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the networks.")]
 Augment = Annotated[
-    bool, typer.Option("--augment/--no-augment", help="Train the network with random transfer paths and noise.")
+    bool, typer.Option("--augment/--no-augment", help="Train the networks with random transfer paths and noise.")
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the bootstrap, the permutations and the network.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the bootstrap, the permutations and the networks.")]
 OwnIndicators = Annotated[
     list[str] | None,
     typer.Option(

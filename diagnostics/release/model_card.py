@@ -87,8 +87,9 @@ def _files(training: Training) -> str:
         count = len(training.circular.channels)
         lines += [
             "* `circular.safetensors`: convolutional network round the pinion's synchronous average. The input is "
-            f"(batch, {2 * count}, 1024) in m/s^2: one averaged revolution of every channel, then their residuals "
-            "(without shaft orders 0 to 2 and mesh harmonics), orders up to 511. `predict` uses it.",
+            f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
+            "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
+            "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
             "* `circular.onnx`: the same network, input `rows`, output `logits`.",
         ]
     if training.referenced and len(training.referenced.judged) > 2:

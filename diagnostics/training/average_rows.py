@@ -18,6 +18,15 @@ from siggen.errors import DatasetError
 STEPS = 1024
 """Angle steps of a row; it holds shaft orders up to 511."""
 
+ROWS = 3
+"""Rows per channel of a record that stands alone: average, residual, whitened residual."""
+
+BESIDE = 16
+"""Orders on each side whose mean amplitude whitens a line."""
+
+FLOOR = 0.03
+"""Share of the mean amplitude of all orders below which whitening raises nothing."""
+
 
 @dataclass(frozen=True, slots=True)
 class AveragedRecords:
@@ -42,8 +51,8 @@ class AveragedRecords:
 
     @property
     def rows(self) -> int:
-        """Rows that a record gives: two per channel alone, four beside a healthy reference."""
-        return len(self.channels) * (2 if self.healthy is None else 4)
+        """Rows that a record gives: three per channel alone, six beside a healthy reference."""
+        return len(self.channels) * (ROWS if self.healthy is None else 6)
 
     def chosen(self, places: np.ndarray) -> AveragedRecords:
         """Return some of the records."""
@@ -96,22 +105,35 @@ def with_references(records: AveragedRecords, places: np.ndarray, references: li
 
 
 def average_rows(records: AveragedRecords) -> np.ndarray:
-    """Return what the network takes, (records, rows, 1024) float32 in m/s².
+    """Return what the network takes, (records, rows, 1024) float32 in m/s², whitened rows without a unit.
 
-    Per channel: the average and its residual; with a healthy reference residual, residual of the reference, difference
-    of the averages, and the difference's residual.
+    All channels of each in turn: the average, its residual, the residual whitened; with a healthy reference the
+    residual, that of the reference, the difference of the averages, its residual, and both residuals whitened.
     """
+    residual = residual_lines(records.lines, records.teeth)
     if records.healthy is None:
-        parts = [records.lines, residual_lines(records.lines, records.teeth)]
+        parts = [records.lines, residual, whitened(residual)]
     else:
         difference = records.lines - records.healthy
-        parts = [
-            *(residual_lines(lines, records.teeth) for lines in (records.lines, records.healthy)),
-            *(difference, residual_lines(difference, records.teeth)),
-        ]
+        rest = residual_lines(difference, records.teeth)
+        own = residual_lines(records.healthy, records.teeth)
+        parts = [residual, own, difference, rest, whitened(residual), whitened(rest)]
     lines = np.concatenate(parts, axis=1)
     lines[:, :, 0] = 0.0
     return np.asarray(np.fft.irfft(lines * (STEPS / 2.0), n=STEPS, axis=2), dtype=np.float32)
+
+
+def whitened(lines: np.ndarray) -> np.ndarray:
+    """Return lines (records, channels, orders) over their mean amplitude within 16 orders on each side.
+
+    A short event has lines of all orders in step; it stands out once those of a resonance outweigh the others no more.
+    A share of the mean amplitude is added, so that orders beyond the record's band stay small. Source: derived.
+    """
+    from scipy.ndimage import uniform_filter1d
+
+    amplitude = np.abs(lines)
+    level = uniform_filter1d(amplitude, 2 * BESIDE + 1, axis=2, mode="nearest")
+    return np.asarray(lines / (level + FLOOR * amplitude.mean(axis=2, keepdims=True) + 1e-30))
 
 
 def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:

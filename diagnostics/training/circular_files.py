@@ -14,7 +14,7 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import load_file, save_file
 
-from diagnostics.training.average_rows import STEPS
+from diagnostics.training.average_rows import ROWS, STEPS
 from diagnostics.training.circular_network import CircularNetwork
 from diagnostics.training.circular_training import TrainedCircularFile
 from diagnostics.training.cnn_files import check_finite
@@ -30,7 +30,7 @@ class CircularFacts:
     Attributes
     ----------
     classes, channels : tuple of str
-        States in the order of the outputs; channels, of which the averages come first, then their residuals.
+        States in the order of the outputs; channels in the order of the rows, see `average_rows`.
     identity : str
         Identity of the set it was trained on.
     temperature : float
@@ -71,7 +71,7 @@ def load_circular(path: Path) -> tuple[CircularNetwork, CircularFacts]:
         facts = CircularFacts(
             tuple(found["classes"]), tuple(found["channels"]), str(found["identity"]), float(found["temperature"])
         )
-        network = CircularNetwork(2 * len(facts.channels), len(facts.classes))
+        network = CircularNetwork(ROWS * len(facts.channels), len(facts.classes))
         network.load_state_dict(load_file(path))
     except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
         text = str(error).splitlines()[0]
@@ -84,9 +84,9 @@ def load_circular(path: Path) -> tuple[CircularNetwork, CircularFacts]:
 def export_circular_onnx(found: TrainedCircularFile, path: Path) -> None:
     """Write the network as ONNX, for any batch size.
 
-    Input `rows` (batch, 2 channels, 1024) in m/s^2 as of `average_rows`, output `logits` (batch, classes).
+    Input `rows` (batch, 3 channels, 1024) in m/s^2 as of `average_rows`, output `logits` (batch, classes).
     """
-    example = torch.ones(2, 2 * len(found.channels), STEPS)
+    example = torch.ones(2, ROWS * len(found.channels), STEPS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the legacy exporter needs no further package; it announces its successor
         torch.onnx.export(

@@ -86,7 +86,7 @@ class CircularConvolution(nn.Module):  # type: ignore[misc]  # the type checker 
 
 
 class CircularNetwork(nn.Module):  # type: ignore[misc]
-    """Rows (batch, rows, steps) of one revolution in m/s² to logits (batch, classes)."""
+    """Rows (batch, rows, steps) of one revolution, see `average_rows`, to logits (batch, classes)."""
 
     def __init__(self, rows: int, classes: int) -> None:
         super().__init__()

@@ -1,8 +1,8 @@
 """Table of docs/understand/phm_2026.md: growing spalls on a 28/28 gearbox beside the PHM North America 2026 challenge.
 
 `python docs/scripts/phm_2026.py [GEARBOXES]`; 6 gearboxes by default. Makes runs/phm_2026_one and runs/phm_2026_three
-where they are missing: configs/background.yaml with the teeth, speed and torque of the challenge, an assumed module and face
-and irregular spalls that grow on one tooth and on three. Prints FM4, M6A and NA4 of the driving shaft at every stage.
+where they are missing: configs/background.yaml with the teeth, speed and torque of the challenge, assumed module and
+face, and irregular spalls that grow on one tooth and on three. Prints FM4, M6A and NA4 of the driving shaft at every stage.
 NA4 has the gearbox's earlier stages as its history.
 """
 

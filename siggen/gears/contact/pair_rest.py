@@ -4,16 +4,17 @@ Fitted to finite elements of teeth on their rings in three dimensions (extruded,
 tooth's centre line, so that it adds to the contact's kernel). Of a gear's compliance c
 
     c_t          is rigid across the face: the torsion of its body (`body_coupling.ring_torsion`)
-    c - c_t      bends with the load at its place, over the length l = 1.6 modules (`tooth_kernel`)
+    c - c_t      bends with the load at its place, over the length l (`tooth_kernel`)
+    l            = 1.75 m (1 - exp(-b/(2.4 m))), m the module: narrow faces stay together more
 
-For the pair 18/47 with b = 6.7 modules at three positions the tilt compliance is within 1.2 % of the finite elements',
-and the deflection under loads on a part of the face within 5 %; of single gears tilt errs by up to 16 %, the other way
-on either. Checked for b from 2 to 10 modules. Faces narrower than 5 modules stay together more: l = 0.55 b at most,
-which makes b = 2 modules good to 11 %.
+For the pair 18/47 the tilt compliance and the deflection under loads on a part of the face are within 6.5 % of the
+finite elements from b = 6.7 modules on, 7.1 % at 4 and 10.1 % at 2 (`python -m benchmarks.finite_elements face`); of
+single gears tilt errs by up to 21 %, the other way on either.
 """
 
 from __future__ import annotations
 
+from math import exp
 from typing import NamedTuple
 
 import numpy as np
@@ -24,8 +25,8 @@ from siggen.gears.stiffness.body_coupling import ring_torsion
 from siggen.gears.stiffness.compliance import ToothCompliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
-MODULES, SHARE_OF_FACE = 1.6, 0.55
-"""Length l over the module, and its largest part of the face."""
+WIDE_MODULES, NARROW_MODULES = 1.75, 2.4
+"""Length l of wide faces over the module, and the face width, in modules, over which it is reached."""
 
 
 class PairRest(NamedTuple):
@@ -54,4 +55,10 @@ def pair_rest(pair: GearPair, teeth: tuple[ToothCompliance, ToothCompliance], op
         if options.foundation != "none":
             twist = ring_torsion(gear, pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
         bends += np.maximum(tooth.total - twist, 0.0)
-    return PairRest(whole - bends, bends, min(MODULES * pair.pinion.module_m, SHARE_OF_FACE * pair.face_width_m))
+    return PairRest(whole - bends, bends, bending_length_m(pair))
+
+
+def bending_length_m(pair: GearPair) -> float:
+    """Return the length across the face over which teeth bend together [m]."""
+    module = pair.pinion.module_m
+    return WIDE_MODULES * module * (1.0 - exp(-pair.face_width_m / (NARROW_MODULES * module)))

@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,17 +21,21 @@ from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.healthy_references import healthy_references
 from diagnostics.release.release import REFERENCED, release
 from diagnostics.release.saved_models import save_models
+from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
+from diagnostics.training import circular_network, circular_training
+from diagnostics.training.average_rows import averaged_records
+from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
 from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.referenced import referenced_classifiers
 from diagnostics.training.splits import specimen_split
-from diagnostics.training.training import train_models
+from diagnostics.training.training import Training, train_models, training_metrics
 
 FS_HZ = 12_800
 
@@ -107,18 +112,27 @@ def measured(make_dataset: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="module")
-def features_of_measured(measured: Any) -> pa.Table:
-    return classifier_table(record_table(measured))
+def indicators_of_measured(measured: Any) -> RecordTable:
+    return record_table(measured)
+
+
+@pytest.fixture(scope="module")
+def features_of_measured(indicators_of_measured: RecordTable) -> pa.Table:
+    return classifier_table(indicators_of_measured)
+
+
+@pytest.fixture(scope="module")
+def training(measured: Any, features_of_measured: pa.Table) -> Training:
+    return train_models(measured, features_of_measured, 0, network=NetworkOptions(cnn=False))
 
 
 @pytest.fixture(scope="module")
 def trained(
-    measured: Any, features_of_measured: pa.Table, tmp_path_factory: pytest.TempPathFactory
+    measured: Any, features_of_measured: pa.Table, training: Training, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, Path]:
     """Return the folder of the models and a Parquet file with records of another seed: rows 0 to 2 are one gearbox."""
     folder = tmp_path_factory.mktemp("referenced")
-    table = features_of_measured
-    save_models(train_models(measured, table, 0, network=NetworkOptions(cnn=False)), table, measured, folder)
+    save_models(training, features_of_measured, measured, folder)
     return folder, folder / "other.parquet"
 
 
@@ -159,6 +173,47 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
     code, healthy = predict(monkeypatch, folder, file, tmp_path, "--row", "3", "--reference", f"{file}:0")
     assert code == 0
     assert healthy["state"] == "healthy"
+
+
+def test_a_reference_is_judged_against_none_on_the_records_that_have_one(training: Training) -> None:
+    assert training.referenced is not None
+    found = training_metrics(training)["beside_a_healthy_record"]
+    assert list(found["classifiers"]) == ["indicators", "healthy_referenced"]
+    # 4 test gearboxes, 3 states, 2 repeats: a damaged record without its twin still has the other repeat's
+    assert {own["test_records"] for own in found["classifiers"].values()} == {24}
+    (pair,) = found["comparisons"]
+    assert (pair["first"], pair["second"]) == ("healthy_referenced", "indicators")
+    areas = [own["macro_auroc"]["value"] for own in found["classifiers"].values()]
+    assert pair["macro_auroc"]["value"] == pytest.approx(areas[1] - areas[0])
+    tables = score_blocks(training)
+    assert any("logistic regression beside a healthy record − logistic regression" in table for table in tables)
+
+
+def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
+    indicators_of_measured: RecordTable, features_of_measured: pa.Table, training: Training,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    few = partial(circular_network.CircularSettings, most_epochs=12)
+    monkeypatch.setattr(circular_network, "CircularSettings", few)
+    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
+    averages, options = averaged_records(indicators_of_measured), NetworkOptions()
+    matrix, split = feature_matrix(features_of_measured), training.split
+    trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
+    found = referenced_classifiers(matrix, split, [*training.judged, alone], averages, 0, options, silent_stage)
+    assert found is not None
+    by_name = {judged.name: judged for judged in found.judged}
+    assert list(by_name) == ["indicators", "circular", "healthy_referenced", "circular_referenced"]
+    # a dip of 15 and 50 % once per revolution; beside a record without it nothing else is left
+    assert by_name["circular"].scores.macro_auroc.value > 0.7
+    assert by_name["circular_referenced"].scores.macro_auroc.value > 0.8
+    assert [(pair.first, pair.second) for pair in found.comparisons] == [
+        ("healthy_referenced", "indicators"),
+        ("circular_referenced", "circular"),
+        ("circular_referenced", "healthy_referenced"),
+    ]
+    assert alone.permuted_auroc.shape == (1,)
+    every = circular_predictions_of(TrainedCircularFile(trained, averages.channels, "0"), averages, matrix)
+    np.testing.assert_array_equal(every.truth[split.test], alone.predictions.truth)
 
 
 def test_the_classifier_on_differences_is_calibrated_on_validation_specimens(

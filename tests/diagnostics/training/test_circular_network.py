@@ -51,6 +51,19 @@ def test_rows_are_the_average_and_its_residual_whatever_the_teeth(teeth: int) ->
     np.testing.assert_allclose(found[1], separated_average(average, teeth).residual, atol=1e-4)
 
 
+def test_whitening_takes_a_smooth_path_away_and_leaves_the_shape_of_an_event() -> None:
+    event = np.zeros(STEPS)
+    event[700] = 1.0
+    orders = np.arange(STEPS // 2 + 1)
+    heard = np.fft.irfft(np.fft.rfft(event) * np.exp(-(((orders - 150) / 120.0) ** 2)) * 40.0)  # 17 dB down at order 0
+    plain, rung = (average_rows(records_of(signal[None, None], 600))[0, 2] for signal in (event, heard))
+    # of a spike, every line from order 3 on is as strong: flat already
+    assert np.corrcoef(plain[690:710], event[690:710])[0, 1] > 0.95
+    carried = (plain @ rung) / np.linalg.norm(plain) / np.linalg.norm(rung)
+    assert carried > 0.85
+    assert carried > 1.05 * (event @ heard) / np.linalg.norm(event) / np.linalg.norm(heard)
+
+
 def test_beside_a_healthy_record_what_both_share_is_gone() -> None:
     rng = np.random.default_rng(1)
     signals = rng.standard_normal((3, 2, STEPS))
@@ -60,9 +73,11 @@ def test_beside_a_healthy_record_what_both_share_is_gone() -> None:
     through_a_path = moved(found, np.random.default_rng(2), gain_db=3.0)
     for records in (found, through_a_path):  # a gearbox has one path: record and reference pass the same
         rows = average_rows(records)
-        assert rows.shape == (2, 8, STEPS)
-        np.testing.assert_allclose(rows[0, 4:], 0.0, atol=1e-6)
-        assert rows[1, 4:].std() > 0.5
+        assert rows.shape == (2, 12, STEPS)
+        for shared in (rows[0, 4:8], rows[0, 10:]):  # difference, its residual, and that whitened; 2 channels each
+            np.testing.assert_allclose(shared, 0.0, atol=1e-4)
+        assert rows[1, 4:8].std() > 0.5
+        assert rows[1, 10:].std() > 0.5
     assert found.healthy is not None
     np.testing.assert_allclose(found.healthy[1], alone.lines[0], rtol=1e-6)
 
@@ -70,8 +85,8 @@ def test_beside_a_healthy_record_what_both_share_is_gone() -> None:
 @pytest.mark.parametrize("steps", [16, 512, 1008])
 def test_where_the_revolution_begins_does_not_matter(steps: int) -> None:
     torch.manual_seed(0)
-    network = CircularNetwork(rows=4, classes=3).eval()
-    rows = torch.randn(5, 4, STEPS)
+    network = CircularNetwork(rows=6, classes=3).eval()
+    rows = torch.randn(5, 6, STEPS)
     with torch.no_grad():  # 16 steps: the product of all strides; float32 in another order of summation
         torch.testing.assert_close(network(torch.roll(rows, steps, 2)), network(rows), atol=1e-5, rtol=1e-4)
 
