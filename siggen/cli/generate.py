@@ -24,6 +24,10 @@ def generate(
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
     ] = None,
+    engine: Annotated[
+        str | None,
+        typer.Option("--engine", help="Who runs the work: serial, processes (the default) or dask.", metavar="NAME"),
+    ] = None,
     part: Annotated[
         str | None,
         typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
@@ -57,9 +61,9 @@ def generate(
     chosen = None if part is None else part_of(part)
     with progress_shown() as show:
         if chosen is None:
-            generation = generate_set(loaded, out, workers, show)
+            generation = generate_set(loaded, out, workers, show, engine=engine)
         else:
-            generation = generate_part(loaded, out, chosen, workers, show)
+            generation = generate_part(loaded, out, chosen, workers, show, engine=engine)
     report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}")
     typer.echo(str(generation.path))
     if generation.failures:

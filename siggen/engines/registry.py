@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
 
+from siggen.engines.dask_engine import DaskEngine
 from siggen.engines.processes import ProcessEngine, default_workers
 from siggen.engines.protocol import Engine, Result, Results, Task
 from siggen.engines.serial import SerialEngine
@@ -13,6 +14,7 @@ from siggen.errors import UsageError
 ENGINES: dict[str, Callable[[int], Engine]] = {
     "serial": lambda _: SerialEngine(),
     "processes": ProcessEngine,
+    "dask": DaskEngine,
 }
 """Name -> number of workers -> engine. Results do not depend on which one is chosen."""
 

@@ -82,10 +82,11 @@ def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
     with contextlib.suppress(EOFError, OSError):
         connection.send((READY, None))
         while True:
-            connection.send(_answer(function, connection.recv()))
+            connection.send(answer(function, connection.recv()))
 
 
-def _answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+def answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+    """Return the result of a task, or that it raised and with which text: not every exception survives the way back."""
     from siggen.engines.task_failure import failure_text
 
     try:

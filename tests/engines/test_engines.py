@@ -73,7 +73,9 @@ def test_engines_are_found_by_name_and_objects_are_taken_as_they_are() -> None:
 
 
 def test_an_unknown_engine_and_two_numbers_of_workers_are_refused() -> None:
-    with pytest.raises(UsageError, match="received the engine 'ray'; allowed: serial, processes, or an Engine object"):
+    with pytest.raises(
+        UsageError, match="received the engine 'ray'; allowed: serial, processes, dask, or an Engine object"
+    ):
         engine_of("ray", 2)
     with pytest.raises(UsageError, match="received workers 3 and an engine of 2 workers"):
         engine_of(ProcessEngine(2), 3)

@@ -1,0 +1,101 @@
+"""The engine of Dask: tasks go to a cluster that is there already, or to worker processes of this machine."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from siggen.engines.processes import WINDOW_PER_WORKER
+from siggen.engines.protocol import Result, Results, Task
+from siggen.engines.task_failure import task_error
+from siggen.engines.worker import ONE_THREAD, RAISED, answer
+from siggen.errors import EngineError, UsageError
+
+ADDRESS_VARIABLE = "DASK_SCHEDULER_ADDRESS"
+
+
+class DaskEngine:
+    """Runs tasks on Dask workers with one numeric thread each.
+
+    Parameters
+    ----------
+    workers : int
+        Processes of a cluster on this machine, which ends with the work; for a given cluster, how many workers the
+        window of open tasks is cut for.
+    address : str, optional
+        Of a scheduler, such as tcp://head:8786; default: the environment's `DASK_SCHEDULER_ADDRESS`, else a cluster
+        on this machine. Workers of a given cluster need siggen, and one numeric thread (OMP_NUM_THREADS=1 ...).
+
+    Raises
+    ------
+    UsageError
+        If Dask is not installed, or fewer than one worker is asked for.
+    """
+
+    def __init__(self, workers: int, address: str | None = None) -> None:
+        import importlib.util
+
+        if importlib.util.find_spec("distributed") is None:
+            raise UsageError("the engine 'dask' needs distributed; install with: pip install 'siggen[dask]'")
+        if workers < 1:
+            raise UsageError(f"received {workers} workers; at least 1 is needed")
+        self.workers = workers
+        self.address = address or os.environ.get(ADDRESS_VARIABLE)
+
+    def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
+        """Yield (position, result) as tasks complete; see `Engine.map`.
+
+        Raises
+        ------
+        EngineError
+            If a task raised, or the workers that ran it died too often.
+        """
+        from distributed import wait
+
+        source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
+        with self._client() as client:
+            while True:
+                while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
+                    try:
+                        task = next(source)
+                    except StopIteration:
+                        break
+                    opened[client.submit(answer, function, task, pure=False)] = (taken, task)
+                    taken += 1
+                if not opened:
+                    return
+                for future in wait(list(opened), return_when="FIRST_COMPLETED").done:
+                    index, task = opened.pop(future)
+                    yield index, _value(future, task)
+
+    @contextmanager
+    def _client(self) -> Iterator[Any]:
+        from distributed import Client, LocalCluster
+
+        if self.address is not None:
+            with Client(self.address) as client:
+                yield client
+            return
+        options = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50, "env": dict(ONE_THREAD)}
+        with (
+            LocalCluster(n_workers=self.workers, **options) as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+
+
+def _value(future: Any, task: object) -> Any:
+    from distributed.scheduler import KilledWorker
+
+    try:
+        kind, content = future.result()
+    except KilledWorker as error:
+        raise EngineError(
+            f"{task} was lost because the workers that ran it died ({error.last_worker}); what is committed stays: try "
+            "again with fewer workers"
+        ) from error
+    if kind == RAISED:
+        raise task_error(task, content)
+    return content

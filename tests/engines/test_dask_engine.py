@@ -1,0 +1,59 @@
+"""The engine of Dask on a cluster of its own: as every engine, and a set's bytes do not depend on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from siggen.dataset.reading import open as open_set
+from siggen.engines.processes import WINDOW_PER_WORKER
+from siggen.engines.registry import engine_of
+from siggen.errors import EngineError
+from siggen.sets.generation import generate
+from tests.dataset.fake_set import fake_config, fake_physics, file_bytes
+from tests.engines.tasks import die_at_three, fail_at_three, slow_at_first, square
+
+pytest.importorskip("distributed")
+pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow]
+
+
+def test_every_task_gives_one_result_at_its_position() -> None:
+    assert dict(engine_of("dask", 2).map(square, range(20))) == {i: i * i for i in range(20)}
+
+
+def test_a_raising_task_is_named_with_its_traceback() -> None:
+    with pytest.raises(EngineError, match=r"(?s)^3 raised ValueError: three is not allowed.*in fail_at_three"):
+        dict(engine_of("dask", 1).map(fail_at_three, range(6)))
+
+
+def test_a_task_that_kills_its_workers_is_named() -> None:
+    with pytest.raises(EngineError, match="3 was lost because the workers that ran it died"):
+        dict(engine_of("dask", 1).map(die_at_three, range(6)))
+
+
+def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task() -> None:
+    taken: list[int] = []
+
+    def tasks() -> Iterator[int]:
+        for task in range(40):
+            taken.append(task)
+            yield task
+
+    seen: set[int] = set()
+    with closing(engine_of("dask", 2).map(slow_at_first, tasks())) as results:
+        for index, _ in results:
+            if 0 not in seen and index != 0:
+                assert index < WINDOW_PER_WORKER * 2
+            seen.add(index)
+    assert seen == set(range(40))
+
+
+def test_a_set_has_the_same_bytes(tmp_path: Path) -> None:
+    with fake_physics():
+        generate(fake_config(), tmp_path / "dask", 2, engine="dask")
+        generate(fake_config(), tmp_path / "serial", engine="serial")
+    assert file_bytes(tmp_path / "dask") == file_bytes(tmp_path / "serial")
+    assert open_set(tmp_path / "dask").labels().num_rows == 30
