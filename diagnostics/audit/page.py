@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.audit.attack_tables import attack_parts, shown_ladders
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.card_section import tried, verdict_words
+from diagnostics.audit.card_section import tried
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.page import html
@@ -21,13 +22,6 @@ HOW_SINGLE = (
     'is chosen on the same gearboxes. The AUC "chosen on other gearboxes" is not: half of the gearboxes choose the '
     "indicator, the other half judge it."
 )
-HOW = (
-    "The method is logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels. "
-    "It is cross-validated by specimen, with healthy and faulty records from different specimens. The 95 % limits come "
-    "from resampled specimens. At an AUC of 0.5 this method finds nothing on a gearbox that was not seen before. "
-    "Another method may find the state."
-)
-
 SIZE_TITLES = {
     "damaged_area_mm2": "Damaged area [mm²]",
     "damaged_area_share": "Share of the flank [-]",
@@ -49,9 +43,10 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
     parts.append(html.heading("Detectability"))
+    parts += attack_parts(audit)
     if audit.best:
         parts += [html.paragraph(HOW_SINGLE), _best_table(audit)]
-    parts += [html.paragraph(HOW), *(_detection_table(name, found) for name, found in audit.detections.items())]
+    parts += [_detection_table(name, found) for name, found in shown_ladders(audit).items()]
     if "detectability" in drawn:
         parts.append(html.figure_grid([html.figure_block(drawn["detectability"], SIZE_CAPTION)]))
     parts += [html.heading("Notes"), *html.notes((*audit.notes, provenance(dataset, audit.seed)))]
@@ -65,11 +60,10 @@ def _best_table(audit: Audit) -> str:
             Cell(best.column.split("__", 1)[0], best.column.split("__", 1)[1]),
             interval_cell(best.auc),
             Cell(f"{best.held_out:.2f}" if math.isfinite(best.held_out) else "–", value=best.held_out),
-            Cell(verdict_words(audit, state)),
         ]
         for state, best in ((state, audit.best[state]) for state in audit.states if state in audit.best)
     ]
-    head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]", "Verdict"]
+    head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]"]
     caption = f"Best of {counted(tried(audit), 'single indicator')} by state: AUC against healthy, with 95 % limits."
     return html.table(head, rows, caption=caption, text=True)
 
@@ -114,7 +108,7 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [
-            Cell(entry.state, entry.fault),
+            Cell(entry.state, entry.basis or entry.fault),
             interval_cell(entry.auc),
             *(Cell(f"{entry.sizes[size]:.3g}", value=entry.sizes[size]) for size in sizes),
         ]

@@ -49,7 +49,7 @@ def audit(
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
     from diagnostics.audit.audit_report import audit_set, write_audit
-    from diagnostics.audit.audit_sentences import basis_sentence
+    from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.audit.card_section import card_section
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -69,8 +69,8 @@ def audit(
         speed=speed.value,
         stage=terminal_stage,
     )
-    typer.echo(found.verdict)
-    typer.echo(basis_sentence(found))
+    for sentence in audit_summary(found):
+        typer.echo(sentence)
     for finding in found.findings:
         typer.echo(f"- {finding.line()}")
     for note in found.notes:
