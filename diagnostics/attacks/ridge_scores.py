@@ -56,10 +56,8 @@ def ridge_scores(product: np.ndarray, positive: np.ndarray, specimen: np.ndarray
     values = np.maximum(values, 0.0)
     scale = float(values.mean()) or 1.0
     rotated = vectors.T @ target
-    best = min(
-        PENALTIES,
-        key=lambda penalty: _left_out_error(values, vectors, rotated, target, specimen[train], penalty * scale),
-    )
+    errors = _left_out_errors(values, vectors, rotated, target, specimen[train], PENALTIES * scale)
+    best = PENALTIES[int(np.argmin(errors))]
     return np.asarray(across @ (vectors @ (rotated / (values + best * scale))))
 
 
@@ -69,20 +67,21 @@ def _balanced(positive: np.ndarray) -> np.ndarray:
     return np.where(positive, 1.0 - share, -share)
 
 
-def _left_out_error(
+def _left_out_errors(
     values: np.ndarray,
     vectors: np.ndarray,
     rotated: np.ndarray,
     target: np.ndarray,
     specimen: np.ndarray,
-    penalty: float,
-) -> float:
-    shrunk = values / (values + penalty)
-    left = target - vectors @ (shrunk * rotated)
-    total = 0.0
+    penalties: np.ndarray,
+) -> np.ndarray:
+    """Return the squared error on left-out gearboxes for every penalty."""
+    shrunk = values / (values + penalties[:, None])
+    left = target - (shrunk * rotated) @ vectors.T
+    total = np.zeros(penalties.size)
     for owner in np.unique(specimen):
         rows = np.flatnonzero(specimen == owner)
         # the mean is fitted with the rest: 1/n beside the hat matrix
-        hat = (vectors[rows] * shrunk) @ vectors[rows].T + 1.0 / target.size
-        total += float(np.square(np.linalg.solve(np.eye(rows.size) - hat, left[rows])).sum())
+        hat = (vectors[rows] * shrunk[:, None, :]) @ vectors[rows].T + 1.0 / target.size
+        total += np.square(np.linalg.solve(np.eye(rows.size) - hat, left[:, rows, None])).sum(axis=(1, 2))
     return total
