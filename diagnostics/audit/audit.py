@@ -10,6 +10,7 @@ from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.detectability import Detection, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
+from diagnostics.audit.reference_comparison import ReferenceComparison
 
 SINGLE = "the best single indicator"
 """Name of the probe that takes one indicator, chosen on other gearboxes."""
@@ -51,6 +52,8 @@ class Audit:
         By state, the best single indicator.
     chance : ChanceLimit, optional
         What the strongest attacker reaches by chance.
+    reference : ReferenceComparison, optional
+        Where the user gave recordings.
     """
 
     findings: tuple[Finding, ...]
@@ -65,6 +68,7 @@ class Audit:
     seed: int
     best: dict[str, BestIndicator] = field(default_factory=dict)
     chance: ChanceLimit | None = None
+    reference: ReferenceComparison | None = None
 
     def probes(self, state: str) -> dict[str, float]:
         """Return the AUC on unseen gearboxes of everything that looked for a state, by its name."""

@@ -9,7 +9,7 @@ from typing import Any
 from diagnostics.audit.audit import ALONE, WITH_REFERENCE, Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.detectability import TARGETS, Detection, length_at
-from diagnostics.audit.envelope import Realism
+from diagnostics.audit.envelope import QuantityShare, Realism
 from siggen.dataset.reading import Dataset
 
 
@@ -26,6 +26,9 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
         "summary": audit_summary(audit),
         "findings": [asdict(finding) for finding in audit.findings],
         "realism": _realism_numbers(audit.realism) if audit.realism else None,
+        "reference": asdict(audit.reference) | {"discriminator_auc": _number(audit.reference.discriminator_auc)}
+        if audit.reference
+        else None,
         "detectability": {name: _entries_numbers(entries) for name, entries in audit.detections.items()},
         "strongest": {
             name: _entries_numbers(audit.ladder(referenced=side))
@@ -74,20 +77,28 @@ def _realism_numbers(found: Realism) -> dict[str, Any]:
         "healthy_channel_records": found.channel_records,
         "mean_share_inside": found.mean_inside,
         "share_inside_all": found.all_inside,
-        "quantities": [
-            {
-                "name": share.quantity.name,
-                "ranges": share.quantity.ranges,
-                **{name: _number(v) for name, v in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
-                "inside": share.inside,
-                "undefined": share.undefined,
-            }
-            for share in found.shares
-        ],
+        "quantities": _share_numbers(found.shares),
+        "background": {
+            "mean_share_inside": _number(found.background_inside),
+            "quantities": _share_numbers(found.background),
+        },
         "sensor_spread": [
             {"name": s.name, "spread_db": _number(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
         ],
     }
+
+
+def _share_numbers(shares: tuple[QuantityShare, ...]) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": share.quantity.name,
+            "ranges": share.quantity.ranges,
+            **{name: _number(value) for name, value in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
+            "inside": share.inside,
+            "undefined": share.undefined,
+        }
+        for share in shares
+    ]
 
 
 def _number(value: float) -> float | None:

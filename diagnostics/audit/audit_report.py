@@ -20,6 +20,8 @@ from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.detectability import Detection, detections, features, waveform_change
 from diagnostics.audit.envelope import BENCH, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
+from diagnostics.audit.reference_comparison import reference_comparison
+from diagnostics.audit.reference_folder import reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
 from diagnostics.base.extras import missing_packages, require_packages
@@ -39,6 +41,8 @@ def audit_set(
     with_realism: bool = False,
     paired: bool = False,
     speed: str = BENCH,
+    reference: Path | None = None,
+    reference_fs_hz: float | None = None,
     stage: Stage = silent_stage,
 ) -> Audit:
     """Audit a set.
@@ -55,10 +59,16 @@ def audit_set(
         Whether to compare with the ranges of healthy gearboxes, and to judge differences from own healthy records.
     speed : str
         Range of the speed variation: `bench` or `variable`.
+    reference : Path, optional
+        Folder of measured healthy recordings to compare with.
+    reference_fs_hz : float, optional
+        Their sampling frequency [Hz] where files do not state it.
     stage : Stage
         Told of every step.
     """
     require_packages("the audit", "sklearn", "matplotlib")
+    # first, so that a wrong folder is said before minutes have passed
+    real = reference_windows(reference, reference_fs_hz) if reference else None
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
@@ -71,6 +81,10 @@ def audit_set(
     attacked, chance = _attacks(measured, seed, stage)
     found |= attacked
     compared = realism(measured, speed) if with_realism else None
+    beside = None
+    if real is not None:
+        with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
+            beside = reference_comparison(real, synthetic_windows(dataset, advance), seed)
     specimens = int(np.unique(measured.labels["specimen_id"]).size)
     return Audit(
         findings=tuple(findings),
@@ -85,6 +99,7 @@ def audit_set(
         seed=seed,
         best=best,
         chance=chance,
+        reference=beside,
     )
 
 

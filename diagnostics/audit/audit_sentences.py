@@ -9,6 +9,7 @@ from diagnostics.audit.audit import Audit
 from diagnostics.audit.card_section import lost_below
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
+from diagnostics.audit.reference_tables import reference_sentences
 from diagnostics.page.wording import counted, decimal, joined, limits, percent
 
 
@@ -16,6 +17,7 @@ def audit_summary(audit: Audit) -> list[str]:
     """Return the verdict, what it rests on, realism where asked for, the hardest state, the size that is found."""
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
+    found += reference_sentences(audit.reference) if audit.reference else []
     return [audit.verdict, *found, *_hardest_sentence(audit), *_size_sentence(shown_ladders(audit))]
 
 
@@ -41,7 +43,14 @@ def _realism_sentence(found: Realism) -> str:
     if not found.shares:
         return text
     worst = min(found.shares, key=lambda share: share.inside)
-    return f"{text} The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    text += f" The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    if not found.background:
+        return text
+    worst = min(found.background, key=lambda share: share.inside)
+    return (
+        f"{text} Of what stands beside the mesh lines, {percent(found.background_inside)} lie in range on average. The "
+        f"share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    )
 
 
 def _hardest_sentence(audit: Audit) -> list[str]:

@@ -9,7 +9,8 @@ from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.card_section import tried
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, length_at
-from diagnostics.audit.envelope import Realism
+from diagnostics.audit.envelope import QuantityShare, Realism
+from diagnostics.audit.reference_tables import reference_parts
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import provenance
@@ -28,6 +29,9 @@ SIZE_TITLES = {
     "damage_profile_length_mm": "Length along the profile [mm]",
 }
 RANGE_CAPTION = "Quantities of the healthy records and the ranges of measured healthy gearboxes."
+BACKGROUND_CAPTION = (
+    "What stands beside the mesh lines in the healthy records, and the ranges of two or three measured machines."
+)
 REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
 SIZE_CAPTION = (
     "AUC against healthy over the length of the damage along the profile, with 95 % limits. Dashed: chance. Dotted: "
@@ -42,6 +46,8 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     parts.append(_findings_table(audit) if audit.findings else html.paragraph("No trap was found."))
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
+    if audit.reference:
+        parts += [html.heading("Against your recordings"), *reference_parts(audit.reference)]
     parts.append(html.heading("Detectability"))
     parts += attack_parts(audit)
     if audit.best:
@@ -80,16 +86,6 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
         "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
         "machines. A spectral line counts even where it is only noise (see the traps)."
     )
-    rows = [
-        [
-            Cell(share.quantity.title),
-            Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
-            *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
-            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
-            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
-        ]
-        for share in found.shares
-    ]
     head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside [%]", "Undefined [%]"]
     spread_head = ["Quantity", "Median [dB]", "Range [dB]"]
     spread = [
@@ -98,9 +94,27 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
     ]
     return [
         html.paragraph(text),
-        html.table(head, rows, caption=RANGE_CAPTION, sortable=True),
+        html.table(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
+        *(
+            [html.table(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]
+            if found.background
+            else []
+        ),
         *([html.table(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
         html.figure_grid([html.figure_block(drawn["realism"], REALISM_CAPTION)]),
+    ]
+
+
+def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
+    return [
+        [
+            Cell(share.quantity.title),
+            Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
+            *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
+            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
+            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
+        ]
+        for share in shares
     ]
 
 

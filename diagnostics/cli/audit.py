@@ -38,6 +38,18 @@ def audit(
     ] = None,
     indicator: OwnIndicators = None,
     speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench,
+    reference: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict.",
+            show_default=False,
+        ),
+    ] = None,
+    reference_fs: Annotated[
+        float | None,
+        typer.Option(metavar="HZ", help="Sampling frequency of recordings that do not state it.", show_default=False),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the permutations, the folds and the bootstrap.")] = 0,
 ) -> None:
     """Check whether scores on a set measure the damage, and write audit.html and audit.json.
@@ -67,6 +79,8 @@ def audit(
         with_realism=realism or write_card,
         paired=paired,
         speed=speed.value,
+        reference=reference,
+        reference_fs_hz=reference_fs,
         stage=terminal_stage,
     )
     for sentence in audit_summary(found):

@@ -6,6 +6,7 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
@@ -61,7 +62,11 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
     clean: PlantedSet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(reading, "open", lambda path: clean)
-    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", "--realism", "--paired") == 0
+    recordings = tmp_path / "healthy"
+    recordings.mkdir()
+    np.save(recordings / "one.npy", np.random.default_rng(1).standard_normal(26_000))
+    given = ("--reference", str(recordings), "--reference-fs", "12800")
+    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", "--realism", "--paired", *given) == 0
     assert capsys.readouterr().out.strip().endswith("audit.html")
     page = (tmp_path / "audit.html").read_text()
     for part in (
@@ -71,6 +76,8 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
         "Best of",
         "stays below",
         "Random convolutions",
+        "Against your recordings",
+        "Windows of one recording do not count as several",
         "base64",
     ):
         assert part in page
