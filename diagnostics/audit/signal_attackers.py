@@ -62,7 +62,7 @@ def _attackers(
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),
-        best_column(f"kurtogram{suffix}", _mean(highest)[:, None], ("maximum of the kurtogram",)),
+        best_column(f"kurtogram{suffix}", _mean(highest)[:, None], ("",)),
         all_columns(f"random convolutions{suffix}", features),
         *([network] if network else []),
     ]
