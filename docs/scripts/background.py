@@ -1,7 +1,7 @@
 """Table of docs/understand/background.md: healthy channels of bench and background beside what real machines show.
 
-`python docs/scripts/background.py [gearboxes]`; 8 gearboxes take a minute. The numbers are those that the audit compares
-with measured machines (diagnostics/indicators/background_levels.py); the coherence of channels needs two at once.
+`python docs/scripts/background.py [gearboxes]`; 8 gearboxes take a minute. The numbers are those of the audit
+(diagnostics/indicators/background_levels.py); the coherence of channels needs two channels at once.
 """
 
 from __future__ import annotations
