@@ -17,7 +17,7 @@ from siggen.engines.worker import ONE_THREAD
 
 TOPICS = (
     *("startup", "stiffness", "integration", "record", "sensing", "background", "storage", "loader", "indicators"),
-    *("workers", "quickstart", "contact", "faults", "house"),
+    *("audit", "workers", "quickstart", "contact", "faults", "house"),
 )
 
 

@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import Detection
+from diagnostics.audit.detectability import Detection, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
+from diagnostics.audit.reference_comparison import ReferenceComparison
 
 SINGLE = "the best single indicator"
 """Name of the probe that takes one indicator, chosen on other gearboxes."""
+
+UNPAIRED = "logistic regression on four indicators"
+PAIRED, CHANGE = "six indicators minus own healthy record", "change of the averaged waveform"
+REFERENCED = " (healthy-referenced)"
+ALONE, WITH_REFERENCE = "strongest attacker alone", "strongest attacker with a healthy reference"
+
+
+def is_referenced(name: str) -> bool:
+    """Return whether an attacker sees the healthy record of the same gearbox."""
+    return name in (PAIRED, CHANGE) or name.endswith(REFERENCED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +50,10 @@ class Audit:
         Of permutations, folds and bootstrap.
     best : dict of str to BestIndicator
         By state, the best single indicator.
+    chance : ChanceLimit, optional
+        What the strongest attacker reaches by chance.
+    reference : ReferenceComparison, optional
+        Where the user gave recordings.
     """
 
     findings: tuple[Finding, ...]
@@ -51,6 +67,8 @@ class Audit:
     channels: int
     seed: int
     best: dict[str, BestIndicator] = field(default_factory=dict)
+    chance: ChanceLimit | None = None
+    reference: ReferenceComparison | None = None
 
     def probes(self, state: str) -> dict[str, float]:
         """Return the AUC on unseen gearboxes of everything that looked for a state, by its name."""
@@ -58,6 +76,19 @@ class Audit:
         for name, entries in self.detections.items():
             found[name] = next((entry.auc.value for entry in entries if entry.state == state), math.nan)
         return {name: auc for name, auc in found.items() if math.isfinite(auc)}
+
+    def ladder(self, *, referenced: bool) -> list[Detection]:
+        """Return the entry of the strongest attacker for every state, in the order of sizes, with or without reference.
+
+        The name of the attacker stands before what it chose.
+        """
+        best: dict[str, Detection] = {}
+        for name, entries in self.detections.items():
+            for entry in entries if is_referenced(name) == referenced else []:
+                known = best.get(entry.state)
+                if math.isfinite(entry.auc.value) and (known is None or entry.auc.value > known.auc.value):
+                    best[entry.state] = replace(entry, basis=": ".join(part for part in (name, entry.basis) if part))
+        return in_order(list(best.values()))
 
     @property
     def states(self) -> tuple[str, ...]:

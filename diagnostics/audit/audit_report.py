@@ -6,30 +6,33 @@ import json
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from diagnostics.attacks.chance import PERMUTATIONS
 from diagnostics.audit import figures, page
-from diagnostics.audit.audit import Audit
-from diagnostics.audit.audit_sentences import audit_summary
+from diagnostics.audit.attack_tables import shown_ladders
+from diagnostics.audit.audit import CHANGE, PAIRED, UNPAIRED, Audit, is_referenced
+from diagnostics.audit.audit_numbers import audit_numbers
+from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit
 from diagnostics.audit.best_indicator import best_indicators
-from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
-from diagnostics.audit.envelope import BENCH, Realism, realism
+from diagnostics.audit.detectability import Detection, detections, features, waveform_change
+from diagnostics.audit.envelope import BENCH, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
+from diagnostics.audit.reference_comparison import reference_comparison
+from diagnostics.audit.reference_folder import reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
-from diagnostics.base.extras import require_packages
+from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
+from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.style import png_bytes, styled
 from siggen.dataset.reading import Dataset
 
-UNPAIRED = "logistic regression on four indicators"
-PAIRED, CHANGE = "six indicators minus own healthy record", "change of the averaged waveform"
 
-
+@single_thread
 def audit_set(
     dataset: Dataset,
     seed: int = 0,
@@ -38,6 +41,8 @@ def audit_set(
     with_realism: bool = False,
     paired: bool = False,
     speed: str = BENCH,
+    reference: Path | None = None,
+    reference_fs_hz: float | None = None,
     stage: Stage = silent_stage,
 ) -> Audit:
     """Audit a set.
@@ -54,10 +59,16 @@ def audit_set(
         Whether to compare with the ranges of healthy gearboxes, and to judge differences from own healthy records.
     speed : str
         Range of the speed variation: `bench` or `variable`.
+    reference : Path, optional
+        Folder of measured healthy recordings to compare with.
+    reference_fs_hz : float, optional
+        Their sampling frequency [Hz] where files do not state it.
     stage : Stage
         Told of every step.
     """
     require_packages("the audit", "sklearn", "matplotlib")
+    # first, so that a wrong folder is said before minutes have passed
+    real = reference_windows(reference, reference_fs_hz) if reference else None
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
@@ -67,7 +78,13 @@ def audit_set(
     with stage("detectability", 1):
         found = _detections(measured, seed, paired)
         best = best_indicators(measured.matrix(), seed)
+    attacked, chance = _attacks(measured, seed, stage)
+    found |= attacked
     compared = realism(measured, speed) if with_realism else None
+    beside = None
+    if real is not None:
+        with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
+            beside = reference_comparison(real, synthetic_windows(dataset, advance), seed)
     specimens = int(np.unique(measured.labels["specimen_id"]).size)
     return Audit(
         findings=tuple(findings),
@@ -81,6 +98,8 @@ def audit_set(
         channels=len(measured.channels),
         seed=seed,
         best=best,
+        chance=chance,
+        reference=beside,
     )
 
 
@@ -92,6 +111,16 @@ def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, lis
     return found
 
 
+def _attacks(measured: MeasuredSet, seed: int, stage: Stage) -> tuple[dict[str, list[Detection]], ChanceLimit]:
+    """Return what the bank of attackers on waveforms reaches, and what it reaches by chance."""
+    with stage("preparing attackers", PREPARED) as advance:
+        bank = signal_attackers(measured, seed, advance)
+    with stage("attacking", len(bank)) as advance:
+        found = bank_detections(measured, bank, seed, advance)
+    with stage("permuted states", PERMUTATIONS) as advance:
+        return found, chance_limit(measured, bank, seed, advance)
+
+
 def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realism: bool) -> list[str]:
     notes = []
     for name, entries in found.items():
@@ -99,11 +128,13 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detection]], with_realis
         if lacking:
             why = (
                 "fewer than 4 specimens with defined values in a class"
-                if name == UNPAIRED
+                if not is_referenced(name)
                 else "in 4 specimens, a healthy record needs another healthy one of its specimen within 1 % in torque "
                 "and 0.2 % in speed (`repeats: 2` or more)"
             )
             notes.append(f"No AUC from {name} for {', '.join(lacking)}: {why}.")
+    if missing_packages("torch"):
+        notes.append(f"The {NETWORK} was not tried: it needs PyTorch (pip install 'siggen[cnn]').")
     if with_realism and not measured.healthy.any():
         notes.append("No comparison with healthy gearboxes: the set has no healthy records.")
     if with_realism and len(measured.channels) < 3:
@@ -119,7 +150,7 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
         if audit.realism:
             drawn["realism"] = png_bytes(figures.realism_figure(audit.realism))
         if any(math.isfinite(entry.auc.value) for entries in audit.detections.values() for entry in entries):
-            drawn["detectability"] = png_bytes(figures.detectability_figure(audit.detections))
+            drawn["detectability"] = png_bytes(figures.detectability_figure(shown_ladders(audit)))
     (folder / "figures").mkdir(exist_ok=True)
     for name, png in drawn.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
@@ -128,77 +159,3 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     path = folder / "audit.html"
     path.write_text(page.audit_page(audit, dataset, drawn), encoding="utf-8")
     return path
-
-
-def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
-    """Return the content of `audit.json`; undefined numbers are null."""
-    return {
-        "set": dataset.path.name,
-        "identity": dataset.manifest["identity"],
-        "records": audit.records,
-        "specimens": audit.specimens,
-        "channels": audit.channels,
-        "seed": audit.seed,
-        "verdict": audit.verdict,
-        "summary": audit_summary(audit),
-        "findings": [asdict(finding) for finding in audit.findings],
-        "realism": _realism_numbers(audit.realism) if audit.realism else None,
-        "detectability": {
-            name: {
-                "states": [
-                    {
-                        "state": entry.state,
-                        "fault": entry.fault,
-                        "specimens": entry.specimens,
-                        **{size: _number(value) for size, value in entry.sizes.items()},
-                        "auc": entry.auc.numbers(),
-                    }
-                    for entry in entries
-                ],
-                "profile_length_mm_at_auc": {
-                    str(target): {
-                        fault: asdict(reached) if reached else None
-                        for fault, reached in length_at(entries, target).items()
-                    }
-                    for target in TARGETS
-                },
-            }
-            for name, entries in audit.detections.items()
-        },
-        "best_single_indicator": {
-            state: {
-                "indicator": found.column,
-                "tried": found.tried,
-                "auc_chosen_on_the_same_gearboxes": found.auc.numbers(),
-                "auc_chosen_on_other_gearboxes": _number(found.held_out),
-            }
-            for state, found in audit.best.items()
-        },
-        "notes": list(audit.notes),
-        "seconds_per_record": audit.seconds_per_record,
-    }
-
-
-def _realism_numbers(found: Realism) -> dict[str, Any]:
-    return {
-        "healthy_channel_records": found.channel_records,
-        "mean_share_inside": found.mean_inside,
-        "share_inside_all": found.all_inside,
-        "quantities": [
-            {
-                "name": share.quantity.name,
-                "ranges": share.quantity.ranges,
-                **{name: _number(v) for name, v in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
-                "inside": share.inside,
-                "undefined": share.undefined,
-            }
-            for share in found.shares
-        ],
-        "sensor_spread": [
-            {"name": s.name, "spread_db": _number(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
-        ],
-    }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

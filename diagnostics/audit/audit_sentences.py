@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.audit.attack_tables import shown_ladders
 from diagnostics.audit.audit import Audit
-from diagnostics.audit.card_section import CHANCE_AUC
+from diagnostics.audit.card_section import lost_below
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
+from diagnostics.audit.reference_tables import reference_sentences
 from diagnostics.page.wording import counted, decimal, joined, limits, percent
 
 
@@ -15,7 +17,8 @@ def audit_summary(audit: Audit) -> list[str]:
     """Return the verdict, what it rests on, realism where asked for, the hardest state, the size that is found."""
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
-    return [audit.verdict, *found, *_hardest_sentence(audit), *_size_sentence(audit.detections)]
+    found += reference_sentences(audit.reference) if audit.reference else []
+    return [audit.verdict, *found, *_hardest_sentence(audit), *_size_sentence(shown_ladders(audit))]
 
 
 def basis_sentence(audit: Audit) -> str:
@@ -40,32 +43,50 @@ def _realism_sentence(found: Realism) -> str:
     if not found.shares:
         return text
     worst = min(found.shares, key=lambda share: share.inside)
-    return f"{text} The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    text += f" The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    if not found.background:
+        return text
+    worst = min(found.background, key=lambda share: share.inside)
+    return (
+        f"{text} Of what stands beside the mesh lines, {percent(found.background_inside)} lie in range on average. The "
+        f"share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    )
 
 
 def _hardest_sentence(audit: Audit) -> list[str]:
-    """Say how well the best shipped indicator finds the hardest state, of how many, and which probes fail."""
-    judged = {state: best for state, best in audit.best.items() if math.isfinite(best.held_out)}
-    if not judged:
+    """Name the strongest attacker of the hardest and the easiest state, and say what is lost."""
+    reached = {state: max(audit.probes(state).values()) for state in audit.states if audit.probes(state)}
+    if not reached:
         return []
-    hardest, easiest = (chosen(judged, key=lambda state: judged[state].held_out) for chosen in (min, max))
-    best = judged[hardest]
-    which = f"The state {hardest} is the hardest to find" if len(judged) > 1 else f"The damaged state is {hardest}"
-    text = (
-        f"{which}: an indicator chosen on other gearboxes reaches an AUC of {decimal(best.held_out)}. The best of "
-        f"{counted(best.tried, 'single indicator')}, {best.column}, reaches {decimal(best.auc.value)} "
-        f"({limits(best.auc)}) on the same gearboxes that it was chosen on."
-    )
+    hardest, easiest = (chosen(reached, key=lambda state: reached[state]) for chosen in (min, max))
+    which = f"The state {hardest} is the hardest to find" if len(reached) > 1 else f"The damaged state is {hardest}"
+    text = f"{which}. {_strongest_words(audit, hardest)}"
     if hardest != easiest:
-        easy = decimal(judged[easiest].held_out)
-        text += f" For {easiest} an indicator chosen on other gearboxes reaches {easy}."
-    lost = [state for state in judged if max(audit.probes(state).values()) < CHANCE_AUC]
-    found = (
-        [f"No method found {joined(lost)}. These methods failed: {joined(list(audit.probes(lost[0])))}."]
-        if lost
-        else []
-    )
-    return [text, *found]
+        text += f" The state {easiest} is the easiest. {_strongest_words(audit, easiest)}"
+    lost = [state for state in reached if reached[state] < lost_below(audit)]
+    failed = f"These failed: {joined(list(audit.probes(lost[0])))}." if lost else ""
+    return [text, *_chance_sentence(audit), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]
+
+
+def _strongest_words(audit: Audit, state: str) -> str:
+    """Name the strongest attacker of a state, its interval, its band and how many were tried."""
+    probes = audit.probes(state)
+    name = max(probes, key=lambda probe: probes[probe])
+    tried = f"The strongest of {counted(len(probes), 'attacker')} on gearboxes that were not seen is {name}"
+    entry = next((found for found in audit.detections.get(name, []) if found.state == state), None)
+    if entry is None:
+        return f"{tried}, chosen among {counted(audit.best[state].tried, 'column')}: AUC {decimal(probes[name])}."
+    basis = f", most often {entry.basis} among {counted(entry.tried, 'column')}" if entry.basis else ""
+    return f"{tried}: AUC {decimal(entry.auc.value)} ({limits(entry.auc)}){basis}."
+
+
+def _chance_sentence(audit: Audit) -> list[str]:
+    if audit.chance is None or not math.isfinite(audit.chance.auc):
+        return []
+    return [
+        f"By chance the strongest of {counted(audit.chance.attackers, 'attacker')} stays below an AUC of "
+        f"{decimal(audit.chance.auc)} in 95 % of {audit.chance.permutations} permutations of the states."
+    ]
 
 
 def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:

@@ -68,11 +68,20 @@ def _auc(value: float) -> str:
 
 
 def verdict_words(audit: Audit, state: str) -> str:
-    """Say whether a state can be found; where it cannot, by which probes it was looked for in vain."""
+    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain."""
     probes = audit.probes(state)
     if not probes:
         return "not judged"
-    if max(probes.values()) >= TEACHABLE_AUC:
-        return "can be found"
-    word = "not found" if max(probes.values()) < CHANCE_AUC else "hard to find"
-    return f"{word} by {joined([f'{name} ({_auc(auc)})' for name, auc in probes.items()])}"
+    best = max(probes, key=lambda name: probes[name])
+    if probes[best] >= TEACHABLE_AUC:
+        return f"can be found, best by {best} ({_auc(probes[best])})"
+    tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
+    if probes[best] < lost_below(audit):
+        return f"not found by {tried}"
+    return f"hard to find, best by {best} ({_auc(probes[best])}) of {tried}"
+
+
+def lost_below(audit: Audit) -> float:
+    """Return the AUC below which a state counts as lost: 0.6, or what the strongest attacker reaches by chance."""
+    limit = audit.chance.auc if audit.chance else math.nan
+    return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC

@@ -31,13 +31,18 @@ TARGETS = (0.75, 0.85)
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """AUC of one state against healthy, with its damage: kind of fault and means of the size labels."""
+    """AUC of one state against healthy, with its damage: kind of fault and means of the size labels.
+
+    `basis` is what the attacker chose most often, such as a band; `tried` how many columns it chose from or weighed.
+    """
 
     state: str
     fault: str
     sizes: dict[str, float]
     auc: Interval
     specimens: int
+    basis: str = ""
+    tried: int = 0
 
 
 def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
@@ -109,10 +114,21 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
             else Interval(math.nan, math.nan, math.nan)
         )
         rows = labels["state"] == state
-        sizes = {name: float(np.mean(labels[name][rows])) for name in SIZES if name in labels}
-        found.append(Detection(state, damage_kind(labels, rows), sizes, auc, count))
+        sizes = damage_sizes(measured, rows)
+        found.append(Detection(state, damage_kind(labels, rows), sizes, auc, count, "", int(values.shape[1])))
+    return in_order(found)
+
+
+def damage_sizes(measured: MeasuredSet, rows: np.ndarray) -> dict[str, float]:
+    """Return the means of the size labels that the set has over some rows."""
+    return {name: float(np.mean(measured.labels[name][rows])) for name in SIZES if name in measured.labels}
+
+
+def in_order(entries: list[Detection]) -> list[Detection]:
+    """Return detections by fault, profile length and area."""
     return sorted(
-        found, key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]), entry.sizes[SIZES[0]])
+        entries,
+        key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]), entry.sizes[SIZES[0]]),
     )
 
 

@@ -40,6 +40,31 @@ QUANTITIES = (
     Quantity("fm4_pinion", "FM4", ((2.3, 4.3),)),
     Quantity("energy_ratio_pinion", "energy ratio", ((0.09, 1.8),)),
 )
+BACKGROUND_QUANTITIES = (
+    Quantity("shaft_1x_db", "shaft 1x / strongest mesh line [dB]", ((-47.0, -5.0),)),
+    *(Quantity(f"shaft_{k}x_db", f"shaft {k}x / strongest mesh line [dB]", ((-50.0, -5.0),)) for k in (2, 3, 4)),
+    Quantity("floor_10_20hz_db", "floor 10-20 Hz [dB/Hz]", ((-80.0, -35.0),)),
+    Quantity("floor_40_160hz_db", "floor 40-160 Hz [dB/Hz]", ((-58.0, -40.0),)),
+    Quantity("floor_5_10khz_db", "floor 5-10 kHz [dB/Hz]", ((-65.0, -45.0),)),
+    Quantity("floor_slope_db", "floor 5-10 kHz / 40-160 Hz [dB]", ((-22.0, 10.0),)),
+    Quantity("tonality_3500_5000hz_db", "mean / median 3.5-5 kHz [dB]", ((2.5, 18.0),)),
+    Quantity("tonality_5_8khz_db", "mean / median 5-8 kHz [dB]", ((2.5, 14.0),)),
+    Quantity("lines_above_mesh5_per_khz", "lines above mesh 5 [1/kHz]", ((1.5, 8.7),)),
+    Quantity("noise_kurtosis_1_2khz", "kurtosis of the noise, 1-2 kHz", ((2.9, 3.6),)),
+    Quantity("noise_kurtosis_2_4khz", "kurtosis of the noise, 2-4 kHz", ((2.95, 4.5),)),
+    Quantity("noise_kurtosis_4_8khz", "kurtosis of the noise, 4-8 kHz", ((3.1, 6.3),)),
+    Quantity("noise_envelope_cv_1_2khz", "variation of its envelope, 1-2 kHz", ((0.51, 0.6),)),
+    Quantity("noise_envelope_cv_2_4khz", "variation of its envelope, 2-4 kHz", ((0.52, 0.7),)),
+    Quantity("noise_envelope_cv_4_8khz", "variation of its envelope, 4-8 kHz", ((0.53, 0.94),)),
+    Quantity("shaft_depth", "depth of the envelope at a shaft, 2-8 kHz", ((0.08, 0.75),)),
+    Quantity("repeated_coherence", "coherence of half averages, orders 100-300", ((0.0, 0.96),)),
+    Quantity("repeated_kurtosis", "kurtosis of the average, orders 100-300", ((2.3, 3.2),)),
+)
+"""What stands beside the mesh lines. Ranges pool channels of two or three machines and what is expected of others.
+
+Where one machine was measured, the other end is judgement (docs/understand/background.md).
+"""
+
 SPEED_RANGES = {BENCH: ((0.007, 0.05),), VARIABLE: ((0.3, 1.5),)}
 
 SPREAD_RANGES = {
@@ -71,13 +96,23 @@ class SensorSpread:
 
 @dataclass(frozen=True, slots=True)
 class Realism:
-    """Shares of all quantities, their mean, the share of channel-records inside all of them, and sensor spreads."""
+    """Shares of the thirteen quantities and of those of the background, and sensor spreads.
+
+    `mean_inside` is the mean over the thirteen, `all_inside` the share of channel-records inside all of them,
+    `background_inside` the mean over the background's.
+    """
 
     shares: tuple[QuantityShare, ...]
     mean_inside: float
     all_inside: float
     spreads: tuple[SensorSpread, ...]
     channel_records: int
+    background: tuple[QuantityShare, ...] = ()
+
+    @property
+    def background_inside(self) -> float:
+        """Mean share inside over the quantities of the background; NaN without any."""
+        return float(np.mean([share.inside for share in self.background])) if self.background else math.nan
 
 
 def quantities(speed: str = BENCH) -> tuple[Quantity, ...]:
@@ -98,24 +133,26 @@ def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
     healthy = measured.healthy
     if not healthy.any():
         return None
-    shares, inside = [], []
-    for quantity in quantities(speed):
-        values = measured.values[quantity.name][healthy].ravel()
-        defined = values[np.isfinite(values)]
-        points = np.quantile(defined, [0.05, 0.5, 0.95]).tolist() if defined.size else [math.nan] * 3
-        within = quantity.inside(values)
-        inside.append(within)
-        undefined = 1.0 - defined.size / values.size
-        shares.append(
-            QuantityShare(quantity, values, (points[0], points[1], points[2]), float(within.mean()), undefined)
-        )
+    shares = [quantity_share(quantity, measured.values[quantity.name][healthy]) for quantity in quantities(speed)]
+    inside = [share.quantity.inside(share.values) for share in shares]
+    background = [q for q in BACKGROUND_QUANTITIES if np.isfinite(measured.values[q.name][healthy]).any()]
     return Realism(
         shares=tuple(shares),
         mean_inside=float(np.mean([share.inside for share in shares])),
         all_inside=float(np.all(inside, axis=0).mean()),
         spreads=sensor_spreads(measured),
-        channel_records=int(values.size),
+        channel_records=int(shares[0].values.size),
+        background=tuple(quantity_share(q, measured.values[q.name][healthy]) for q in background),
     )
+
+
+def quantity_share(quantity: Quantity, values: np.ndarray) -> QuantityShare:
+    """Return how the values of healthy channel-records lie in the ranges of a quantity."""
+    flat = values.ravel()
+    defined = flat[np.isfinite(flat)]
+    low, middle, high = np.quantile(defined, [0.05, 0.5, 0.95]).tolist() if defined.size else [math.nan] * 3
+    inside = float(quantity.inside(flat).mean())
+    return QuantityShare(quantity, flat, (low, middle, high), inside, 1.0 - defined.size / flat.size)
 
 
 def sensor_spreads(measured: MeasuredSet) -> tuple[SensorSpread, ...]:

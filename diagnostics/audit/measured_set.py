@@ -15,6 +15,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import PULSE_CONDITIONS, RecordTable, record_table
 from diagnostics.records.recording import TACHO_NAME
+from diagnostics.records.sample_bytes import BYTES
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -113,7 +114,8 @@ def _values(table: RecordTable, indicators: Sequence[str]) -> dict[str, np.ndarr
     """Return everything by name, (records, channels)."""
     count = len(table.channels)
     found = {name: np.repeat(table.values([name]), count, axis=1) for name in PULSE_CONDITIONS}
-    found["samples"] = table.values([f"samples.{channel}" for channel in table.channels])
+    for name in ("samples", *BYTES):
+        found[name] = table.values([f"{name}.{channel}" for channel in table.channels])
     names = (*indicators, *LEVELS)
     every = table.values([f"{name}__{channel}" for name in names for channel in table.channels])
     return found | {name: every[:, k * count : (k + 1) * count] for k, name in enumerate(names)}

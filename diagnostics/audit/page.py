@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.audit.attack_tables import attack_parts, shown_ladders
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.card_section import tried, verdict_words
+from diagnostics.audit.card_section import tried
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, length_at
-from diagnostics.audit.envelope import Realism
+from diagnostics.audit.envelope import QuantityShare, Realism
+from diagnostics.audit.reference_tables import reference_parts
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import provenance
@@ -21,19 +23,15 @@ HOW_SINGLE = (
     'is chosen on the same gearboxes. The AUC "chosen on other gearboxes" is not: half of the gearboxes choose the '
     "indicator, the other half judge it."
 )
-HOW = (
-    "The method is logistic regression on log RMS, kurtosis, FM4 and log sideband index, averaged over the channels. "
-    "It is cross-validated by specimen, with healthy and faulty records from different specimens. The 95 % limits come "
-    "from resampled specimens. At an AUC of 0.5 this method finds nothing on a gearbox that was not seen before. "
-    "Another method may find the state."
-)
-
 SIZE_TITLES = {
     "damaged_area_mm2": "Damaged area [mm²]",
     "damaged_area_share": "Share of the flank [-]",
     "damage_profile_length_mm": "Length along the profile [mm]",
 }
 RANGE_CAPTION = "Quantities of the healthy records and the ranges of measured healthy gearboxes."
+BACKGROUND_CAPTION = (
+    "What stands beside the mesh lines in the healthy records, and the ranges of two or three measured machines."
+)
 REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
 SIZE_CAPTION = (
     "AUC against healthy over the length of the damage along the profile, with 95 % limits. Dashed: chance. Dotted: "
@@ -48,10 +46,13 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     parts.append(_findings_table(audit) if audit.findings else html.paragraph("No trap was found."))
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
+    if audit.reference:
+        parts += [html.heading("Against your recordings"), *reference_parts(audit.reference)]
     parts.append(html.heading("Detectability"))
+    parts += attack_parts(audit)
     if audit.best:
         parts += [html.paragraph(HOW_SINGLE), _best_table(audit)]
-    parts += [html.paragraph(HOW), *(_detection_table(name, found) for name, found in audit.detections.items())]
+    parts += [_detection_table(name, found) for name, found in shown_ladders(audit).items()]
     if "detectability" in drawn:
         parts.append(html.figure_grid([html.figure_block(drawn["detectability"], SIZE_CAPTION)]))
     parts += [html.heading("Notes"), *html.notes((*audit.notes, provenance(dataset, audit.seed)))]
@@ -65,11 +66,10 @@ def _best_table(audit: Audit) -> str:
             Cell(best.column.split("__", 1)[0], best.column.split("__", 1)[1]),
             interval_cell(best.auc),
             Cell(f"{best.held_out:.2f}" if math.isfinite(best.held_out) else "–", value=best.held_out),
-            Cell(verdict_words(audit, state)),
         ]
         for state, best in ((state, audit.best[state]) for state in audit.states if state in audit.best)
     ]
-    head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]", "Verdict"]
+    head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]"]
     caption = f"Best of {counted(tried(audit), 'single indicator')} by state: AUC against healthy, with 95 % limits."
     return html.table(head, rows, caption=caption, text=True)
 
@@ -86,16 +86,6 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
         "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
         "machines. A spectral line counts even where it is only noise (see the traps)."
     )
-    rows = [
-        [
-            Cell(share.quantity.title),
-            Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
-            *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
-            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
-            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
-        ]
-        for share in found.shares
-    ]
     head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside [%]", "Undefined [%]"]
     spread_head = ["Quantity", "Median [dB]", "Range [dB]"]
     spread = [
@@ -104,9 +94,27 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
     ]
     return [
         html.paragraph(text),
-        html.table(head, rows, caption=RANGE_CAPTION, sortable=True),
+        html.table(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
+        *(
+            [html.table(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]
+            if found.background
+            else []
+        ),
         *([html.table(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
         html.figure_grid([html.figure_block(drawn["realism"], REALISM_CAPTION)]),
+    ]
+
+
+def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
+    return [
+        [
+            Cell(share.quantity.title),
+            Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
+            *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
+            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
+            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
+        ]
+        for share in shares
     ]
 
 
@@ -114,7 +122,7 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [
-            Cell(entry.state, entry.fault),
+            Cell(entry.state, entry.basis or entry.fault),
             interval_cell(entry.auc),
             *(Cell(f"{entry.sizes[size]:.3g}", value=entry.sizes[size]) for size in sizes),
         ]

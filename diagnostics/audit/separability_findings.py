@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from diagnostics.audit.condition_traps import condition_traps
 from diagnostics.audit.damage_phase import damage_phase
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
 from diagnostics.audit.error_draws import error_draws
@@ -17,12 +18,21 @@ from diagnostics.audit.solver_settings import solver_settings
 from diagnostics.audit.state_ties import state_ties
 from diagnostics.page.wording import counted
 
-TRIVIAL = ("healthy_without_sidebands", "slight_separable_by", "state_tied_to", "constant_damage_phase")
+TRIVIAL = (
+    "healthy_without_sidebands",
+    "slight_separable_by",
+    "state_tied_to",
+    "state_told_by",
+    "constant_damage_phase",
+)
 
 
 def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
-    """Return every finding, in the order of the traps."""
-    return [
+    """Return every finding, in the order of the traps.
+
+    Attackers on conditions name no cause, so they speak only where nothing more exact was found.
+    """
+    named = [
         *shared_specimens(measured),
         *healthy_sidebands(measured),
         *simple_thresholds(measured, seed),
@@ -32,6 +42,7 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
         *noise_copies(measured),
         *damage_phase(measured),
     ]
+    return named or condition_traps(measured, seed)
 
 
 def verdict(findings: Sequence[Finding], specimens: int) -> str:

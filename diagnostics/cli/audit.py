@@ -38,6 +38,18 @@ def audit(
     ] = None,
     indicator: OwnIndicators = None,
     speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench,
+    reference: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict.",
+            show_default=False,
+        ),
+    ] = None,
+    reference_fs: Annotated[
+        float | None,
+        typer.Option(metavar="HZ", help="Sampling frequency of recordings that do not state it.", show_default=False),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the permutations, the folds and the bootstrap.")] = 0,
 ) -> None:
     """Check whether scores on a set measure the damage, and write audit.html and audit.json.
@@ -49,7 +61,7 @@ def audit(
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
     from diagnostics.audit.audit_report import audit_set, write_audit
-    from diagnostics.audit.audit_sentences import basis_sentence
+    from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.audit.card_section import card_section
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -67,10 +79,12 @@ def audit(
         with_realism=realism or write_card,
         paired=paired,
         speed=speed.value,
+        reference=reference,
+        reference_fs_hz=reference_fs,
         stage=terminal_stage,
     )
-    typer.echo(found.verdict)
-    typer.echo(basis_sentence(found))
+    for sentence in audit_summary(found):
+        typer.echo(sentence)
     for finding in found.findings:
         typer.echo(f"- {finding.line()}")
     for note in found.notes:

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from diagnostics.indicators.background_levels import BACKGROUND_LEVELS, background_levels
 from diagnostics.signal.order_lines import OrderLines, noise_density, order_lines
 from diagnostics.signal.synchronous_ratio import synchronous_ratio_db
 
@@ -18,10 +19,11 @@ LEVELS = (
     *("synchronous_ratio_db", "sideband1_db", "sideband2_db", "asymmetry_db"),
     *(f"harmonic{h}_db" for h in (2, 3, 4, 5)),
     *("noise_density_db", "strongest_sideband_db"),
+    *BACKGROUND_LEVELS,
 )
 
 
-def record_levels(turns: np.ndarray, duration_s: float, teeth: tuple[int, int]) -> dict[str, float]:
+def record_levels(turns: np.ndarray, duration_s: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
     """Return all levels of one channel.
 
     Parameters
@@ -32,8 +34,14 @@ def record_levels(turns: np.ndarray, duration_s: float, teeth: tuple[int, int]) 
         Time from the first to the last pulse [s].
     teeth : (int, int)
         Teeth of pinion and gear.
+    fs_hz : float
+        Sampling frequency [Hz].
     """
-    return {"synchronous_ratio_db": synchronous_ratio_db(turns), **line_levels(order_lines(turns, duration_s), teeth)}
+    return {
+        "synchronous_ratio_db": synchronous_ratio_db(turns),
+        **line_levels(order_lines(turns, duration_s), teeth),
+        **background_levels(turns, turns.shape[0] / duration_s, teeth, fs_hz),
+    }
 
 
 def line_levels(lines: OrderLines, teeth: tuple[int, int]) -> dict[str, float]:

@@ -19,6 +19,7 @@ from diagnostics.indicators.registry import ALL
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
 from diagnostics.records.recording import Recording
+from diagnostics.records.sample_bytes import sample_bytes
 from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, angle_grid
@@ -208,7 +209,7 @@ def _channel_result(signals: ChannelSignals, raw: np.ndarray, pulses: np.ndarray
 def _levels(signals: ChannelSignals, grid: AngleGrid, pulses: np.ndarray) -> dict[str, float]:
     turns = signals.steps.reshape(grid.revolutions, grid.samples_per_revolution)
     teeth = (signals.shafts[0].teeth, signals.shafts[1].teeth)
-    return record_levels(turns, float(pulses[-1] - pulses[0]), teeth)
+    return record_levels(turns, float(pulses[-1] - pulses[0]), teeth, signals.fs_hz)
 
 
 def _waveform(average: np.ndarray, teeth: int) -> np.ndarray:
@@ -224,11 +225,12 @@ def _float64(values: np.ndarray) -> np.ndarray:
 
 
 def _channel_conditions(signal: np.ndarray) -> dict[str, float]:
-    """Return checksum of the samples and number of samples before the last ones that repeat."""
+    """Return checksum of the samples, their bytes, and number of samples before the last ones that repeat."""
     last = np.flatnonzero(signal != signal[-1]) if signal.size else np.empty(0)
     return {
         "checksum": zlib.crc32(np.ascontiguousarray(signal).tobytes()),
         "samples": float(last[-1] + 2 if last.size else 0),
+        **sample_bytes(signal),
     }
 
 

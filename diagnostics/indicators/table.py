@@ -28,11 +28,13 @@ from diagnostics.indicators.table_cache import is_readable, keep_table, table_fi
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import LABEL_NAMES, Recording, recordings
+from diagnostics.records.sample_bytes import BYTES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
 Advance = Callable[[], None]
 PULSE_CONDITIONS = ("pulses_per_s", "speed_variation_percent", "start_turn")
+SAMPLE_CONDITIONS = ("checksum", "samples", *BYTES)
 COMPLEX = pa.list_(pa.float32())
 
 
@@ -208,7 +210,7 @@ def _channel_columns(results: list[Any], settings: IndicatorSettings, channel: s
     }
     moments = dict.fromkeys(name for own in results for name in own.moments)
     found |= {f"moment.{name}__{channel}": [own.moments.get(name, np.nan) for own in results] for name in moments}
-    found |= {f"{name}.{channel}": [own.conditions[name] for own in results] for name in ("checksum", "samples")}
+    found |= {f"{name}.{channel}": [own.conditions[name] for own in results] for name in SAMPLE_CONDITIONS}
     for name in ("waveform", "sketch"):
         rows = [np.ascontiguousarray(getattr(own, name), np.complex64).view(np.float32) for own in results]
         found[f"{name}.{channel}"] = pa.array(rows, COMPLEX)

@@ -1,9 +1,9 @@
-"""A stronger probe than the audit's four indicators: `python docs/scripts/high_order_probe.py [GEARBOXES]`.
+"""One untrained number against a set: `python docs/scripts/high_order_probe.py [GEARBOXES] [CONFIGURATION]`.
 
-Makes runs/probe (configs/bench.yaml with the states of STATES alone) where it is missing, and prints how well one
-untrained number tells each damage from healthy records of other gearboxes: the kurtosis of the pinion's synchronous
-average in shaft orders 100 to 300, without the mesh harmonics. Healthy averages of this set are nearly Gaussian there
-(kurtosis 3), so an event of a few degrees stands out.
+Makes runs/probe_bench (configs/bench.yaml, or the configuration that is named, with the states of STATES alone) where
+it is missing, and prints how well one untrained number tells each damage from healthy records of other gearboxes: the
+kurtosis of the pinion's synchronous average in shaft orders 100 to 300, without the mesh harmonics. Healthy averages
+are nearly Gaussian there (kurtosis 3), so an event of a few degrees stands out.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from scipy.interpolate import make_interp_spline
 
 import siggen
 
-SET = Path("runs/probe")
-STATES = ("healthy", "face_80", "through_040")
+STATES = ("healthy", "healthy_again", "slight", "face_20", "face_40", "face_80", "through_040", "through_060")
+HEALTHY = ("healthy", "healthy_again")
 ORDERS = (100, 300)
 STEPS = 2048
 """Angle steps per revolution: orders up to 1024, above half of any sampling rate here."""
@@ -67,20 +67,21 @@ def auc(healthy: np.ndarray, damaged: np.ndarray, chosen: np.ndarray) -> float:
     return float(above[pairs].mean())
 
 
-def main(gearboxes: int) -> None:
+def main(gearboxes: int, config: Path) -> None:
     """Print the AUC of every damage with its 95 % interval from resampled gearboxes."""
-    if not SET.exists():
-        raw = yaml.safe_load(Path("configs/bench.yaml").read_text(encoding="utf-8"))
+    folder = Path("runs") / f"probe_{config.stem}"
+    if not folder.exists():
+        raw = yaml.safe_load(config.read_text(encoding="utf-8"))
         states = [state for state in raw["states"] if state["name"] in STATES]
-        siggen.generate(siggen.load_config({**raw, "specimens": gearboxes, "states": states}), SET, workers=1)
-    found = probes(siggen.open(SET))
+        siggen.generate(siggen.load_config({**raw, "specimens": gearboxes, "states": states}), folder, workers=1)
+    found = probes(siggen.open(folder))
     values = {state: np.array([by_gearbox[k] for k in sorted(by_gearbox)]) for state, by_gearbox in found.items()}
     count = len(values["healthy"])
     draws = np.random.default_rng(0).integers(count, size=(RESAMPLES, count))
     for state in STATES:
         middle = ", ".join(f"{q:.1f}" for q in np.quantile(values[state], (0.1, 0.5, 0.9)))
         text = f"{state}: kurtosis {middle} (10 %, median, 90 %)"
-        if state != "healthy":
+        if state not in HEALTHY:
             value = auc(values["healthy"], values[state], np.arange(count))
             low, high = np.quantile([auc(values["healthy"], values[state], draw) for draw in draws], (0.025, 0.975))
             text += f"; AUC {value:.2f} ({low:.2f} to {high:.2f}), {count} gearboxes"
@@ -88,4 +89,6 @@ def main(gearboxes: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 24)
+    main(
+        int(sys.argv[1]) if len(sys.argv) > 1 else 24, Path(sys.argv[2] if len(sys.argv) > 2 else "configs/bench.yaml")
+    )

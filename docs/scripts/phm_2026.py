@@ -2,8 +2,8 @@
 
 `python docs/scripts/phm_2026.py [GEARBOXES]`; 6 gearboxes by default. Makes runs/phm_2026_one and runs/phm_2026_three
 where they are missing: configs/background.yaml with the teeth, speed and torque of the challenge, assumed module and
-face, and irregular spalls that grow on one tooth and on three. Prints FM4, M6A and NA4 of the driving shaft at every stage.
-NA4 has the gearbox's earlier stages as its history.
+face, and irregular spalls that grow on one tooth and on three. Prints FM4, M6A and NA4 of the driving shaft at every
+stage. NA4 has the gearbox's earlier stages as its history.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from diagnostics.audit.audit import CHANGE, PAIRED, UNPAIRED
 from diagnostics.audit.envelope import quantities
 
 RUNS = Path("runs")
@@ -38,8 +39,9 @@ def row(*cells: str) -> str:
 
 def detectability(audit: Numbers) -> list[str]:
     """Return AUC by damage, one column per way to look."""
-    ways = [{entry["state"]: entry["auc"] for entry in way["states"]} for way in audit["detectability"].values()]
-    lengths = [f"{name}: {json.dumps(way['profile_length_mm_at_auc'])}" for name, way in audit["detectability"].items()]
+    named = {name: audit["detectability"][name] for name in (UNPAIRED, PAIRED, CHANGE)}
+    ways = [{entry["state"]: entry["auc"] for entry in way["states"]} for way in named.values()]
+    lengths = [f"{name}: {json.dumps(way['profile_length_mm_at_auc'])}" for name, way in named.items()]
     return [
         *(row(text, *(limits(way[state]) for way in ways)) for state, text in DAMAGES.items() if state in ways[0]),
         *lengths,

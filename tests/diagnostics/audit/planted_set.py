@@ -50,6 +50,7 @@ class Plant:
     """What to plant; the defaults are a set without traps."""
 
     specimens: int = 12
+    points: int = 2
     repeats: int = 1
     error_depth: float = 0.15
     one_error_draw: bool = False
@@ -74,7 +75,7 @@ def planted(plant: Plant) -> PlantedSet:
         # every channel has its own path: gain and phase per mesh harmonic, drawn per specimen
         paths = 10 ** rng.normal(0, 0.15, (len(CHANNELS), 5)) * np.exp(0j)
         tooth = 4 if plant.one_tooth else int(rng.integers(TEETH[0]))
-        points = [(rng.uniform(25, 32), rng.uniform(40, 60)) for _ in range(2)]
+        points = [(rng.uniform(25, 32), rng.uniform(40, 60)) for _ in range(plant.points)]
         for state_id, state in enumerate(STATES):
             for point_id, (speed_hz, torque_nm) in enumerate(points):
                 for repeat in range(plant.repeats):

@@ -9,6 +9,7 @@ import pytest
 
 from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.audit_sentences import audit_summary
+from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.card_section import verdict_words
 from diagnostics.audit.detectability import Detection
@@ -29,15 +30,20 @@ BEST = {
 AUDIT = Audit((), "No trap.", None, {"indicators": ENTRIES}, (), 0.1, 96, 24, 2, 0, BEST)
 
 
-def test_hardest_and_easiest_state_and_the_length_at_an_auc_are_named() -> None:
-    found = audit_summary(AUDIT)
+def test_the_strongest_attacker_is_named_with_interval_and_number_and_lost_means_all_failed() -> None:
+    bank = {
+        "indicators": ENTRIES,
+        "best band": [replace(detection("severe", 1.0, 0.97), basis="orders 9 to 40", tried=300)],
+    }
+    found = audit_summary(replace(AUDIT, detections=bank, chance=ChanceLimit(0.66, 8, 100)))
     assert found[1] == "The audit used 96\xa0records of 24\xa0specimens (gearboxes) in 2\xa0channels."
-    assert "The best of 820\xa0single indicators, fm4_pinion__x, reaches 0.70 (0.60 to 0.80) on the same" in found[2]
-    assert "mild is the hardest to find: an indicator chosen on other gearboxes reaches an AUC of 0.51." in found[2]
-    assert "For severe an indicator chosen on other gearboxes reaches 0.95." in found[2]
-    assert found[3] == "No method found mild. These methods failed: the best single indicator and indicators."
-    # linear between the states: 0.5 + 0.5 (0.75 - 0.5) / 0.4
-    assert "0.75 is reached from 0.81\xa0mm of spalling by indicators" in found[4]
+    assert "mild is the hardest to find. The strongest of 2\xa0attackers" in found[2]
+    assert "is the best single indicator, chosen among 820\xa0columns: AUC 0.51." in found[2]
+    assert "is best band: AUC 0.97 (0.92 to 1.02), most often orders 9 to 40 among 300\xa0columns." in found[2]
+    assert "8\xa0attackers stays below an AUC of 0.66 in 95 % of 100 permutations" in found[3]
+    assert found[4] == "No attacker found mild. These failed: the best single indicator and indicators."
+    # of the attackers alone: linear between the states, 0.5 + 0.5 (0.75 - 0.5) / 0.47
+    assert "0.75 is reached from 0.77\xa0mm of spalling by strongest attacker alone" in found[5]
 
 
 def test_one_gearbox_is_said_to_be_too_few() -> None:
@@ -54,17 +60,18 @@ def test_a_single_state_is_neither_hardest_nor_easiest(auc: float) -> None:
     best = {"severe": BestIndicator("rms__x", Interval(0.97, 0.92, 1.0), auc, 820)}
     found = audit_summary(replace(AUDIT, detections={"indicators": [detection("severe", 1.0, auc)]}, best=best))
     assert not any("hardest" in sentence for sentence in found)
-    assert any("The damaged state is severe: an indicator" in sentence for sentence in found) == (auc == 0.9)
+    assert any("The damaged state is severe. The strongest" in sentence for sentence in found) == (auc == 0.9)
     assert any("at most 1.00\xa0mm" in sentence for sentence in found) == (auc == 0.9)
     assert "nan" not in " ".join(found)
 
 
-def test_the_card_says_hard_or_lost_only_with_the_probes_that_failed() -> None:
-    assert verdict_words(AUDIT, "severe") == "can be found"
+def test_the_card_says_lost_only_where_the_strongest_attacker_stays_below_chance() -> None:
+    assert verdict_words(AUDIT, "severe") == "can be found, best by the best single indicator (0.95)"
     assert verdict_words(AUDIT, "mild") == "not found by the best single indicator (0.51) and indicators (0.50)"
     weak = replace(AUDIT, best={"mild": replace(BEST["mild"], held_out=0.65)})
-    assert verdict_words(weak, "mild") == "hard to find by the best single indicator (0.65) and indicators (0.50)"
-    # one probe that finds it is enough, whatever the others say
+    assert verdict_words(weak, "mild").startswith("hard to find, best by the best single indicator (0.65) of")
+    assert verdict_words(replace(weak, chance=ChanceLimit(0.66, 8, 100)), "mild").startswith("not found by")
+    # one attacker that finds it is enough, whatever the others say
     found = replace(AUDIT, best={"mild": replace(BEST["mild"], held_out=0.8)})
-    assert verdict_words(found, "mild") == "can be found"
+    assert verdict_words(found, "mild") == "can be found, best by the best single indicator (0.80)"
     assert verdict_words(replace(AUDIT, detections={}, best={}), "mild") == "not judged"

@@ -51,5 +51,18 @@ def test_spread_between_sensors_is_the_standard_deviation_over_channels(found: M
     assert result.spreads[0].spread_db == pytest.approx(3.0)
 
 
+def test_what_stands_beside_the_mesh_lines_is_judged_apart_from_the_thirteen(found: MeasuredSet) -> None:
+    inside = {"shaft_1x_db": -30.0, "noise_kurtosis_4_8khz": 2.9, "floor_slope_db": np.nan}
+    columns = {name: np.full(found.checksums.shape, value) for name, value in inside.items()}
+    result = realism(replace(found, values={**found.values, **columns}))
+    assert result is not None
+    shares = {share.quantity.name: share.inside for share in result.background}
+    assert shares["shaft_1x_db"] == 1.0
+    assert shares["noise_kurtosis_4_8khz"] == 0.0
+    assert "floor_slope_db" not in shares
+    assert "shaft_1x_db" not in {share.quantity.name for share in result.shares}
+    assert result.background_inside == pytest.approx(np.mean(list(shares.values())))
+
+
 def test_a_set_without_healthy_records_has_nothing_to_compare(found: MeasuredSet) -> None:
     assert realism(replace(found, labels={**found.labels, "fault": np.full(found.healthy.size, "pitting")})) is None

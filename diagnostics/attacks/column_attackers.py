@@ -1,0 +1,69 @@
+"""Attackers that read a table: its best single column, one given column, or all columns together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.attacks.held_out import DEALS
+from diagnostics.attacks.ridge_scores import products, ridge_scores
+from diagnostics.attacks.trial import Attacker, Trial, Verdicts
+
+
+def best_column(name: str, values: np.ndarray, names: tuple[str, ...]) -> Attacker:
+    """Return the attacker that takes the column, and its direction, that is best on the gearboxes to learn from.
+
+    Parameters
+    ----------
+    name : str
+    values : (records, columns) float64
+        Records with NaN are not asked about; columns that are never defined do not count.
+    names : (columns,) tuple of str
+    """
+    kept, usable = _defined(values)
+    chosen = tuple(name for name, is_kept in zip(names, kept, strict=True) if is_kept)
+    values = values[:, kept]
+
+    def attack(trial: Trial) -> Verdicts:
+        learnt = values[trial.rows[trial.train]]
+        area = column_auc(learnt, trial.positive[trial.train])
+        best = int(np.argmax(np.abs(area - 0.5)))
+        turned = 1.0 if area[best] >= 0.5 else -1.0
+        return Verdicts(turned * values[trial.rows[~trial.train], best], chosen[best])
+
+    return Attacker(name, attack, usable & (values.shape[1] > 0), int(values.shape[1]), DEALS)
+
+
+def all_columns(name: str, values: np.ndarray) -> Attacker:
+    """Return the attacker that weighs all columns by ridge regression.
+
+    Parameters
+    ----------
+    name : str
+    values : (records, columns) float64
+        Records with NaN are not asked about; columns that are never defined do not count.
+    """
+    kept, usable = _defined(values)
+    place = np.cumsum(usable) - 1
+    product = products(values[np.ix_(usable, kept)]) if usable.any() and kept.any() else np.zeros((0, 0))
+
+    def attack(trial: Trial) -> Verdicts:
+        own = place[trial.rows]
+        return Verdicts(ridge_scores(product[np.ix_(own, own)], trial.positive, trial.specimen, trial.train))
+
+    return Attacker(name, attack, usable & kept.any(), int(kept.sum()), DEALS)
+
+
+def _defined(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which columns are ever defined, and which records are defined in all of these."""
+    finite = np.isfinite(values)
+    kept = finite.any(axis=0)
+    return kept, finite[:, kept].all(axis=1)
+
+
+def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
+    """Return the AUC of every column, (columns,), pairs of one gearbox among them: what a choice may rest on."""
+    from scipy.stats import rankdata
+
+    damaged = int(positive.sum())
+    ranks = rankdata(values, axis=0)[positive].sum(axis=0) - 0.5 * damaged * (damaged + 1)
+    return np.asarray(ranks / (damaged * (positive.size - damaged)))

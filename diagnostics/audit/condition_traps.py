@@ -1,0 +1,117 @@
+"""Trap: an attacker that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
+
+All attackers of all layers count as one test. A layer is accused where its AUC lies above what the strongest attacker
+of all layers reaches in every one of 20 permutations per damaged state. By chance that happens in at most 1 of 20 sets,
+since a state exceeds all of n permutations with probability 1/(n + 1). Measured: docs/understand/audit.md. Source:
+maximum statistic and Bonferroni, standard literature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.attacks.chance import chance_maximum
+from diagnostics.attacks.held_out import HeldOut, dealt_folds, held_out, judged_rows
+from diagnostics.attacks.trial import Attacker
+from diagnostics.audit.bank_detections import damaged_states
+from diagnostics.audit.condition_attackers import BYTE, METADATA, NOISE, ORDER, condition_attackers
+from diagnostics.audit.finding import Finding
+from diagnostics.audit.measured_set import MeasuredSet
+
+PERMUTATIONS = 20
+"""For every damaged state."""
+
+SMALLEST_AUC = 0.7
+"""Less is of no use to anybody who wants a score."""
+
+MENDS = {
+    METADATA: "Draw this quantity by one law for all states, and do not give it to a classifier.",
+    ORDER: "Write the records of a gearbox together, whatever their state.",
+    BYTE: "Send all states through the same converter, format and program.",
+    NOISE: "Draw noise and path per gearbox by one law for all states.",
+}
+"""How each layer is mended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Strongest:
+    """The strongest attacker of a layer, the state that it tells best, and what it reaches there."""
+
+    layer: str
+    attacker: Attacker
+    state: str
+    found: HeldOut
+
+
+def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
+    """Return a finding for every layer whose strongest attacker tells a state by more than chance explains."""
+    bank = condition_attackers(measured)
+    suspects = [entry for entry in map(_largest, _judged(measured, bank, seed)) if entry]
+    suspects = [entry for entry in suspects if entry.found.auc.value >= SMALLEST_AUC]
+    if not suspects:
+        return []
+    asked = [attacker for attackers in bank.values() for attacker in attackers]
+    highest = max(entry.found.auc.value for entry in suspects)
+    limit = chance_largest(measured, asked, suspects[0].state, seed, highest)
+    return [_finding(entry, len(asked), limit) for entry in suspects if entry.found.auc.value > limit]
+
+
+def _judged(measured: MeasuredSet, bank: dict[str, list[Attacker]], seed: int) -> Iterator[list[Strongest]]:
+    """Yield, layer by layer, what every attacker reaches for every state."""
+    specimen = measured.labels["specimen_id"]
+    folds = dealt_folds(specimen, seed)
+    for layer, attackers in bank.items():
+        entries = []
+        for state in damaged_states(measured):
+            of_state = np.asarray(measured.labels["state"] == state)
+            for attacker in attackers:
+                rows = judged_rows(attacker, measured.healthy, of_state, specimen)
+                if rows.size:
+                    found = held_out(attacker, rows, of_state[rows], specimen[rows], folds[:, rows], seed)
+                    entries.append(Strongest(layer, attacker, state, found))
+        yield entries
+
+
+def _largest(entries: list[Strongest]) -> Strongest | None:
+    defined = [entry for entry in entries if np.isfinite(entry.found.auc.value)]
+    return max(defined, key=lambda entry: entry.found.auc.value, default=None)
+
+
+def chance_largest(
+    measured: MeasuredSet, attackers: list[Attacker], state: str, seed: int, enough: float = 1.0
+) -> float:
+    """Return the largest AUC over attackers and permutations of healthy records and those of one state.
+
+    Parameters
+    ----------
+    measured : MeasuredSet
+    attackers : list of Attacker
+    state : str
+    seed : int
+    enough : float
+        No more permutations are needed once this is reached.
+    """
+    specimen = measured.labels["specimen_id"]
+    rows = np.flatnonzero(measured.healthy | (measured.labels["state"] == state))
+    folds, damaged = dealt_folds(specimen, seed)[:, rows], ~measured.healthy[rows]
+    largest = 0.0
+    for turn in range(PERMUTATIONS * len(damaged_states(measured))):
+        found = chance_maximum(attackers, rows, damaged, specimen[rows], folds, seed, turn)
+        largest = max(largest, found) if np.isfinite(found) else largest
+        if largest >= enough:
+            break
+    return largest
+
+
+def _finding(entry: Strongest, tried: int, limit: float) -> Finding:
+    auc, basis = entry.found.auc, f", by {entry.found.basis}" if entry.found.basis else ""
+    return Finding(
+        f"state_told_by_{entry.layer}",
+        f"{entry.attacker.name} alone tells {entry.state} from healthy on gearboxes that were not seen with an AUC of "
+        f"{auc.value:.2f} ({auc.low:.2f} to {auc.high:.2f}){basis}",
+        f"with permuted states the strongest of {tried} attackers reaches at most {limit:.2f}",
+        MENDS[entry.layer],
+    )

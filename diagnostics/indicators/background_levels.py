@@ -1,0 +1,215 @@
+"""What a healthy machine adds to its mesh lines: shaft lines, floor, lines above mesh 5, modulation and tails of noise.
+
+The record lies in equal steps of pinion angle. Densities are means of Hann windows of 40 turns, the floor of a band is
+their median over 0.693. Noise is what the averages of both shafts leave. Aims: docs/understand/background.md. Source:
+standard literature; lines above mesh 5 and what returns every turn derived.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from diagnostics.signal.asynchronous_part import asynchronous_part, band_signal
+
+WINDOW_TURNS, AVERAGED_TURNS, FEWEST_TURNS = 40, 44, 16
+MESH_LINES = 10
+EXPONENTIAL_MEDIAN = 0.693
+HIGHEST_HZ = 10_000.0
+LINE_OVER_FLOOR, LINE_REACH = 10.0, 80
+"""A line stands 10 dB over the floor of 80 bins on either side, two orders."""
+
+NEAR_ORDER = 0.04
+REPEATED_ORDERS = (100, 300)
+FLOORS = {"floor_10_20hz_db": (10.0, 20.0), "floor_40_160hz_db": (40.0, 160.0), "floor_5_10khz_db": (5e3, 1e4)}
+TONALITIES = {"tonality_3500_5000hz_db": (3500.0, 5000.0), "tonality_5_8khz_db": (5e3, 8e3)}
+ENVELOPES = {"1_2khz": (1e3, 2e3), "2_4khz": (2e3, 4e3), "4_8khz": (4e3, 8e3)}
+DEPTH_BAND_HZ = (2e3, 8e3)
+NOISE_BANDS = 10
+LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE = 100.0, 0.4
+
+SPECTRAL = (
+    *(f"shaft_{k}x_db" for k in (1, 2, 3, 4)),
+    *FLOORS,
+    *TONALITIES,
+    *("floor_slope_db", "lines_above_mesh5_per_khz", "foreign_line_share", "strongest_mesh_rms_m_s2"),
+)
+CYCLIC = (
+    *(f"noise_{what}_{band}" for band in ENVELOPES for what in ("kurtosis", "envelope_cv")),
+    *("shaft_depth", "repeated_coherence", "repeated_kurtosis"),
+)
+NOISE_LEVELS = tuple(f"noise_band{k}_db" for k in range(NOISE_BANDS))
+BACKGROUND_LEVELS = (*SPECTRAL, *CYCLIC, *NOISE_LEVELS)
+
+
+def background_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
+    """Return all levels of one channel by name; NaN where the band or the record does not reach.
+
+    Parameters
+    ----------
+    turns : (revolutions, steps) float64
+        The channel at equal angle steps, one row per pinion revolution.
+    shaft_hz : float
+        Mean speed of the pinion [Hz].
+    teeth : (int, int)
+        Teeth of pinion and gear.
+    fs_hz : float
+        Sampling frequency of the record [Hz], which the bands of the noise reach up to.
+    """
+    if turns.shape[0] < FEWEST_TURNS or not float(np.ptp(turns)) > 0.0:
+        return dict.fromkeys(BACKGROUND_LEVELS, math.nan)
+    centred = turns - turns.mean()
+    found = spectral_levels(centred, shaft_hz, teeth)
+    return found | cyclic_levels(centred, shaft_hz, teeth, fs_hz)
+
+
+def spectral_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int]) -> dict[str, float]:
+    """Return lines and floors in dB re the strongest of ten mesh lines; parameters as of `background_levels`."""
+    width = min(WINDOW_TURNS, turns.shape[0])
+    windows = window_densities(turns, width, shaft_hz)
+    density, step_hz = windows.mean(axis=0), shaft_hz / width
+    hz = np.arange(density.size) * step_hz
+
+    def power(order: float) -> float:
+        near = round(order * width)
+        return float(density[near - 2 : near + 3].sum() * step_hz)
+
+    mesh = max(power(h * teeth[0]) for h in range(1, MESH_LINES + 1))
+    floors = {name: _decibels(_floor(windows, hz, *band), mesh) for name, band in FLOORS.items()}
+    lines = line_orders(density, hz, width, teeth[0])
+    gear_order = teeth[0] / teeth[1]
+    foreign = [order for order in lines if not any(_is_multiple(order, step) for step in (1.0, gear_order))]
+    span_khz = 1e-3 * (min(HIGHEST_HZ, float(hz[-1])) - 5.5 * teeth[0] * shaft_hz)
+    return {
+        **{f"shaft_{k}x_db": _decibels(power(float(k)), mesh) for k in (1, 2, 3, 4)},
+        **floors,
+        **{name: _tonality(windows, hz, *band) for name, band in TONALITIES.items()},
+        "floor_slope_db": floors["floor_5_10khz_db"] - floors["floor_40_160hz_db"],
+        "lines_above_mesh5_per_khz": len(lines) / span_khz if span_khz > 0.0 else math.nan,
+        "foreign_line_share": len(foreign) / len(lines) if lines else math.nan,
+        "strongest_mesh_rms_m_s2": math.sqrt(mesh),
+    }
+
+
+def window_densities(turns: np.ndarray, width: int, shaft_hz: float) -> np.ndarray:
+    """Return one-sided densities per Hz of Hann windows of `width` turns, half overlapping, (windows, orders)."""
+    from scipy import fft
+
+    size = width * turns.shape[1]
+    hann = np.hanning(size)
+    starts = range(0, turns.size - size + 1, size // 2)
+    flat = turns.ravel()
+    found = [np.square(np.abs(fft.rfft(flat[start : start + size] * hann))) for start in starts]
+    scale = 2.0 / (float(np.square(hann).sum()) * turns.shape[1] * shaft_hz)
+    return np.asarray(np.asarray(found) * scale)
+
+
+def line_orders(density: np.ndarray, hz: np.ndarray, width: int, teeth: int) -> list[float]:
+    """Return the orders of lines more than 10 dB over the floor around them, above mesh 5 and below 10 kHz."""
+    from scipy.ndimage import maximum_filter1d
+
+    first = round(5.5 * teeth * width)
+    last = min(int(np.searchsorted(hz, HIGHEST_HZ)), density.size - LINE_REACH)
+    peaks = first + np.flatnonzero((density == maximum_filter1d(density, 9))[first:last])
+    if not peaks.size:
+        return []
+    around = np.lib.stride_tricks.sliding_window_view(density, 2 * LINE_REACH)[peaks - LINE_REACH]
+    floor = np.median(around, axis=1) / EXPONENTIAL_MEDIAN
+    return [float(k / width) for k in peaks[density[peaks] > LINE_OVER_FLOOR * floor].tolist()]
+
+
+def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs_hz: float) -> dict[str, float]:
+    """Return what returns every turn, how the rest is modulated, and its level by band; as of `background_levels`."""
+    from scipy import fft
+
+    gear_order = teeth[0] / teeth[1]
+    spectrum = fft.rfft(asynchronous_part(turns, gear_order)) / turns.size
+    bin_hz = shaft_hz / turns.shape[0]
+    found: dict[str, float] = {}
+    for name, (low, high) in ENVELOPES.items():
+        wave = _band(spectrum, low, high, bin_hz)
+        found |= {f"noise_kurtosis_{name}": _kurtosis(wave), f"noise_envelope_cv_{name}": _variation(wave)}
+    depths = [_depth(_band(spectrum, *DEPTH_BAND_HZ, bin_hz), turns.shape[0] * order) for order in (1.0, gear_order)]
+    found["shaft_depth"] = max(depths) if all(map(math.isfinite, depths)) else math.nan
+    return found | _repeated(turns) | _noise_levels(spectrum, bin_hz, fs_hz)
+
+
+def _band(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:
+    """Return the complex envelope of a band; empty where the record does not reach its upper end."""
+    if high_hz / bin_hz > spectrum.size:
+        return np.empty(0, np.complex128)
+    return band_signal(spectrum, math.ceil(low_hz / bin_hz), math.ceil(high_hz / bin_hz))
+
+
+def _kurtosis(wave: np.ndarray) -> float:
+    """Return the kurtosis of the real band signal: 3/2 <|a|^4>/<|a|^2>^2, since its phase takes all values."""
+    power = np.square(np.abs(wave))
+    return float(1.5 * np.square(power).mean() / power.mean() ** 2) if wave.size and power.any() else math.nan
+
+
+def _variation(wave: np.ndarray) -> float:
+    envelope = np.abs(wave)
+    return float(envelope.std() / envelope.mean()) if wave.size and envelope.any() else math.nan
+
+
+def _depth(wave: np.ndarray, cycles: float) -> float:
+    """Return the depth of a line of so many cycles over the record in the squared envelope."""
+    power = np.square(np.abs(wave))
+    if not power.any():
+        return math.nan
+    turned = np.exp(-2j * np.pi * cycles * np.arange(power.size) / power.size)
+    return float(2.0 * abs((power * turned).mean()) / power.mean())
+
+
+def _repeated(turns: np.ndarray) -> dict[str, float]:
+    """Return how alike the averages of both halves are in orders 100 to 300, and the kurtosis of that average."""
+    from scipy import fft
+
+    half = min(AVERAGED_TURNS, turns.shape[0]) // 2
+    low, high = REPEATED_ORDERS
+    halves = turns[: 2 * half].reshape(2, half, -1).mean(axis=1)
+    first, second = fft.rfft(halves, axis=1)[:, low : high + 1]
+    size = math.sqrt(float(np.square(np.abs(first)).sum() * np.square(np.abs(second)).sum()))
+    lines = np.zeros(turns.shape[1] // 2 + 1, dtype=np.complex128)
+    lines[low : low + first.size] = first + second
+    square = np.square(fft.irfft(lines))
+    known = size > 0.0
+    return {
+        "repeated_coherence": float((first * second.conj()).sum().real) / size if known else math.nan,
+        "repeated_kurtosis": float(np.square(square).mean() / square.mean() ** 2) if known else math.nan,
+    }
+
+
+def _noise_levels(spectrum: np.ndarray, bin_hz: float, fs_hz: float) -> dict[str, float]:
+    """Return the median power of the noise per Hz in bands of equal ratio, in dB."""
+    power = np.square(np.abs(spectrum)) / bin_hz
+    edges = (np.geomspace(LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE * fs_hz, NOISE_BANDS + 1) / bin_hz).astype(int)
+    found = {}
+    for k, (low, high) in enumerate(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True)):
+        level = float(np.median(power[low:high])) if low < high <= power.size else 0.0
+        found[f"noise_band{k}_db"] = 10.0 * math.log10(level) if level > 0.0 else math.nan
+    return found
+
+
+def _floor(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> float:
+    inside = (hz >= low) & (hz < high)
+    if not inside.any() or hz[-1] < high:
+        return math.nan
+    return float(np.mean(np.median(windows[:, inside], axis=1))) / EXPONENTIAL_MEDIAN
+
+
+def _tonality(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> float:
+    """Return mean over median of every window's density: 1.59 dB for noise, whatever the number of windows."""
+    inside = windows[:, (hz >= low) & (hz < high)]
+    if not inside.shape[1] or hz[-1] < high:
+        return math.nan
+    return _decibels(float(np.mean(inside.mean(axis=1) / np.median(inside, axis=1))), 1.0)
+
+
+def _is_multiple(order: float, step: float) -> bool:
+    return abs(order / step - round(order / step)) * step < NEAR_ORDER
+
+
+def _decibels(value: float, reference: float) -> float:
+    return 10.0 * math.log10(value / reference) if value > 0.0 and reference > 0.0 else math.nan

@@ -1,0 +1,136 @@
+"""Attackers are judged on gearboxes that they were not shown; ridge against refits; chance against its own law."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from diagnostics.attacks.chance import chance_maximum, permuted
+from diagnostics.attacks.circular_network import circular_network
+from diagnostics.attacks.column_attackers import all_columns, best_column
+from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows, trials
+from diagnostics.attacks.ridge_scores import PENALTIES, products, ridge_scores
+from diagnostics.attacks.trial import Trial, Verdicts
+
+GEARBOXES, COLUMNS = 16, 60
+
+
+def design(gearboxes: int = GEARBOXES) -> tuple[np.ndarray, np.ndarray]:
+    """Three records a gearbox, the last one damaged."""
+    return np.repeat(np.arange(gearboxes), 3), np.tile([False, False, True], gearboxes)
+
+
+def noise(seed: int, columns: int = COLUMNS) -> np.ndarray:
+    """Columns of records with an offset of their gearbox."""
+    rng, specimen = np.random.default_rng(seed), design()[0]
+    return rng.standard_normal((GEARBOXES, columns))[specimen] + rng.standard_normal((specimen.size, columns))
+
+
+def names(count: int = COLUMNS) -> tuple[str, ...]:
+    return tuple(f"column {k}" for k in range(count))
+
+
+def test_a_fold_holds_whole_gearboxes_and_both_sides_hold_both_classes() -> None:
+    specimen, damaged = design()
+    folds = dealt_folds(specimen, seed=1)
+    for fold in folds:
+        assert all(np.unique(fold[specimen == owner]).size == 1 for owner in range(GEARBOXES))
+        assert np.unique(fold).size == 4
+    found = list(trials(np.arange(specimen.size), damaged, specimen, folds))
+    assert len(found) == 12
+    assert all(not set(specimen[t.train]) & set(specimen[~t.train]) for t in found)
+
+
+def test_the_best_of_many_empty_columns_is_at_chance_on_unseen_gearboxes_only() -> None:
+    specimen, damaged = design()
+    folds, every = dealt_folds(specimen, 0), np.arange(specimen.size)
+    area, shown = [], []
+    for seed in range(30):
+        values = noise(seed)
+        for attacker in (best_column("best", values, names()), all_columns("all", values)):
+            area.append(held_out(attacker, every, damaged, specimen, folds, 0).auc.value)
+        whole = best_column("best", values, names())
+        told = whole.attack(Trial(np.r_[every, every], np.r_[damaged, damaged], np.r_[specimen, specimen + 99],
+                                  np.arange(2 * every.size) < every.size, 0, 0))  # fmt: skip
+        shown.append(np.mean(told.score[damaged][:, None] > told.score[~damaged]))
+    # spread of one AUC 0.1, of the mean over 60 about 0.015
+    assert np.mean(area) == pytest.approx(0.5, abs=0.05)
+    # what a choice on the judged gearboxes would have claimed
+    assert np.mean(shown) > np.mean(area) + 0.1
+
+
+def test_a_planted_column_is_chosen_and_named_and_too_few_gearboxes_are_not_judged() -> None:
+    specimen, damaged = design()
+    values = noise(3)
+    values[:, 7] -= 4.0 * damaged
+    attacker = best_column("best", values, names())
+    found = held_out(attacker, np.arange(specimen.size), damaged, specimen, dealt_folds(specimen, 0), 0)
+    assert found.basis == "column 7"
+    assert found.auc.low > 0.85
+    assert judged_rows(attacker, ~damaged, damaged, specimen).size == specimen.size
+    few = damaged & (specimen < 3)
+    assert judged_rows(attacker, ~damaged, few, specimen).size == 0
+
+
+def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_without_each_gearbox() -> None:
+    from sklearn.linear_model import Ridge
+
+    specimen, damaged = design()
+    values = noise(5, 8) + 0.8 * damaged[:, None]
+    train = specimen < 12
+    scaled = (values - values.mean(axis=0)) / values.std(axis=0) / np.sqrt(values.shape[1])
+    inner = scaled[train] - scaled[train].mean(axis=0)
+    scale = float(np.square(inner).sum() / train.sum())
+    target = np.where(damaged, 1.0, 0.0)
+
+    def refitted(penalty: float) -> float:
+        error = 0.0
+        for owner in range(12):
+            rest, out = train & (specimen != owner), specimen == owner
+            # the closed form keeps the mean of the columns, the refit moves it: both fit the mean of the target
+            model = Ridge(penalty * scale).fit(scaled[rest], target[rest])
+            error += float(np.square(target[out] - model.predict(scaled[out])).sum())
+        return error
+
+    best = min(PENALTIES, key=refitted)
+    expected = Ridge(best * scale).fit(scaled[train], target[train]).predict(scaled[~train])
+    found = ridge_scores(products(values), damaged, specimen, train)
+    assert found + target[train].mean() == pytest.approx(expected, abs=1e-8)
+
+
+def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_chance_reaches() -> None:
+    specimen, damaged = design()
+    turned = permuted(damaged, specimen, 0, 1)
+    assert np.array_equal(np.bincount(specimen, turned), np.ones(GEARBOXES))
+    assert not np.array_equal(turned, damaged)
+    one_state_each = specimen >= 8
+    among = permuted(one_state_each, specimen, 0, 1)
+    assert among.sum() == one_state_each.sum()
+    assert all(np.unique(among[specimen == owner]).size == 1 for owner in range(GEARBOXES))
+    folds, every, values = dealt_folds(specimen, 0), np.arange(specimen.size), noise(9)
+    bank = [best_column("best", values, names()), all_columns("all", values)]
+    maxima = [chance_maximum(bank, every, damaged, specimen, folds, 0, turn) for turn in range(20)]
+    assert 0.5 < np.quantile(maxima, 0.95) < 0.85
+    planted = best_column("best", values - 4.0 * damaged[:, None], names())
+    assert held_out(planted, every, damaged, specimen, folds, 0).auc.value > max(maxima)
+
+
+def test_the_network_finds_a_burst_wherever_it_is_and_says_the_same_twice() -> None:
+    pytest.importorskip("torch")
+    specimen, damaged = design()
+    rng = np.random.default_rng(4)
+    waves = rng.standard_normal((specimen.size, 1, 256)).astype(np.float32)
+    burst = 5.0 * np.sin(np.arange(12))
+    for row in np.flatnonzero(damaged):
+        waves[row, 0, rng.integers(240) + np.arange(12)] += burst
+    usable = np.ones(specimen.size, dtype=bool)
+
+    def score() -> np.ndarray:
+        attacker = circular_network("network", waves, damaged, specimen, usable, 0)
+        assert attacker is not None
+        found: Verdicts = attacker.attack(Trial(np.arange(specimen.size), damaged, specimen, specimen < 10, 0, 0))
+        return found.score
+
+    first, held = score(), damaged[specimen >= 10]
+    assert np.mean(first[held][:, None] > first[~held]) > 0.9
+    assert np.array_equal(first, score())
