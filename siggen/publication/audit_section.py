@@ -30,7 +30,8 @@ def audit_section(identity: str, file: Path | None) -> str:
     try:
         found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         of, best = found["identity"], found["best_single_indicator"]
-        sentences, attackers = _sentences(found["verdict"], found["summary"]), _attackers(best)
+        sentences = _sentences(found["verdict"], found["summary"])
+        attackers = _strongest(found["strongest"]) if "strongest" in found else _attackers(best)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{file}: is no {AUDIT} of siggen-diagnostics ({error!r}); run the audit again") from error
     if of != identity:
@@ -41,6 +42,18 @@ def audit_section(identity: str, file: Path | None) -> str:
 def _sentences(verdict: object, summary: object) -> str:
     texts = summary if isinstance(summary, list) else [summary]
     return " ".join(str(text) for text in (f"Verdict: {verdict}.", *texts))
+
+
+def _strongest(sides: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return a table of what the strongest attacker reached in each state, alone and with a healthy reference."""
+    lines = [
+        f"| {side} | {entry['state']} | {entry['chosen']} | {_number(entry['auc']['value'])} | {entry['tried']} |"
+        for side, entries in sides.items()
+        for entry in entries["states"]
+    ]
+    head = "A classifier that scores no better has learnt no more than this:\n"
+    table = ["| attacker | state | what it chose most often | AUC against healthy | tried |", "|---|---|---|---|---|"]
+    return "\n".join([head, *table, *lines, ""]) if lines else "No state could be judged.\n"
 
 
 def _attackers(best: Mapping[str, Mapping[str, Any]]) -> str:

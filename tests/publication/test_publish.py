@@ -137,6 +137,10 @@ def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(t
     publish(KEPT, tmp_path / "set", facts_file(tmp_path), tmp_path)
     card = (tmp_path / "set/README.md").read_text()
     assert "| severe | `fm4__x` | 0.980 | 40 |\n| slight | `rms__x` | 0.710 | 40 |" in card
+    entry = {"state": "severe", "chosen": "a band", "tried": 410, "auc": {"value": 0.99}}
+    (tmp_path / "audit.json").write_text(json.dumps({**audit, "strongest": {"alone": {"states": [entry]}}}))
+    publish(KEPT, tmp_path / "again", facts_file(tmp_path), tmp_path)
+    assert "| alone | severe | a band | 0.990 | 410 |" in (tmp_path / "again/README.md").read_text()
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "identity": "0" * 64}))
     with pytest.raises(UsageError, match="audit of another set"):
         publish(KEPT, tmp_path / "other", facts_file(tmp_path), tmp_path)
