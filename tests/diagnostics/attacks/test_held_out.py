@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from diagnostics.attacks import circular_network as network_module
 from diagnostics.attacks.chance import chance_maximum, permuted
 from diagnostics.attacks.circular_network import circular_network
 from diagnostics.attacks.column_attackers import all_columns, best_column
@@ -115,8 +116,9 @@ def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_cha
     assert held_out(planted, every, damaged, specimen, folds, 0).auc.value > max(maxima)
 
 
-def test_the_network_finds_a_burst_wherever_it_is_and_says_the_same_twice() -> None:
+def test_the_network_finds_a_burst_wherever_it_is_and_says_the_same_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("torch")
+    monkeypatch.setattr(network_module, "STEPS", 100)
     specimen, damaged = design()
     rng = np.random.default_rng(4)
     waves = rng.standard_normal((specimen.size, 1, 256)).astype(np.float32)
