@@ -93,7 +93,7 @@ def spring_of_flank(
 
 
 @njit(cache=True)
-def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
+def coupling_of(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
     """Return c of two slots [m/N]."""
     away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[layout.PITCH_M]))
     if away == 0 or abs(away) > apart:
@@ -160,7 +160,7 @@ def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: in
             work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
         for j in range(slots):
             if i != j and pairs[j, WHOLE] > 0.0:
-                work[i, MATRIX + slots + j] = _coupling(scalars, pairs, apart, i, j)
+                work[i, MATRIX + slots + j] = coupling_of(scalars, pairs, apart, i, j)
 
 
 @njit(cache=True, inline="always")
