@@ -21,7 +21,7 @@ from siggen.dynamics.mesh.pair_springs import spring_of_flank
 
 MOST_DEPTHS = 16
 """Approaches at which forces are asked for, half a static approach apart, as deep as a flank sinks."""
-LEAST_SHARE = 1e-3
+LEAST_SHARE = 1e-2
 """Of the static force; healthy teeth stay below a tenth of it at a hundred steps per pitch."""
 
 

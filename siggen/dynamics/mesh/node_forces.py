@@ -43,7 +43,7 @@ STRAIGHT = 10.0
 """tanh is 1 within 4e-9 beyond."""
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def write_node_forces(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -91,7 +91,7 @@ def write_node_forces(
     return -1 - touching if changed else touching
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _write_roots(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slots: int
 ) -> None:
@@ -107,7 +107,7 @@ def _write_roots(
             pairs[q * slots + i, DAMPING] = root
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _load(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool,
     node: FloatArray,
@@ -144,7 +144,7 @@ def _load(
             node[NODE_SLOPE_RATE, q] += damping
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _middle(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slot: int,
     slots: int,
@@ -176,7 +176,7 @@ def _middle(
     return load / whole * inner / carrying, position / whole, rough / inner
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _rub(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slot: int,
     slots: int, tilts: bool, node: FloatArray,

@@ -26,7 +26,7 @@ MOST_APART = 3
 COLUMNS = COUPLED + MOST_APART
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
     """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
     value: float = numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight

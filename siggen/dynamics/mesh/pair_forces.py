@@ -40,7 +40,7 @@ from siggen.dynamics.mesh.pair_places import find_flanks, pair_table, place_pair
 from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
     """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
     place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
@@ -53,7 +53,7 @@ def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: f
     return force_n
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def lubricated(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -78,7 +78,7 @@ def lubricated(
     return share, friction_mixed(share, scalars[layout.BOUNDARY], fluid)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _lubricate(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
 ) -> None:
@@ -89,7 +89,7 @@ def _lubricate(
     )
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _load(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -125,7 +125,7 @@ def _load(
             pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[layout.SLIP_SPEED])
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def write_spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
     """Write share on damage, and moment where gears tilt, of a slot; return the carrying share of its face."""
     carrying, pairs[i, ROUGH] = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
@@ -136,7 +136,7 @@ def write_spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pair
     return carrying
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def write_forces(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -187,7 +187,7 @@ def write_forces(
             pairs[i, NORMAL] = film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def pair_forces(
     law: PairLaw,
     approach_m: float,
@@ -203,7 +203,7 @@ def pair_forces(
     )
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
     """Return ΣN [N] at rest."""
     pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)

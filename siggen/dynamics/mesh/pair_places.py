@@ -45,7 +45,7 @@ def pair_table(law: PairLaw) -> FloatArray:
     return pairs
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _cell(place: float, points: int) -> tuple[int, float]:
     """Return the cell and the weight of its upper end, `place` intervals from the first point, kept at the ends."""
     place = min(max(place, 0.0), points - 1.0)
@@ -53,7 +53,7 @@ def _cell(place: float, points: int) -> tuple[int, float]:
     return cell, place - cell
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
     """Write what depends on the angle alone."""
     slots = pairs.shape[0]
@@ -62,17 +62,18 @@ def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitch
     pairs[0, PLACED] = pitches
     pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
     while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
-        place_pair(scalars, numbers, index, pairs, pair % slots, pair, pitches - pair)
+        i = pair % slots
+        if pairs[i, PAIR] != pair:
+            engage_pair(numbers, index, pairs, i, pair)
+        place_pair(scalars, numbers, index, pairs, i, pitches - pair)
         pair -= 1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def place_pair(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pair: int, place: float
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, place: float
 ) -> None:
-    """Write what depends on the angle alone into row i, of a pair by its global number, `place` pitches from its entry."""
-    if pairs[i, PAIR] != pair:
-        _engage(numbers, index, pairs, i, pair)
+    """Write what depends on the angle alone into row i of an engaged pair, `place` pitches behind its entry."""
     points, count = index[layout.POINTS], index[layout.MISSING_POINTS]
     cell, weight = _cell(place * scalars[layout.PER_PITCH], points)
     pairs[i, WHOLE] = between(numbers, int(pairs[i, STIFF_AT]), cell, weight)
@@ -91,8 +92,8 @@ def place_pair(
         pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
 
 
-@njit(cache=True)
-def _engage(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pair: int) -> None:
+@njit(cache=True, _nrt=False)
+def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pair: int) -> None:
     """Write what stays during the engagement of a pair: its row, where its tables begin, the place of its teeth."""
     tooth_1, tooth_2 = pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
     row = index[index[layout.TABLE_AT] + tooth_1 * index[layout.TEETH_2] + tooth_2]
@@ -104,7 +105,7 @@ def _engage(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pai
     pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
     """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
     for i in range(pairs.shape[0]):

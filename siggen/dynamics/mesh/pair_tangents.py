@@ -27,7 +27,7 @@ from siggen.dynamics.mesh.pair_columns import (
     WHOLE,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_places import place_pair
+from siggen.dynamics.mesh.pair_places import engage_pair, place_pair
 from siggen.dynamics.mesh.pair_springs import share_coupled, spring_of_flank
 
 SMOOTH_CHANGE = 0.02
@@ -37,7 +37,7 @@ KINKED_CHANGE = 1e-4
 MOST_STEPS = 8
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def write_springs(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -61,7 +61,9 @@ def write_springs(
     pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
     while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
         i = base + pair % slots
-        place_pair(scalars, numbers, index, pairs, i, pair, pitches - pair)
+        if pairs[i, PAIR] != pair:
+            engage_pair(numbers, index, pairs, i, pair)
+        place_pair(scalars, numbers, index, pairs, i, pitches - pair)
         pair -= 1
         depth, flank = approach_m - pairs[i, GAP], 0.0
         if depth <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[layout.BACKLASH_M]:
@@ -73,13 +75,9 @@ def write_springs(
     if index[layout.APART] == 0 or near < 2:
         return _write_alone(scalars, numbers, index, pairs, base, slots)
     if near > 2 or back:
-        for i in range(slots):
-            pairs[base + i, NORMAL] = pairs[before + i, NORMAL]
-        share_coupled(scalars, numbers, index, pairs[base : base + slots])
-        # What the others take away of a tangent is left out here: Newton's method needs a step more.
-        return _write_alone(scalars, numbers, index, pairs, base, slots)
+        return _write_many(scalars, numbers, index, pairs, base, before, slots)
     for i in range(base, base + slots):
-        if i != first and i != second:
+        if i not in (first, second):
             _write(pairs, i, 0.0, 0.0)
             pairs[i, YIELD] = 0.0
     digit_1, digit_2 = 3 ** (first - base), 3 ** (second - base)
@@ -87,7 +85,18 @@ def write_springs(
     return (digit_1 if pairs[first, FLANK] > 0.0 else 0) + (digit_2 if pairs[second, FLANK] > 0.0 else 0)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
+def _write_many(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, before: int, slots: int
+) -> int:
+    """Write the springs of more than two pairs, or with a back flank; their tangents leave out what others take away."""
+    for i in range(slots):
+        pairs[base + i, NORMAL] = pairs[before + i, NORMAL]
+    share_coupled(scalars, numbers, index, pairs[base : base + slots])
+    return _write_alone(scalars, numbers, index, pairs, base, slots)
+
+
+@njit(cache=True, _nrt=False)
 def _write_alone(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, slots: int
 ) -> int:
@@ -107,14 +116,14 @@ def _write_alone(
     return touching
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _write(pairs: FloatArray, i: int, elastic: float, tangent: float) -> None:
     pairs[i, NORMAL] = elastic
     pairs[i, STIFFNESS] = tangent if elastic != 0.0 else 0.0
     pairs[i, FLANK] = 1.0 if elastic > 0.0 else (-1.0 if elastic < 0.0 else 0.0)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _write_two(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, j: int, back: int
 ) -> None:
@@ -145,7 +154,7 @@ def _write_two(
     pairs[j, YIELD] = k_j * (1.0 - c * k_i) * inverse
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _state_before(pairs: FloatArray, i: int, before: int) -> tuple[float, float, float]:
     """Return force, stiffness and change of the penetration by itself since a state near by; zeros of another pair."""
     if pairs[before, PAIR] != pairs[i, PAIR]:

@@ -11,10 +11,10 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_scheme import NODES, exponential_scheme
-from siggen.dynamics.time.exponential_step import advance, fresh_memory
+from siggen.dynamics.time.exponential_step import advance, fresh_memory, work_arrays
 from siggen.dynamics.time.pair_motion import PairMotion
 
-EVENT_SHARE = 1e-3
+EVENT_SHARE = 1e-2
 """Of the static force: how large the cubic part of the force over a step may be."""
 
 
@@ -50,6 +50,7 @@ class ExponentialMotion(PairMotion):
             law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * step_s
         )
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
+        self._work = work_arrays(self.scheme.transition.shape[2], self.scheme.input_response.shape[2])
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs at this angle carry the torque; forgets earlier steps."""
@@ -60,6 +61,6 @@ class ExponentialMotion(PairMotion):
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
         apart = np.empty(pitches.size - 1, dtype=np.int64)
         advance(
-            self.scheme, self.law, self._speed_input, self._tolerance_n, self._events, pitches, inputs, self._memory, self._tables,
-            apart, trajectory,
+            self.scheme, self.law, self._speed_input, self._tolerance_n, self._events, pitches, inputs, self._memory,
+            self._tables, self._work, apart, trajectory,
         )  # fmt: skip

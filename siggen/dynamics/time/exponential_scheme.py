@@ -42,7 +42,7 @@ class Scheme(NamedTuple):
     nodes: FloatArray  # (NODES,) τ_q on [0, 1]
     weights: FloatArray  # (NODES,)
     legendre: FloatArray  # (NODES, NODES) (2l + 1) w_q P_l(τ_q): values at the nodes to Legendre coefficients
-    extrapolation: FloatArray  # (LEVELS, LEVELS, NODES, NODES) values at the nodes of the step before to those of this
+    extrapolation: FloatArray  # (LEVELS, LEVELS, NODES, NODES) of the values at the nodes of the step before, to those of this
     linear: FloatArray  # (7,) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
 
 
@@ -168,5 +168,5 @@ def _extrapolation(nodes: FloatArray, weights: FloatArray, steps: FloatArray) ->
             ahead = 1.0 + nodes * step / last
             for degree in range(3 if step <= last else 1):  # a longer step after short ones: their mean
                 part = _legendre(nodes, degree) * weights * (2.0 * degree + 1.0)
-                result[before, now] += _legendre(ahead, degree)[:, None] * part[None, :]
+                result[before, now] += part[:, None] * _legendre(ahead, degree)[None, :]
     return result

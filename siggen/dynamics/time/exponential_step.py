@@ -32,6 +32,7 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_TILT,
     write_node_forces,
 )
+from siggen.dynamics.mesh.pair_columns import PAIR, ROW
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
 
@@ -48,6 +49,7 @@ STIFFNESS, DAMPING, FORCE, APPROACH, TILT, ROLL_0, ROLL_1 = range(7)
 """Places in `Scheme.linear`."""
 LAST_LEVEL, TOUCHING, ATTEMPTS, SHORTENED = range(4)
 """Places in the row of the memory behind the excess forces."""
+Work = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 
 def fresh_memory() -> FloatArray:
@@ -61,11 +63,10 @@ def fresh_memory() -> FloatArray:
     return memory
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False, inline="always")
 def _free_motion(
-    transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, low: FloatArray, high: FloatArray,
-    free: FloatArray,
-) -> None:  # fmt: skip
+    transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, between: FloatArray, free: FloatArray
+) -> None:
     """Write the state after a step, and what the mesh sees in it, without excess forces into `free` (columns,)."""
     for c in range(free.size):
         free[c] = 0.0
@@ -73,13 +74,13 @@ def _free_motion(
         first, second = start[j], start[j + 1]
         for c in range(free.size):
             free[c] += transition[level, j, c] * first + transition[level, j + 1, c] * second
-    for k in range(low.size):
-        first, second = low[k], high[k]
+    for k in range(between.shape[1]):
+        first, second = between[0, k], between[1, k]
         for c in range(free.size):
             free[c] += inputs[level, 0, k, c] * first + inputs[level, 1, k, c] * second
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _add_response(
     response: FloatArray, level: int, excess: FloatArray, first: int, last: int, values: FloatArray
 ) -> None:
@@ -93,9 +94,9 @@ def _add_response(
             )  # fmt: skip
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _solve(matrix: FloatArray) -> None:
-    """Solve the system (NODES, NODES + 1) in place; dominant diagonal, without pivoting. The last column is x."""
+    """Solve the system in the first NODES rows, right side last, which becomes x; diagonal dominant: no pivoting."""
     for k in range(NODES):
         inverse = 1.0 / matrix[k, k]
         for i in range(k + 1, NODES):
@@ -108,77 +109,84 @@ def _solve(matrix: FloatArray) -> None:
         matrix[k, NODES] /= matrix[k, k]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _correct(
-    response: FloatArray, linear: FloatArray, level: int, size: int, node: FloatArray, excess: FloatArray,
+    response: FloatArray,
+    linear: FloatArray,
+    level: int,
+    size: int,
+    node: FloatArray,
+    excess: FloatArray,
     matrix: FloatArray,
-) -> float:  # fmt: skip
-    """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m]."""
-    channels = response.shape[1]
+) -> float:
+    """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m].
+
+    `matrix` (NODES + 2, NODES + 1): the system, and behind it what the approach and its rate change by at the nodes.
+    """
+    channels, moved, moved_rate = response.shape[1], NODES, NODES + 1
     for q in range(NODES):
-        slope = node[NODE_SLOPE, q] - linear[STIFFNESS]
-        slope_rate = node[NODE_SLOPE_RATE, q] - linear[DAMPING]
-        on_x, on_v = size + q, size + NODES + q
-        found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
-        found -= linear[DAMPING] * node[NODE_RATE, q]
-        right = found - excess[0, q]
-        for channel in range(1, channels):
-            for r in range(NODES):
-                change = node[NODE_FRICTION + channel - 1, r] - excess[channel, r]
-                right += (
-                    slope * response[level, channel, r, on_x] + slope_rate * response[level, channel, r, on_v]
-                ) * change
+        matrix[moved, q], matrix[moved_rate, q] = 0.0, 0.0
+    for channel in range(1, channels):
         for r in range(NODES):
-            matrix[q, r] = -slope * response[level, 0, r, on_x] - slope_rate * response[level, 0, r, on_v]
+            change = node[NODE_FRICTION + channel - 1, r] - excess[channel, r]
+            for q in range(NODES):
+                matrix[moved, q] += response[level, channel, r, size + q] * change
+                matrix[moved_rate, q] += response[level, channel, r, size + NODES + q] * change
+    for q in range(NODES):
+        slope, slope_rate = node[NODE_SLOPE, q] - linear[STIFFNESS], node[NODE_SLOPE_RATE, q] - linear[DAMPING]
+        for r in range(NODES):
+            on_x, on_v = response[level, 0, r, size + q], response[level, 0, r, size + NODES + q]
+            matrix[q, r] = -slope * on_x - slope_rate * on_v
         matrix[q, q] += 1.0
-        matrix[q, NODES] = right
+        found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
+        found += slope * matrix[moved, q] + slope_rate * matrix[moved_rate, q] - linear[DAMPING] * node[NODE_RATE, q]
+        matrix[q, NODES] = found - excess[0, q]
     _solve(matrix)
+    for r in range(NODES):
+        change = matrix[r, NODES]
+        excess[0, r] += change
+        for q in range(NODES):
+            matrix[moved, q] += response[level, 0, r, size + q] * change
+            matrix[moved_rate, q] += response[level, 0, r, size + NODES + q] * change
     largest = 0.0
     for q in range(NODES):
-        moved, moved_rate = 0.0, 0.0
-        for r in range(NODES):
-            moved += response[level, 0, r, size + q] * matrix[r, NODES]
-            moved_rate += response[level, 0, r, size + NODES + q] * matrix[r, NODES]
+        rise = node[NODE_SLOPE, q] * matrix[moved, q] + node[NODE_SLOPE_RATE, q] * matrix[moved_rate, q]
         force = node[NODE_NORMAL, q]
-        rise = node[NODE_SLOPE, q] * moved + node[NODE_SLOPE_RATE, q] * moved_rate
+        grown = 1.0 + (rise / force if force != 0.0 else 0.0)
         node[NODE_NORMAL, q] = force + rise
-        excess[0, q] += matrix[q, NODES]
         for channel in range(1, channels):
-            value = node[NODE_FRICTION + channel - 1, q]
-            excess[channel, q] = value + (value * rise / force if force != 0.0 else 0.0)
-        largest = max(largest, abs(moved))
+            excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
+        largest = max(largest, abs(matrix[moved, q]))
     return largest
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _attempt(
     scheme: Scheme,
     law: PairLaw,
     level: int,
-    start: FloatArray,
     pitches_0: float,
     pitches_1: float,
     speed_ratio: float,
-    low: FloatArray,
-    high: FloatArray,
     tolerance_n: float,
     memory: FloatArray,
     pairs: FloatArray,
-    work: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-    end: FloatArray,
+    work: Work,
 ) -> bool:
-    """Write the state after one step into `end` (columns,); return False if the step has an event, and keep the memory."""
+    """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
-    node, excess, matrix, seen = work
+    node, excess, matrix, seen, start, end, between = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
     seers = 4 if channels == 3 else 6
-    _free_motion(scheme.transition, scheme.input_response, level, start, low, high, end)
+    _free_motion(scheme.transition, scheme.input_response, level, start, between, end)
     last = int(memory[CHANNELS, LAST_LEVEL])
     for channel in range(channels):
         for q in range(NODES):
             excess[channel, q] = 0.0
-            for r in range(NODES):
-                excess[channel, q] += extrapolation[last, level, q, r] * memory[channel, r]
+        for r in range(NODES):
+            force = memory[channel, r]
+            for q in range(NODES):
+                excess[channel, q] += extrapolation[last, level, r, q] * force
     settled, touching, before = False, 0, -1
     for iteration in range(MOST_ITERATIONS):
         for c in range(size, columns):
@@ -199,7 +207,7 @@ def _attempt(
         change = _correct(response, linear, level, size, node, excess, matrix)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
-        if (iteration > 0 or level == 0) and change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(
+        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(
             linear[APPROACH]
         ):
             settled = True
@@ -221,24 +229,39 @@ def _attempt(
     return True
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _has_event(
-    law: PairLaw, events: NDArray[np.bool_], pitch_place: float, reach: float, pitches_0: float, pitches_1: float
+    law: PairLaw,
+    pairs: FloatArray,
+    events: NDArray[np.bool_],
+    pitch_place: float,
+    reach: float,
+    pitches_0: float,
+    pitches_1: float,
 ) -> bool:
     """Return whether a pair comes as near as `reach` [base pitches] to its pitch point, or to an edge of damage."""
     if reach >= 0.0 and np.floor(pitches_1 - pitch_place + reach) > np.floor(pitches_0 - pitch_place - reach):
         return True
-    scalars, index = law.scalars, law.places
-    pair = int(np.floor(pitches_0))
-    while pitches_0 - pair < scalars[layout.CONTACT_RATIO]:
-        teeth = pair % index[layout.TEETH_1] * index[layout.TEETH_2] + pair % index[layout.TEETH_2]
-        if events[index[index[layout.TABLE_AT] + teeth], int((pitches_0 - pair) * scalars[layout.PER_PITCH])]:
-            return True
-        pair -= 1
+    for i in range(pairs.shape[0] // NODES):
+        place = pitches_0 - pairs[i, PAIR]
+        if 0.0 <= place < law.scalars[layout.CONTACT_RATIO]:
+            if events[int(pairs[i, ROW]), int(place * law.scalars[layout.PER_PITCH])]:
+                return True
     return False
 
 
-@njit(cache=True)
+
+
+def work_arrays(columns: int, inputs: int) -> Work:
+    """Return working space for `advance`: values at the nodes, excess forces, equations, what is seen, state, end, inputs.
+
+    Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
+    """
+    node, excess, matrix = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES)), np.zeros((NODES + 2, NODES + 1))
+    return node, excess, matrix, np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros((2, inputs))
+
+
+@njit(cache=True, _nrt=False)
 def advance(
     scheme: Scheme,
     law: PairLaw,
@@ -249,6 +272,7 @@ def advance(
     inputs: FloatArray,
     memory: FloatArray,
     pairs: FloatArray,
+    work: Work,
     apart: IntArray,
     trajectory: FloatArray,
 ) -> None:
@@ -257,10 +281,8 @@ def advance(
     `pitches` (steps + 1,), `inputs` (steps + 1, m), `events` of `event_places`; `memory` of `fresh_memory` and `pairs`
     (NODES slots, COLUMNS) go on from the steps before.
     """
-    size, columns, m = scheme.transition.shape[1], scheme.transition.shape[2], inputs.shape[1]
-    state, end, seen = np.zeros(columns), np.zeros(columns), np.zeros(columns)
-    node, excess, matrix = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES)), np.zeros((NODES, NODES + 1))
-    low, high, work = np.zeros(m), np.zeros(m), (node, excess, matrix, seen)
+    size, m = scheme.transition.shape[1], inputs.shape[1]
+    state, end, between = work[4], work[5], work[6]
     centre = -scheme.linear[ROLL_0] / scheme.linear[ROLL_1]
     pitch_place = (centre - law.scalars[layout.START_M]) / law.scalars[layout.PITCH_M]
     reach = ROUND * law.scalars[layout.SLIP_SPEED] / abs(scheme.linear[ROLL_1] * law.scalars[layout.PITCH_M])
@@ -271,22 +293,23 @@ def advance(
         turned, ratio = pitches[i + 1] - pitches[i], 1.0
         if speed_input >= 0:
             ratio += 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])
-        place, level = 0, 1 if _has_event(law, events, pitch_place, reach, pitches[i], pitches[i + 1]) else 0
+        place, level = 0, 1 if _has_event(law, pairs, events, pitch_place, reach, pitches[i], pitches[i + 1]) else 0
         while place < FINEST:
             length = FINEST // SPLIT**level
             a, b = place / FINEST, (place + length) / FINEST
             for k in range(m):
                 rise = inputs[i + 1, k] - inputs[i, k]
-                low[k], high[k] = inputs[i, k] + a * rise, inputs[i, k] + b * rise
+                between[0, k], between[1, k] = inputs[i, k] + a * rise, inputs[i, k] + b * rise
             memory[CHANNELS, ATTEMPTS] += 1.0
             if not _attempt(
-                scheme, law, level, state, pitches[i] + a * turned, pitches[i] + b * turned, ratio, low, high,
-                tolerance_n, memory, pairs, work, end,
+                scheme, law, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, tolerance_n, memory,
+                pairs, work,
             ):  # fmt: skip
                 level += 1
                 memory[CHANNELS, SHORTENED] += 1.0
                 continue
-            state, end = end, state
+            for j in range(size):
+                state[j] = end[j]
             place += length
             while level > 0 and place % (FINEST // SPLIT ** (level - 1)) == 0:
                 level -= 1
