@@ -76,7 +76,12 @@ class Dynamics(Section):
         "with the law pairs alone; auto: product where it can be, else runge_kutta",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
-        default=4, description="integration steps per sample"
+        default=4, description="integration steps per sample of product and runge_kutta"
+    )
+    integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
+        default=1e-3,
+        description="relative rms error of the delivered acceleration that exponential chooses its steps for, once for "
+        "all states of a gearbox",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"

@@ -29,6 +29,7 @@ from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_error
 from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
+from siggen.specimen.integration import steps_per_sample
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
@@ -119,7 +120,7 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = specimen.dynamics.steps_per_sample
+    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
         response = response_of(

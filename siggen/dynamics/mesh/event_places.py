@@ -1,8 +1,8 @@
 """Where along the path of contact the force of a pair at rest is no smooth function of its position (derived).
 
-A step that is short beside the vibrations may still be long beside an edge of damage. Tables tell such edges before any
-step is taken: at a fixed approach the force of a pair is asked for along its path, and its second difference over half a
-step is compared with the static force.
+A step that is short beside the vibrations may still be long beside an edge of damage. Tables tell such edges before
+any step is taken: at fixed approaches the force of a pair is asked for along its path, and its second difference over
+half a step is compared with the force.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.arrays import FloatArray
+from siggen.arrays import FloatArray, IntArray
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import place_contact
 from siggen.dynamics.mesh.pair_columns import CELL, FLANK, ROW, TOUCH, WEIGHT, WHOLE
@@ -22,7 +22,7 @@ from siggen.dynamics.mesh.pair_springs import spring_of_flank
 MOST_DEPTHS = 16
 """Approaches at which forces are asked for, half a static approach apart, as deep as a flank sinks."""
 LEAST_SHARE = 1e-2
-"""Of the static force; healthy teeth stay below a tenth of it at a hundred steps per pitch."""
+"""Of the mean force at the same approach; healthy teeth stay below it at 36 steps per pitch."""
 
 
 def event_places(law: PairLaw, approach_m: float, step_pitches: float) -> NDArray[np.bool_]:
@@ -67,7 +67,7 @@ def _widened(edges: NDArray[np.bool_], before: int, after: int) -> NDArray[np.bo
 
 @njit(cache=True)
 def _forces(
-    scalars: FloatArray, numbers: FloatArray, index: FloatArray, pairs: FloatArray, rows: int, depth_m: float
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, rows: int, depth_m: float
 ) -> FloatArray:
     """Return the force (rows, points) at a depth below the whole flank."""
     points = index[layout.POINTS]

@@ -1,8 +1,8 @@
 """Forces of all tooth pairs at the nodes of one step with their tangents, compiled.
 
 The law is that of `pair_forces`: the same places, springs, moments, dampers, film and friction. What changes little
-within a step, asperity share, friction coefficient and share on damage, is found once per pair, at the middle of the step
-and the mean force over it: its error is of second order.
+within a step, asperity share, friction coefficient and share on damage, is found once per pair, at the middle of the
+step and the mean force over it: its error is of second order.
 """
 
 from __future__ import annotations
@@ -36,8 +36,9 @@ from siggen.dynamics.mesh.pair_tangents import write_springs
     NODE_APPROACH, NODE_RATE, NODE_SLIDING_0, NODE_SLIDING_1, NODE_TILT, NODE_TILT_RATE, NODE_NORMAL, NODE_SLOPE,
     NODE_SLOPE_RATE, NODE_FRICTION, NODE_ARM, NODE_MOMENT, NODE_TURN,
 ) = range(13)  # fmt: skip
-"""Rows of the values at the nodes: approach [m], its rate, both parts of the sliding speed [m/s, 1/s], tilt [rad] and its
-rate, which the caller writes; ΣN [N], its tangents to approach [N/m] and rate [N s/m], ΣF [N], Σ s F, Σμ, Σ ζ F [N m]."""
+"""Rows of the values at the nodes: approach [m], its rate, both parts of the sliding speed [m/s, 1/s], tilt [rad] and
+its rate, which the caller writes; ΣN [N], its tangents to approach [N/m] and rate [N s/m], ΣF [N], Σ s F, Σμ and
+Σ ζ F [N m]."""
 NODE_ROWS = 13
 STRAIGHT = 10.0
 """tanh is 1 within 4e-9 beyond."""
@@ -65,7 +66,7 @@ def write_node_forces(
     pitches_0, pitches_1 : float
         Pinion angle at the ends of the step, in base pitches.
     pairs : (k slots, COLUMNS)
-        Tables of pairs of all nodes, one behind the other (`pair_places.pair_table`); what they hold is the first guess.
+        Tables of pairs of all nodes, one behind the other (`pair_table`); what they hold is the first guess.
     node : (NODE_ROWS, k)
     """
     count = nodes.size
@@ -95,7 +96,7 @@ def write_node_forces(
 def _write_roots(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slots: int
 ) -> None:
-    """Write the damping of every pair over k/√Σk by the share of the load that asperities carry, the same at all nodes."""
+    """Write c √Σk/k of every pair by the share of the load that asperities carry, the same at all nodes."""
     for i in range(slots):
         root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM]
         load, position, rough = _middle(scalars, numbers, index, weights, pairs, i, slots)
@@ -149,8 +150,9 @@ def _middle(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slot: int,
     slots: int,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Return the mean over the nodes at which the drive flank of a slot carries: force on the face that carries [N],
-    position [m] and share on damage; no force where it never does.
+    """Return means over the nodes at which the drive flank of a slot carries; no force where it never does.
+
+    Force on the face that carries [N], position [m] and share on damage.
     """
     whole, load, position, carrying, rough, inner, carries = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1
     last = weights.size - 1

@@ -26,6 +26,11 @@ MOST_APART = 3
 COLUMNS = COUPLED + MOST_APART
 
 
+def solution_columns(slots: int) -> int:
+    """Return the columns behind the table in which coupled pairs are solved (`pair_springs`)."""
+    return 4 + 2 * slots
+
+
 @njit(cache=True, _nrt=False)
 def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
     """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""

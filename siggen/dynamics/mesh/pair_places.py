@@ -33,13 +33,14 @@ from siggen.dynamics.mesh.pair_columns import (
     WEIGHT,
     WHOLE,
     between,
+    solution_columns,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 
 def pair_table(law: PairLaw) -> FloatArray:
-    """Return a table (slots, COLUMNS) for `pair_forces`, in which no angle is kept yet."""
-    pairs = np.zeros((law.slots, COLUMNS))
+    """Return a table (slots, COLUMNS and space for a solution) for `pair_forces`, in which no angle is kept yet."""
+    pairs = np.zeros((law.slots, COLUMNS + solution_columns(law.slots)))
     pairs[0, PLACED] = np.nan
     pairs[:, PAIR] = -np.inf
     return pairs

@@ -1,8 +1,8 @@
 """Elastic forces of all tooth pairs with their tangents, compiled: what an implicit step needs of the pair law.
 
-The springs are those of `pair_forces`. With coupling, two pairs that carry solve p_n = d_n - c f_m by Newton's method in
-closed form, from the forces that stand in the table; the tangent of ΣN to the approach follows from the same system
-(derived): (I + diag(k) c) y = k. More pairs, or back flanks, are left to `share_coupled`.
+The springs are those of `pair_forces`. With coupling, two pairs that carry solve p_n = d_n - c f_m by Newton's method
+in closed form, from the forces and tangents of a state near by; the tangent of ΣN to the approach follows from the same
+system (derived): (I + diag(k) c) y = k. More pairs, or back flanks, are left to `share_coupled`.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def write_springs(
     """Write elastic force, its own stiffness, its stiffness to the approach, carrying share and flank of every slot.
 
     The slots are the rows of `pairs` from `base` on; those from `before` on hold a state near by, for a first guess.
-    Forces stand in NORMAL, stiffness in STIFFNESS and YIELD, 0 where nothing touches. Returns which slots touch, one digit to the base 3 per slot: 0 none,
-    1 drive flank, 2 back flank.
+    Forces stand in NORMAL, stiffness in STIFFNESS and YIELD, 0 where nothing touches. Returns which slots touch, one
+    digit to the base 3 per slot: 0 none, 1 drive flank, 2 back flank.
     """
     for i in range(base, base + slots):
         pairs[i, WHOLE] = 0.0
@@ -89,7 +89,7 @@ def write_springs(
 def _write_many(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, before: int, slots: int
 ) -> int:
-    """Write the springs of more than two pairs, or with a back flank; their tangents leave out what others take away."""
+    """Write the springs of more than two pairs, or with a back flank, without what others take from a tangent."""
     for i in range(slots):
         pairs[base + i, NORMAL] = pairs[before + i, NORMAL]
     share_coupled(scalars, numbers, index, pairs[base : base + slots])

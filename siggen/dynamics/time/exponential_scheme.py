@@ -13,6 +13,7 @@ the mesh sees there: approach and its rate, both parts of the sliding speed, and
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +43,9 @@ class Scheme(NamedTuple):
     nodes: FloatArray  # (NODES,) τ_q on [0, 1]
     weights: FloatArray  # (NODES,)
     legendre: FloatArray  # (NODES, NODES) (2l + 1) w_q P_l(τ_q): values at the nodes to Legendre coefficients
-    extrapolation: FloatArray  # (LEVELS, LEVELS, NODES, NODES) of the values at the nodes of the step before, to those of this
+    extrapolation: (
+        FloatArray  # (LEVELS, LEVELS, NODES, NODES) of the values at the nodes of the step before, to those of this
+    )
     linear: FloatArray  # (7,) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
 
 
@@ -65,11 +68,11 @@ def exponential_scheme(
     """
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
-    steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
+    steps = np.asarray(step_s * float(SPLIT) ** -np.arange(LEVELS))
     matrix = state_matrix(equations, equations.reference_stiffness, damping_n_s_per_m)
     forces, observed = _forces(structure), _observed(structure)
-    parts = [_propagated(matrix, forces, equations.external_input, step, nodes, observed) for step in steps]
-    transition, response, inputs = (np.ascontiguousarray([part[k] for part in parts]) for k in range(3))
+    keys = tuple(_key(array) for array in (matrix, forces, equations.external_input, observed))
+    transition, response, inputs = _all_levels(keys, step_s)
     tilt = structure.tilt_vector
     static_tilt = 0.0 if tilt is None else float((tilt * equations.static_deflection).sum())
     static = (equations.static_force, equations.static_approach, static_tilt)
@@ -84,6 +87,20 @@ def exponential_scheme(
         extrapolation=_extrapolation(nodes, weights, steps),
         linear=np.array([equations.reference_stiffness, damping_n_s_per_m, *static, *rigid_sliding]),
     )
+
+
+def _key(array: FloatArray) -> tuple[tuple[int, ...], bytes]:
+    return array.shape, np.ascontiguousarray(array).tobytes()
+
+
+@lru_cache(maxsize=4)
+def _all_levels(keys: tuple[tuple[tuple[int, ...], bytes], ...], step_s: float) -> tuple[FloatArray, ...]:
+    """Return transition, response and input response of all lengths; kept, since states of a gearbox share them."""
+    matrix, forces, inputs, observed = (np.frombuffer(data).reshape(shape) for shape, data in keys)
+    nodes = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+    steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
+    parts = [_propagated(matrix, forces, inputs, float(step), nodes, observed) for step in steps]
+    return tuple(np.ascontiguousarray([part[k] for part in parts]) for k in range(3))
 
 
 def _forces(structure: Structure) -> FloatArray:

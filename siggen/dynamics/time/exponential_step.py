@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.node_forces import (
     NODE_APPROACH,
@@ -49,14 +49,14 @@ STIFFNESS, DAMPING, FORCE, APPROACH, TILT, ROLL_0, ROLL_1 = range(7)
 """Places in `Scheme.linear`."""
 LAST_LEVEL, TOUCHING, ATTEMPTS, SHORTENED = range(4)
 """Places in the row of the memory behind the excess forces."""
-Work = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+Work = tuple[FloatArray, ...]
 
 
 def fresh_memory() -> FloatArray:
     """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, NODES).
 
-    Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1: not
-    known), and how many steps were tried and shortened.
+    Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1:
+    not known), and how many steps were tried and shortened.
     """
     memory = np.zeros((CHANNELS + 1, NODES))
     memory[CHANNELS, TOUCHING] = -1.0
@@ -161,7 +161,7 @@ def _correct(
 
 
 @njit(cache=True, _nrt=False)
-def _attempt(
+def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme: Scheme,
     law: PairLaw,
     level: int,
@@ -207,9 +207,7 @@ def _attempt(
         change = _correct(response, linear, level, size, node, excess, matrix)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
-        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(
-            linear[APPROACH]
-        ):
+        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(linear[APPROACH]):
             settled = True
             break
     if level < LEVELS - 1:
@@ -244,16 +242,14 @@ def _has_event(
         return True
     for i in range(pairs.shape[0] // NODES):
         place = pitches_0 - pairs[i, PAIR]
-        if 0.0 <= place < law.scalars[layout.CONTACT_RATIO]:
-            if events[int(pairs[i, ROW]), int(place * law.scalars[layout.PER_PITCH])]:
-                return True
+        inside = 0.0 <= place < law.scalars[layout.CONTACT_RATIO]
+        if inside and events[int(pairs[i, ROW]), int(place * law.scalars[layout.PER_PITCH])]:
+            return True
     return False
 
 
-
-
 def work_arrays(columns: int, inputs: int) -> Work:
-    """Return working space for `advance`: values at the nodes, excess forces, equations, what is seen, state, end, inputs.
+    """Return working space for `advance`: node values, excess forces, equations, what is seen, state, end, inputs.
 
     Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
     """
@@ -273,7 +269,7 @@ def advance(
     memory: FloatArray,
     pairs: FloatArray,
     work: Work,
-    apart: IntArray,
+    apart: NDArray[np.bool_],
     trajectory: FloatArray,
 ) -> None:
     """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which ends of steps no pair touches.
@@ -313,6 +309,6 @@ def advance(
             place += length
             while level > 0 and place % (FINEST // SPLIT ** (level - 1)) == 0:
                 level -= 1
-        apart[i] = 1 if memory[CHANNELS, TOUCHING] == 0.0 else 0
+        apart[i] = memory[CHANNELS, TOUCHING] == 0.0
         for j in range(size):
             trajectory[i + 1, j] = state[j]
