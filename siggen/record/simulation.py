@@ -11,6 +11,7 @@ import numpy as np
 
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
+from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, response_of
 from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
@@ -123,8 +124,9 @@ def record_response(
     steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
+        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
         response = response_of(
-            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
+            motion,
             driven.rotation,
             fs_hz=config.fs_hz,
             samples=config.samples,
@@ -132,12 +134,17 @@ def record_response(
             internals=internals,
             bearing_forces=internals or needs_forces(config),
             excitation=driven.excitation,
-            settle_s=settle_s(config),
+            settle_s=_settle_s(config, motion),
             history_s=history_s(config),
         )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
+
+
+def _settle_s(config: Config, motion: Motion) -> float:
+    """Return the least time before the record; a motion that starts near its end needs its history behind it."""
+    return history_s(config) + motion.transient_s if motion.coarse_inputs else settle_s(config)
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
