@@ -16,8 +16,8 @@ from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
 TOPICS = (
-    *("startup", "stiffness", "integration", "record", "sensing", "background", "storage", "loader", "indicators"),
-    *("audit", "workers", "quickstart", "contact", "faults", "house"),
+    *("startup", "stiffness", "integration", "precision", "record", "sensing", "background", "storage", "loader"),
+    *("indicators", "audit", "workers", "quickstart", "contact", "faults", "house"),
 )
 
 

@@ -67,13 +67,21 @@ class Dynamics(Section):
         default="casing",
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
-    integrator: Annotated[Literal["auto", "product", "runge_kutta"], IdentityDefault("product", "auto")] = Field(
+    integrator: Annotated[
+        Literal["auto", "product", "runge_kutta", "exponential"], IdentityDefault("product", "auto")
+    ] = Field(
         default="auto",
         description="product integrates the tabulated stiffness exactly, with the linear mesh law alone; runge_kutta "
-        "is plain, of first order where teeth enter and leave contact; auto: product where it can be",
+        "is plain, of first order where teeth enter and leave contact; exponential propagates the linear part exactly, "
+        "with the law pairs alone; auto: product where it can be, else runge_kutta",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
-        default=4, description="integration steps per sample"
+        default=4, description="integration steps per sample of product and runge_kutta"
+    )
+    integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
+        default=1e-3,
+        description="relative rms error of the delivered acceleration that exponential chooses its steps for, once for "
+        "all states of a gearbox",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"
@@ -103,7 +111,7 @@ class Dynamics(Section):
 
     @property
     def method(self) -> str:
-        """The integrator that `integrator` stands for: product or runge_kutta."""
+        """The integrator that `integrator` stands for: product, runge_kutta or exponential."""
         if self.integrator != "auto":
             return self.integrator
         return "product" if self.mesh.law == "linear" else "runge_kutta"

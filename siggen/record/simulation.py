@@ -11,6 +11,7 @@ import numpy as np
 
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
+from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, response_of
 from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
@@ -29,6 +30,7 @@ from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_error
 from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
+from siggen.specimen.integration import steps_per_sample
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
@@ -119,11 +121,12 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = specimen.dynamics.steps_per_sample
+    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
+        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
         response = response_of(
-            specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven),
+            motion,
             driven.rotation,
             fs_hz=config.fs_hz,
             samples=config.samples,
@@ -131,12 +134,17 @@ def record_response(
             internals=internals,
             bearing_forces=internals or needs_forces(config),
             excitation=driven.excitation,
-            settle_s=settle_s(config),
+            settle_s=_settle_s(config, motion),
             history_s=history_s(config),
         )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
+
+
+def _settle_s(config: Config, motion: Motion) -> float:
+    """Return the least time before the record; a motion that starts near its end needs its history behind it."""
+    return history_s(config) + motion.transient_s if motion.coarse_inputs else settle_s(config)
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:

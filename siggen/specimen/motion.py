@@ -16,6 +16,7 @@ from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.mesh.slice_law import SliceLaw
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.pair_motion import PairMotion
@@ -70,7 +71,8 @@ def specimen_motion(
             input_vectors=vectors,
         )
     rubbing = dynamics.rubbing != "off"
-    return PairMotion(
+    kind = ExponentialMotion if dynamics.method == "exponential" else PairMotion
+    return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
         _law(dynamics, mesh, point),
         torque_nm=point.torque_nm,

@@ -28,6 +28,7 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import record_drive
 from siggen.specimen.instrument import settle_s
+from siggen.specimen.integration import steps_per_sample
 from siggen.specimen.motion import specimen_motion
 
 FORMAT_VERSION = 1
@@ -58,7 +59,7 @@ def exported_model(config: Config, record_id: int) -> Model:
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = specimen.dynamics.steps_per_sample
+    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps))
         angle = start_angle_rad(config, state.pair, record)

@@ -96,7 +96,7 @@ MISTAKES = [
         {"dynamics__mesh__law": "pairs", "dynamics__integrator": "product"},
         "dynamics.integrator",
         "'product'",
-        "auto or runge_kutta (dynamics.mesh.law: pairs)",
+        "auto, runge_kutta or exponential (dynamics.mesh.law: pairs)",
     ),
     (
         {"dynamics__mesh__law": "linear", "dynamics__friction__model": "constant"},

@@ -15,7 +15,7 @@ from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TOUCH, WEIGHT, between
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> None:
     """Write what `contact_spring` needs of slot i at its angle: first touch, beginning and share of its columns."""
     row, cell, weight, points = int(pairs[i, ROW]), int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
@@ -27,7 +27,7 @@ def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: in
     pairs[i, SHARE] = column - whole
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def contact_spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -80,7 +80,7 @@ def contact_spring(
     return max(force, 0.0), max(slope, 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _cubic(
     numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, span: float
 ) -> tuple[float, float, float]:
@@ -98,7 +98,7 @@ def _cubic(
     return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) / span
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def contact_moment(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
@@ -116,7 +116,7 @@ def contact_moment(
     return moment + turning * tilt, slope + turning_slope * tilt, turning
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def contact_shares(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:

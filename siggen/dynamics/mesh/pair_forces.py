@@ -40,8 +40,8 @@ from siggen.dynamics.mesh.pair_places import find_flanks, pair_table, place_pair
 from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
 
 
-@njit(cache=True, inline="always")
-def _film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
+@njit(cache=True, _nrt=False, inline="always")
+def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
     """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
     place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
     if rate_m_s <= 0.0 or place < 0.0 or place > scalars[layout.CONTACT_RATIO]:
@@ -53,29 +53,43 @@ def _film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: 
     return force_n
 
 
-@njit(cache=True, inline="always")
-def _lubricate(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
-) -> None:
-    """Write asperity share and friction coefficient of slot i at a force; rough lands count by their share."""
+@njit(cache=True, _nrt=False, inline="always")
+def lubricated(
+    scalars: FloatArray,
+    numbers: FloatArray,
+    index: IntArray,
+    position_m: float,
+    load_n: float,
+    rough: float,
+) -> tuple[float, float]:
+    """Return asperity share and friction coefficient at a force per carrying share; rough lands count by theirs."""
     loads, positions = index[layout.LUBRICATED_LOADS], index[layout.LUBRICATED_POSITIONS]
     along, up, a, b = contact_cell(
         positions, loads, scalars[layout.LUBRICATED_LINE], scalars[layout.LUBRICATED_START],
         scalars[layout.LUBRICATED_PER_M], scalars[layout.LUBRICATED_FLOOR], scalars[layout.LUBRICATED_PER_LOG],
-        pairs[i, POSITION], force_n / pairs[i, CARRYING],
+        position_m, load_n,
     )  # fmt: skip
     corner = along * loads + up
     share = min(cell_value(numbers, index[layout.RATIO_AT] + corner, loads, a, b), 1.0)
-    rough = pairs[i, ROUGH]
     if rough > 0.0 and index[layout.ROUGHNESSES] > 1:
         raised = cell_value(numbers, index[layout.RATIO_AT] + positions * loads + corner, loads, a, b)
         share = share * (1.0 - rough) + min(raised, 1.0) * rough
     fluid = cell_value(numbers, index[layout.FLUID_AT] + corner, loads, a, b)
-    pairs[i, ASPERITY_SHARE] = share
-    pairs[i, COEFFICIENT] = friction_mixed(share, scalars[layout.BOUNDARY], fluid)
+    return share, friction_mixed(share, scalars[layout.BOUNDARY], fluid)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
+def _lubricate(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
+) -> None:
+    """Write asperity share and friction coefficient of slot i at a force."""
+    load = force_n / pairs[i, CARRYING]
+    pairs[i, ASPERITY_SHARE], pairs[i, COEFFICIENT] = lubricated(
+        scalars, numbers, index, pairs[i, POSITION], load, pairs[i, ROUGH]
+    )
+
+
+@njit(cache=True, _nrt=False, inline="always")
 def _load(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -111,8 +125,8 @@ def _load(
             pairs[i, FRICTION] = pairs[i, COEFFICIENT] * force * tanh(pairs[i, SLIDING] / scalars[layout.SLIP_SPEED])
 
 
-@njit(cache=True, inline="always")
-def _spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
+@njit(cache=True, _nrt=False, inline="always")
+def write_spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
     """Write share on damage, and moment where gears tilt, of a slot; return the carrying share of its face."""
     carrying, pairs[i, ROUGH] = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
     if index[layout.CONTACT_VALUES] > 4:
@@ -122,7 +136,7 @@ def _spread(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: Fl
     return carrying
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def write_forces(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -159,7 +173,7 @@ def write_forces(
             continue
         pairs[i, FLANK] = 1.0 if elastic > 0.0 else -1.0
         if elastic > 0.0 and index[layout.CONTACT_NODES] > 0:
-            carrying = _spread(scalars, numbers, index, pairs, i)
+            carrying = write_spread(scalars, numbers, index, pairs, i)
         pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, CARRYING] = elastic, tangent, carrying
         touching += tangent
     damping = 1.0 / np.sqrt(touching) if touching > 0.0 else 0.0
@@ -170,10 +184,10 @@ def write_forces(
             _load(scalars, numbers, index, pairs, i, elastic, damping, rate_m_s)
         elif scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
             gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
-            pairs[i, NORMAL] = _film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
+            pairs[i, NORMAL] = film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def pair_forces(
     law: PairLaw,
     approach_m: float,
@@ -189,7 +203,7 @@ def pair_forces(
     )
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray) -> float:
     """Return ΣN [N] at rest."""
     pair_forces(law, approach_m, 0.0, pitches, 0.0, 0.0, pairs)

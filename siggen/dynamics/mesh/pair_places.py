@@ -1,7 +1,8 @@
 """Where the tooth pairs in reach are at an angle, compiled: the table of pairs and all of it that no state changes.
 
 Derived: pair n of the global count is pitches - n base pitches behind its entry. Integrators ask for several states at
-one angle, so what belongs to an angle stays in the table until another one is asked for.
+one angle, so what belongs to an angle stays in the table until another one is asked for, and what belongs to a pair
+until another one takes its slot.
 """
 
 from __future__ import annotations
@@ -18,28 +19,34 @@ from siggen.dynamics.mesh.pair_columns import (
     COUPLED,
     FLANK,
     GAP,
+    MISSED_1_AT,
+    MISSED_2_AT,
     MOST_APART,
     OFFSET,
+    PAIR,
     PENETRATION,
     PLACED,
     POSITION,
     ROUGH,
     ROW,
+    STIFF_AT,
     WEIGHT,
     WHOLE,
     between,
+    solution_columns,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 
 
 def pair_table(law: PairLaw) -> FloatArray:
-    """Return a table (slots, COLUMNS) for `pair_forces`, in which no angle is kept yet."""
-    pairs = np.zeros((law.slots, COLUMNS))
+    """Return a table (slots, COLUMNS and space for a solution) for `pair_forces`, in which no angle is kept yet."""
+    pairs = np.zeros((law.slots, COLUMNS + solution_columns(law.slots)))
     pairs[0, PLACED] = np.nan
+    pairs[:, PAIR] = -np.inf
     return pairs
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _cell(place: float, points: int) -> tuple[int, float]:
     """Return the cell and the weight of its upper end, `place` intervals from the first point, kept at the ends."""
     place = min(max(place, 0.0), points - 1.0)
@@ -47,44 +54,59 @@ def _cell(place: float, points: int) -> tuple[int, float]:
     return cell, place - cell
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
     """Write what depends on the angle alone."""
     slots = pairs.shape[0]
     for i in range(slots):
         pairs[i, WHOLE] = 0.0
     pairs[0, PLACED] = pitches
-    points = index[layout.POINTS]
     pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
     while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
-        place = pitches - pair
-        i, tooth_1, tooth_2 = pair % slots, pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
-        row = index[index[layout.TABLE_AT] + tooth_1 * index[layout.TEETH_2] + tooth_2]
-        cell, weight = _cell(place * scalars[layout.PER_PITCH], points)
-        pairs[i, WHOLE] = between(numbers, index[layout.STIFFNESS_AT] + row * points, cell, weight)
-        pairs[i, ROW], pairs[i, CELL], pairs[i, WEIGHT] = row, cell, weight
-        pairs[i, POSITION] = scalars[layout.START_M] + place * scalars[layout.PITCH_M]
-        pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
-        count = index[layout.MISSING_POINTS]
-        along, share = _cell((place + scalars[layout.REACH_BEFORE]) * scalars[layout.MISSING_PER_PITCH], count)
-        first = between(
-            numbers, index[layout.MISSING_1_AT] + index[index[layout.KIND_1_AT] + tooth_1] * count, along, share
-        )
-        first += between(
-            numbers, index[layout.MISSING_2_AT] + index[index[layout.KIND_2_AT] + tooth_2] * count, along, share
-        )
-        pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[layout.LEAD_M]
-        pairs[i, ROUGH] = 0.0
-        if index[layout.GROUPS] > 0:
-            pairs[i, ROUGH] = between(numbers, index[layout.ON_DAMAGE_AT] + row * points, cell, weight)
-        if index[layout.CONTACT_NODES] > 0:
-            place_contact(numbers, index, pairs, i)
-        for a in range(min(index[layout.APART], MOST_APART)):
-            pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
+        i = pair % slots
+        if pairs[i, PAIR] != pair:
+            engage_pair(numbers, index, pairs, i, pair)
+        place_pair(scalars, numbers, index, pairs, i, pitches - pair)
         pair -= 1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
+def place_pair(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, place: float
+) -> None:
+    """Write what depends on the angle alone into row i of an engaged pair, `place` pitches behind its entry."""
+    points, count = index[layout.POINTS], index[layout.MISSING_POINTS]
+    cell, weight = _cell(place * scalars[layout.PER_PITCH], points)
+    pairs[i, WHOLE] = between(numbers, int(pairs[i, STIFF_AT]), cell, weight)
+    pairs[i, CELL], pairs[i, WEIGHT] = cell, weight
+    pairs[i, POSITION] = scalars[layout.START_M] + place * scalars[layout.PITCH_M]
+    along, share = _cell((place + scalars[layout.REACH_BEFORE]) * scalars[layout.MISSING_PER_PITCH], count)
+    first = between(numbers, int(pairs[i, MISSED_1_AT]), along, share)
+    first += between(numbers, int(pairs[i, MISSED_2_AT]), along, share)
+    pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[layout.LEAD_M]
+    pairs[i, ROUGH] = 0.0
+    if index[layout.GROUPS] > 0:
+        pairs[i, ROUGH] = between(numbers, index[layout.ON_DAMAGE_AT] + int(pairs[i, ROW]) * points, cell, weight)
+    if index[layout.CONTACT_NODES] > 0:
+        place_contact(numbers, index, pairs, i)
+    for a in range(min(index[layout.APART], MOST_APART)):
+        pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
+
+
+@njit(cache=True, _nrt=False)
+def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pair: int) -> None:
+    """Write what stays during the engagement of a pair: its row, where its tables begin, the place of its teeth."""
+    tooth_1, tooth_2 = pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
+    row = index[index[layout.TABLE_AT] + tooth_1 * index[layout.TEETH_2] + tooth_2]
+    count = index[layout.MISSING_POINTS]
+    pairs[i, PAIR], pairs[i, ROW] = pair, row
+    pairs[i, STIFF_AT] = index[layout.STIFFNESS_AT] + row * index[layout.POINTS]
+    pairs[i, MISSED_1_AT] = index[layout.MISSING_1_AT] + index[index[layout.KIND_1_AT] + tooth_1] * count
+    pairs[i, MISSED_2_AT] = index[layout.MISSING_2_AT] + index[index[layout.KIND_2_AT] + tooth_2] * count
+    pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
+
+
+@njit(cache=True, _nrt=False, inline="always")
 def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
     """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
     for i in range(pairs.shape[0]):

@@ -15,6 +15,7 @@ from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import contact_spring
 from siggen.dynamics.mesh.pair_columns import (
     CELL,
+    COLUMNS,
     COUPLED,
     FLANK,
     MOST_APART,
@@ -37,7 +38,7 @@ MOST_STEPS = 50
 """Beyond half of these, pairs are solved one at a time; Newton's method was never seen to need more than 5."""
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
@@ -62,7 +63,7 @@ def _spring(
     return whole * penetration_m, whole, 1.0
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
     """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
     if index[layout.CONTACT_NODES] > 0:
@@ -80,7 +81,7 @@ def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) 
     return sink
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def spring_of_flank(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
@@ -92,8 +93,8 @@ def spring_of_flank(
     return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE], 1.0
 
 
-@njit(cache=True)
-def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
+@njit(cache=True, _nrt=False)
+def coupling_of(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
     """Return c of two slots [m/N]."""
     away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[layout.PITCH_M]))
     if away == 0 or abs(away) > apart:
@@ -103,7 +104,7 @@ def _coupling(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int
     return coupling
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def _solve(work: FloatArray) -> None:
     """Write the solution of the system in the first columns into column RIGHT; dominant diagonal, without pivoting."""
     n = work.shape[0]
@@ -119,13 +120,16 @@ def _solve(work: FloatArray) -> None:
         work[k, RIGHT] /= work[k, MATRIX + k]
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=False)
 def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray) -> None:
     """Replace the penetration of every pair by itself with that under the forces of the others."""
     slots, apart = pairs.shape[0], min(index[layout.APART], MOST_APART)
     coupling = MATRIX + slots
     smooth = index[layout.CONTACT_NODES] > 0
-    work = np.zeros((slots, coupling + slots))  # one array: each costs as much as half a solution
+    work = pairs[:, COLUMNS:]  # of the table itself: code that allocates nothing need not count references
+    for i in range(slots):
+        for column in range(coupling + slots):
+            work[i, column] = 0.0
     _prepare(scalars, pairs, work, apart, smooth)
     for step in range(MOST_STEPS):
         settled = True
@@ -148,7 +152,7 @@ def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pai
             return
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: int, smooth: bool) -> None:
     """Write penetrations by themselves, first guesses and couplings."""
     slots = pairs.shape[0]
@@ -160,10 +164,10 @@ def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: in
             work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
         for j in range(slots):
             if i != j and pairs[j, WHOLE] > 0.0:
-                work[i, MATRIX + slots + j] = _coupling(scalars, pairs, apart, i, j)
+                work[i, MATRIX + slots + j] = coupling_of(scalars, pairs, apart, i, j)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _newton_step(work: FloatArray, coupling: int) -> float:
     """Add Newton's step to the forces; return the largest step over the largest force."""
     slots = work.shape[0]
@@ -179,7 +183,7 @@ def _newton_step(work: FloatArray, coupling: int) -> float:
     return change / force
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, _nrt=False, inline="always")
 def _under_others(work: FloatArray, coupling: int, i: int) -> float:
     """Return the penetration of a slot under the forces of the others [m]."""
     left: float = work[i, ALONE]

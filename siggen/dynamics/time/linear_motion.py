@@ -77,6 +77,8 @@ class LinearMotion:
 
     internal_names: tuple[str, ...] = ("mesh_force_n", "mesh_stiffness_n_per_m", "approach_m", "approach_rate_m_s")
 
+    coarse_inputs = False
+
     def __init__(
         self,
         structure: Structure,

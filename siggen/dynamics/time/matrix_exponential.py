@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import ceil, log2
 
 import numpy as np
+from numba import njit
 
 from siggen.arrays import FloatArray
 
@@ -39,6 +40,12 @@ def matrix_exponential(matrix: FloatArray) -> FloatArray:
     return result
 
 
+@njit(cache=True)
 def _product(left: FloatArray, right: FloatArray) -> FloatArray:
-    result: FloatArray = (left[:, :, np.newaxis] * right[np.newaxis, :, :]).sum(axis=1)
+    result = np.zeros((left.shape[0], right.shape[1]))
+    for i in range(left.shape[0]):
+        for j in range(left.shape[1]):
+            factor = left[i, j]
+            for k in range(right.shape[1]):
+                result[i, k] += factor * right[j, k]
     return result

@@ -56,8 +56,12 @@ def _orthonormal(vectors: FloatArray, mass: FloatArray) -> FloatArray:
     return np.linalg.solve(root.T, np.linalg.qr(root.T @ vectors)[0])
 
 
-def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
+def slowest_decay_per_s(
+    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float, above_hz: float = 0.0
+) -> float:
     """Return the smallest decay rate [1/s] of the modes that the mesh excites and a bearing shows; 0 if undamped.
+
+    Modes below `above_hz` do not count.
 
     The residue of mode i in the displacement at a bearing, c · r_i l_i · B, tells whether it takes part.
     """
@@ -75,7 +79,7 @@ def slowest_decay_per_s(structure: Structure, equations: Equations, mesh_damping
     # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
     participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
     residue = np.abs(motions @ right[:m]).max(axis=0) * np.abs(participation)
-    excited = residue > EXCITED_SHARE * residue.max()
+    excited = (residue > EXCITED_SHARE * residue.max()) & (np.abs(values) >= 2.0 * np.pi * above_hz)
     return float(max(0.0, (-values.real[excited]).min()))
 
 

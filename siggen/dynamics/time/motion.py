@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from siggen.arrays import FloatArray
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import Equations
 
 
 class Motion(Protocol):
-    """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,)."""
+    """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,).
+
+    `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets keep every bit without.
+    """
 
     structure: Structure
     equations: Equations
@@ -19,6 +25,7 @@ class Motion(Protocol):
     base_pitch_m: float
     largest_approach_m: float
     internal_names: tuple[str, ...]
+    coarse_inputs: bool
 
     @property
     def law(self) -> NamedTuple:
@@ -27,8 +34,11 @@ class Motion(Protocol):
     def start(self, pitches: float) -> FloatArray:
         """Return the state at the start, at a pinion angle in base pitches."""
 
-    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
-        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m).
+
+        Returns (steps,) whether no teeth touch at the end of each step, if that is known; else `steps_apart` tells it.
+        """
 
     def refuse_outside(self, states: FloatArray) -> None:
         """Raise ValueError if a state (k, 2n) lies outside what the mesh law was made for."""

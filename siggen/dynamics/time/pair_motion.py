@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, MOMENT, NORMAL, POSITION, TILT, TILT_RATE
@@ -56,6 +57,8 @@ class PairMotion:
     `input_vectors` (m, n) are those of `equations_about`; `speed_input` is the number of the input that is Ω/Ω_0 - 1,
     or -1 where the speed is constant.
     """
+
+    coarse_inputs = False
 
     def __init__(
         self,
@@ -107,10 +110,11 @@ class PairMotion:
         deviation = static_solution(self.structure, loaded, moved)
         return np.concatenate([deviation, np.zeros_like(deviation)])
 
-    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> None:
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
         column = self._speed_input
         _advance(self.pair_equations, self.law, self._pairs, self._step_s, column, pitches, inputs, trajectory)
+        return None
 
     def rate(self, state: FloatArray, pitches: float) -> FloatArray:
         """Return ż (2n,) of a state, for other solvers."""

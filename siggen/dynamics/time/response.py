@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation
+from siggen.dynamics.drive.sampled_excitation import SampledExcitation
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import Decimator, half_length, second_difference_taps, value_taps
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
@@ -68,7 +70,7 @@ class _Run:
     drive: Rotation
     fs_hz: float
     steps_per_sample: int
-    excitation: Excitation | None = None
+    excitation: Excitation | SampledExcitation | None = None
 
     @property
     def limit_m(self) -> float:
@@ -162,10 +164,15 @@ def response_of(
         If rate or counts are not positive.
     """
     check_grid(fs_hz, samples, steps_per_sample)
-    run = _Run(motion, drive, fs_hz, steps_per_sample, excitation)
+    settle = settling_steps(motion.transient_s, settle_s, fs_hz * steps_per_sample)
+    history = min(round(history_s * fs_hz), settle // steps_per_sample)
+    acting: Excitation | SampledExcitation | None = excitation
+    if excitation is not None and motion.coarse_inputs:
+        half, rate_hz = half_length(steps_per_sample), fs_hz * steps_per_sample
+        ends_s = -(settle + half) / rate_hz, (samples * steps_per_sample + half) / rate_hz
+        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz)
+    run = _Run(motion, drive, fs_hz, steps_per_sample, acting)
     try:
-        settle = settling_steps(motion.transient_s, settle_s, fs_hz * steps_per_sample)
-        history = min(round(history_s * fs_hz), settle // steps_per_sample)
         return _simulate(run, samples, internals, bearing_forces, settle, history)
     except SolverFailure as failure:
         return _failed(run, failure)
@@ -198,19 +205,30 @@ def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, se
     decimators += [_force_decimator(run, history + samples)] if bearing_forces else []
     inner: list[FloatArray] = []
     lost = 0
-    for first, states in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
+    for first, states, apart in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
         for decimator in decimators:
             decimator.take(states)
         recorded = slice(max(0, -first), max(0, samples * steps - first))
         run.motion.refuse_outside(states[recorded])
-        lost += run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
+        lost += _steps_apart(run, first, states, apart, recorded)
         if internals and first + len(states) > 0:  # nothing of the history
             inner.append(_inner_values(run, first, states, samples))
     return _finished(run, [d.values for d in decimators], inner, lost / (samples * steps), history)
 
 
-def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tuple[int, FloatArray]]:
-    """Yield (first step, states (steps, 2n)) from step `start` up to but without `stop`; leave `state` at `stop`.
+def _steps_apart(run: _Run, first: int, states: FloatArray, apart: NDArray[np.bool_] | None, recorded: slice) -> int:
+    """Return at how many of the recorded steps of a block no teeth touch."""
+    if apart is None:
+        return run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
+    return int(apart[recorded].sum())
+
+
+def _blocks(
+    run: _Run, state: FloatArray, start: int, stop: int
+) -> Iterator[tuple[int, FloatArray, NDArray[np.bool_] | None]]:
+    """Yield first step, states (steps, 2n) and where teeth are apart, if known, from step `start` up to without `stop`.
+
+    Leaves `state` at `stop`.
 
     Raises
     ------
@@ -223,12 +241,12 @@ def _blocks(run: _Run, state: FloatArray, start: int, stop: int) -> Iterator[tup
         count = min(block, stop - first)
         trajectory[0] = state
         pitches = run.pitches(first, count + 1)
-        run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
+        apart = run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
         beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
-        yield first, trajectory[:count]
+        yield first, trajectory[:count], apart
 
 
 def _divergence(run: _Run, step: int, state: FloatArray) -> SolverFailure:

@@ -15,9 +15,14 @@ TRANSIENT_CAP_S = 5.0
 """Longest transient that is computed; reached by modes that decay slower than 1/s, undamped ones included."""
 
 
-def transient_s(structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float) -> float:
-    """Return the time [s] that is simulated and discarded before sample 0."""
-    decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m)
+def transient_s(
+    structure: Structure, equations: Equations, mesh_damping_n_s_per_m: float, above_hz: float = 0.0
+) -> float:
+    """Return the time [s] that is simulated and discarded before sample 0.
+
+    Modes below `above_hz` do not count: those that start where they end.
+    """
+    decay = slowest_decay_per_s(structure, equations, mesh_damping_n_s_per_m, above_hz)
     return min(TRANSIENT_CAP_S, DECAY_TIMES / decay) if decay > 0.0 else TRANSIENT_CAP_S
 
 

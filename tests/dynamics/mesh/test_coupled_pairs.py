@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from siggen.dynamics.mesh.pair_columns import NORMAL, WHOLE
+from siggen.dynamics.mesh.pair_columns import COLUMNS, NORMAL, WHOLE
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
@@ -127,7 +127,7 @@ def test_a_coupling_of_zeros_is_none_to_the_bit(approach: float, rate: float, pi
             chosen = law(coupling, slices)
             pairs = pair_table(chosen)
             pair_forces(chosen, approach, rate, pitches, 0.1, -3.0, pairs)
-            results.append(pairs)
+            results.append(pairs[:, :COLUMNS])
         np.testing.assert_array_equal(*results)
 
 

@@ -1,0 +1,108 @@
+"""ExponentialMotion: a pair motion whose linear part is propagated exactly (`exponential_scheme`)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.event_places import event_places
+from siggen.dynamics.mesh.pair_columns import FRICTION, POSITION
+from siggen.dynamics.mesh.pair_internals import PairContact
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.structure.free_rotation import static_solution
+from siggen.dynamics.structure.load_lock import LOCK_HZ
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.exponential_scheme import NODES, exponential_scheme
+from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, advance, fresh_memory, work_arrays
+from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.transient import transient_s
+
+EVENT_SHARE = 1e-2
+"""Of the static force: how large the cubic part of the force over a step may be."""
+MEAN_ANGLES = 24
+GOLDEN = 0.6180339887498949
+"""Angles spread over all teeth and the path of contact."""
+
+
+class ExponentialMotion(PairMotion):
+    """Steps with the exponential integrator; arguments as `PairMotion`.
+
+    It remembers the end of the last step, so steps follow one another: blocks of a run give what one block gives.
+    """
+
+    coarse_inputs = True
+
+    def __init__(
+        self,
+        structure: Structure,
+        law: PairLaw,
+        *,
+        torque_nm: float,
+        speed_hz: float,
+        reference_stiffness_n_per_m: float,
+        step_s: float,
+        contact: PairContact | None = None,
+        input_vectors: FloatArray | None = None,
+        speed_input: int = -1,
+    ) -> None:
+        super().__init__(
+            structure, law, torque_nm=torque_nm, speed_hz=speed_hz, step_s=step_s, contact=contact,
+            reference_stiffness_n_per_m=reference_stiffness_n_per_m, input_vectors=input_vectors,
+            speed_input=speed_input,
+        )  # fmt: skip
+        damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
+        rigid = (self.pair_equations.rigid_sliding_0, self.pair_equations.rigid_sliding_1)
+        self.scheme = exponential_scheme(structure, self.equations, damping, rigid, step_s)
+        self._tolerance_n = EVENT_SHARE * abs(self.equations.static_force)
+        self._events = event_places(
+            law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * step_s
+        )
+        self._rest = np.zeros(structure.mass.shape[0])
+        if law.places[layout.ROUGHNESSES] > 0:
+            self._rest = self._rubbed()
+            self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
+        self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
+        self._work = work_arrays(self.scheme.transition.shape[2], self.scheme.input_response.shape[2])
+
+    def start(self, pitches: float) -> FloatArray:
+        """Return the state (2n,) at rest in which the pairs carry the torque, moved by their mean friction.
+
+        A load that is held softly turns by it, for which it would need a second. Forgets earlier steps.
+        """
+        self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(self.law)] * NODES)
+        state = super().start(pitches)
+        state[: self._rest.size] += self._rest
+        return state
+
+    def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_]:
+        """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m).
+
+        Returns
+        -------
+        (steps,) whether no pair touched at the end of each step
+        """
+        apart = np.empty(pitches.size - 1, dtype=np.bool_)
+        advance(
+            self.scheme, self.law, self._speed_input, self._tolerance_n, self._events, pitches, inputs, self._memory,
+            self._tables, self._work, apart, trajectory,
+        )  # fmt: skip
+        return apart
+
+    @property
+    def steps_tried(self) -> int:
+        """How many steps of any length were tried since the start."""
+        return int(self._memory[CHANNELS, ATTEMPTS])
+
+    def _rubbed(self) -> FloatArray:
+        """Return the deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed."""
+        angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
+        pairs = self.pairs(np.stack([super(ExponentialMotion, self).start(angle) for angle in angles]), angles)
+        friction, structure = pairs[:, :, FRICTION], self.structure
+        r_0, r_1 = structure.sliding_vectors
+        push = -r_0 * friction.sum() - r_1 * (pairs[:, :, POSITION] * friction).sum()
+        p, stiffness = structure.mesh_vector, self.equations.reference_stiffness
+        loaded = structure.stiffness + stiffness * p[:, None] * p[None, :]
+        return static_solution(structure, loaded, push / MEAN_ANGLES)

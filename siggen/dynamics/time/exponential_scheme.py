@@ -1,0 +1,189 @@
+"""Constants of the exponential integrator: exact propagation of the linear part and of forces given at Gauss nodes.
+
+Derived: ż = A z + Σ_c b_c e_c(t) + Σ_k v_k u_k(t) with the mesh's mean stiffness and damper in A. Over a step of length
+h every e_c is the cubic through its values at the four Gauss-Legendre nodes τ_q, so that for any τ in [0, 1]
+
+    z(τ h) = e^{A τ h} z_0 + Σ_c Σ_q W_cq(τ) e_c(τ_q) + R_0(τ) u_0 + R_1(τ) u_1,
+    W_cq(τ) = ∫ e^{A (τ h - s)} b_c L_q(s/h) ds over [0, τ h],
+
+with L_q the Lagrange polynomials of the nodes; inputs are linear. It is asked for at the end, and at the nodes for what
+the mesh sees there: approach and its rate, both parts of the sliding speed, and where gears tilt, tilt and its rate
+(collocation). All of it comes from exponentials of augmented matrices, without an inverse of A.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
+from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
+from siggen.dynamics.time.matrix_exponential import matrix_exponential
+
+NODES = 4
+LEVELS = 3
+SPLIT = 4
+"""A step with an event becomes this many, and each of them again this many, up to LEVELS lengths in all."""
+
+
+class Scheme(NamedTuple):
+    """Constants of the method (a named tuple, since compiled code takes no dataclass).
+
+    First axis of the first four: lengths of a step, h, h/4, h/16. The columns are the 2n numbers of the state at the
+    end, then NODES values each of what the mesh sees at the nodes, and zeros up to a multiple of four.
+    """
+
+    steps_s: FloatArray  # (LEVELS,)
+    transition: FloatArray  # (LEVELS, 2n, columns)
+    response: FloatArray  # (LEVELS, channels, NODES, columns) to ΣN, ΣF, Σ s F, and where gears tilt Σμ, Σ ζ F
+    input_response: FloatArray  # (LEVELS, 2, m, columns)
+    nodes: FloatArray  # (NODES,) τ_q on [0, 1]
+    weights: FloatArray  # (NODES,)
+    legendre: FloatArray  # (NODES, NODES) (2l + 1) w_q P_l(τ_q): values at the nodes to Legendre coefficients
+    extrapolation: (
+        FloatArray  # (LEVELS, LEVELS, NODES, NODES) of the values at the nodes of the step before, to those of this
+    )
+    linear: FloatArray  # (7,) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
+
+
+def exponential_scheme(
+    structure: Structure,
+    equations: Equations,
+    damping_n_s_per_m: float,
+    rigid_sliding: tuple[float, float],
+    step_s: float,
+) -> Scheme:
+    """Return the constants for steps of `step_s` [s] with the mesh damper [N s/m] in the linear part.
+
+    Parameters
+    ----------
+    structure, equations
+    damping_n_s_per_m : float
+    rigid_sliding : (v_0, v_1)
+        Sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s].
+    step_s : float
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = 0.5 * (nodes + 1.0), 0.5 * weights
+    steps = np.asarray(step_s * float(SPLIT) ** -np.arange(LEVELS))
+    matrix = state_matrix(equations, equations.reference_stiffness, damping_n_s_per_m)
+    forces, observed = _forces(structure), _observed(structure)
+    keys = tuple(_key(array) for array in (matrix, forces, equations.external_input, observed))
+    transition, response, inputs = _all_levels(keys, step_s)
+    tilt = structure.tilt_vector
+    static_tilt = 0.0 if tilt is None else float((tilt * equations.static_deflection).sum())
+    static = (equations.static_force, equations.static_approach, static_tilt)
+    return Scheme(
+        steps_s=steps,
+        transition=transition,
+        response=response,
+        input_response=inputs,
+        nodes=nodes,
+        weights=weights,
+        legendre=np.array([_legendre(nodes, degree) * weights * (2.0 * degree + 1.0) for degree in range(NODES)]),
+        extrapolation=_extrapolation(nodes, weights, steps),
+        linear=np.array([equations.reference_stiffness, damping_n_s_per_m, *static, *rigid_sliding]),
+    )
+
+
+def _key(array: FloatArray) -> tuple[tuple[int, ...], bytes]:
+    return array.shape, np.ascontiguousarray(array).tobytes()
+
+
+@lru_cache(maxsize=4)
+def _all_levels(keys: tuple[tuple[tuple[int, ...], bytes], ...], step_s: float) -> tuple[FloatArray, ...]:
+    """Return transition, response and input response of all lengths; kept, since states of a gearbox share them."""
+    matrix, forces, inputs, observed = (np.frombuffer(data).reshape(shape) for shape, data in keys)
+    nodes = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+    steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
+    parts = [_propagated(matrix, forces, inputs, float(step), nodes, observed) for step in steps]
+    return tuple(np.ascontiguousarray([part[k] for part in parts]) for k in range(3))
+
+
+def _forces(structure: Structure) -> FloatArray:
+    """Return the accelerations (channels, n) by a unit of every channel."""
+    vectors = [structure.mesh_vector, *structure.sliding_vectors]
+    if structure.tilt_vector is not None:
+        vectors += [structure.tilt_vector, friction_tilt_vector(structure)]
+    return -inverse_times(structure.mass, np.array(vectors).T).T
+
+
+def _observed(structure: Structure) -> FloatArray:
+    """Return what the mesh sees of a state, (2n, 4), or (2n, 6) where gears tilt."""
+    still = np.zeros_like(structure.mesh_vector)
+    rows = [(structure.mesh_vector, still), (still, structure.mesh_vector)]
+    rows += [(still, sliding) for sliding in structure.sliding_vectors]
+    if structure.tilt_vector is not None:
+        rows += [(structure.tilt_vector, still), (still, structure.tilt_vector)]
+    return np.array([np.concatenate(row) for row in rows]).T
+
+
+def _propagated(
+    matrix: FloatArray, forces: FloatArray, inputs: FloatArray, step_s: float, nodes: FloatArray, observed: FloatArray
+) -> tuple[FloatArray, ...]:
+    """Return transition (2n, columns), response (channels, NODES, columns) and input response (2, m, columns)."""
+    at_end = _exponentials(matrix, forces, inputs, step_s, 1.0, nodes)
+    at_nodes = [_exponentials(matrix, forces, inputs, step_s, float(t), nodes) for t in nodes]
+    columns = []
+    for k, end in enumerate(at_end):
+        seen = np.stack([(part[k][..., None] * observed).sum(axis=-2) for part in at_nodes], axis=-1)
+        joined = np.concatenate([end, seen.reshape(*end.shape[:-1], observed.shape[1] * NODES)], axis=-1)
+        spare = -joined.shape[-1] % 4
+        columns.append(np.concatenate([joined, np.zeros((*joined.shape[:-1], spare))], axis=-1))
+    return tuple(columns)
+
+
+def _exponentials(
+    matrix: FloatArray, forces: FloatArray, inputs: FloatArray, step_s: float, share: float, nodes: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return e^{A τ h} transposed (2n, 2n), W(τ) (channels, NODES, 2n) and R(τ) (2, m, 2n) at τ = `share`.
+
+    One exponential of [[A, B, 0..], [0, shift]] τ h gives the responses to (s/(τ h))^j of every force along B;
+    velocities are scaled by τ h, which brings all entries to the same size.
+    """
+    n, channels, count, time = forces.shape[1], len(forces), len(inputs), step_s * share
+    scale = np.concatenate([np.ones(n), np.full(n, time)])
+    linear = time * matrix * scale[:, None] / scale[None, :]
+    transition, powers = _powers(linear, time**2 * forces.T, NODES)
+    monomials = np.linalg.inv(np.vander(nodes, NODES, increasing=True))  # [j, q]: τ^j in L_q
+    monomials = monomials * (share ** np.arange(NODES))[:, None]
+    powers = powers.reshape(2 * n, NODES, channels) / scale[:, None, None]
+    response = (powers[:, :, :, None] * monomials[:, None, :]).sum(axis=1).transpose(1, 2, 0)
+    _, rising = _powers(linear, time**2 * inputs.T, 2)
+    rising = rising.reshape(2 * n, 2, count) / scale[:, None, None]
+    driven = np.stack([(rising[:, 0] - share * rising[:, 1]).T, share * rising[:, 1].T])
+    return (transition / scale[:, None] * scale[None, :]).T, response, driven
+
+
+def _powers(linear: FloatArray, forces: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return e^L and the responses (2n, count x c) to τ^0 .. τ^(count-1) of forces (n, c) on the velocities."""
+    (n, c), size = forces.shape, len(linear)
+    augmented = np.zeros((size + count * c, size + count * c))
+    augmented[:size, :size] = linear
+    augmented[n:size, size : size + c] = forces
+    for j in range(count - 1):
+        rows, columns = size + j * c, size + (j + 1) * c
+        augmented[rows : rows + c, columns : columns + c] = np.eye(c)
+    exponential = matrix_exponential(augmented)
+    factorials = np.cumprod([1.0, *range(1, count)])
+    return exponential[:size, :size], exponential[:size, size:] * np.repeat(factorials, c)
+
+
+def _legendre(t: FloatArray, degree: int) -> FloatArray:
+    """Return the shifted Legendre polynomial P_degree at t on [0, 1]."""
+    return np.asarray(np.polynomial.legendre.legval(2.0 * t - 1.0, np.eye(NODES)[degree]))
+
+
+def _extrapolation(nodes: FloatArray, weights: FloatArray, steps: FloatArray) -> FloatArray:
+    """Return what continues the parabola through the values at the nodes of a step to those of the next one."""
+    result = np.zeros((LEVELS, LEVELS, NODES, NODES))
+    for before, last in enumerate(steps):
+        for now, step in enumerate(steps):
+            ahead = 1.0 + nodes * step / last
+            for degree in range(3 if step <= last else 1):  # a longer step after short ones: their mean
+                part = _legendre(nodes, degree) * weights * (2.0 * degree + 1.0)
+                result[before, now] += part[:, None] * _legendre(ahead, degree)[None, :]
+    return result

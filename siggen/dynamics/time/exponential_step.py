@@ -1,0 +1,314 @@
+"""Steps of the exponential integrator, compiled. Constants and derivation: `exponential_scheme`.
+
+The forces of the mesh at the nodes of a step decide what the mesh sees there, and that decides the forces: with the
+tangents of the pair law (`node_forces`) four linear equations for the excess forces at the nodes, Newton's method. From
+a good guess, the parabola through the forces of the step before, a single step of it is enough where nothing happens.
+Friction and moments follow in proportion, or with the next step.
+
+A step is taken again as SPLIT shorter ones where its force is no smooth function of time: a flank touches or parts, the
+cubic part of the force is larger than allowed, or Newton's method does not end. It is short from the start where a
+pair passes its pitch point, at which friction turns, or an edge of damage (`event_places`). So steps are shortened by
+what happens and never by a label.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.node_forces import (
+    NODE_APPROACH,
+    NODE_FRICTION,
+    NODE_NORMAL,
+    NODE_RATE,
+    NODE_ROWS,
+    NODE_SLIDING_0,
+    NODE_SLIDING_1,
+    NODE_SLOPE,
+    NODE_SLOPE_RATE,
+    NODE_TILT,
+    write_node_forces,
+)
+from siggen.dynamics.mesh.pair_columns import PAIR, ROW
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
+
+MOST_ITERATIONS = 6
+SMOOTH_CHANGE = 0.02
+"""Of the static approach: a correction whose square, times the curvature of the law, is below 1e-5 of the force."""
+KINKED_CHANGE = 1e-4
+"""The same where a flank touches or parts within the step."""
+FINEST = SPLIT ** (LEVELS - 1)
+ROUND = 4.0
+"""Sliding speed over the slip speed at which friction has turned: tanh is 0.999."""
+CHANNELS = 5
+STIFFNESS, DAMPING, FORCE, APPROACH, TILT, ROLL_0, ROLL_1 = range(7)
+"""Places in `Scheme.linear`."""
+LAST_LEVEL, TOUCHING, ATTEMPTS, SHORTENED = range(4)
+"""Places in the row of the memory behind the excess forces."""
+Work = tuple[FloatArray, ...]
+
+
+def fresh_memory() -> FloatArray:
+    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, NODES).
+
+    Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1:
+    not known), and how many steps were tried and shortened.
+    """
+    memory = np.zeros((CHANNELS + 1, NODES))
+    memory[CHANNELS, TOUCHING] = -1.0
+    return memory
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _free_motion(
+    transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, between: FloatArray, free: FloatArray
+) -> None:
+    """Write the state after a step, and what the mesh sees in it, without excess forces into `free` (columns,)."""
+    for c in range(free.size):
+        free[c] = 0.0
+    for j in range(0, transition.shape[1], 2):
+        first, second = start[j], start[j + 1]
+        for c in range(free.size):
+            free[c] += transition[level, j, c] * first + transition[level, j + 1, c] * second
+    for k in range(between.shape[1]):
+        first, second = between[0, k], between[1, k]
+        for c in range(free.size):
+            free[c] += inputs[level, 0, k, c] * first + inputs[level, 1, k, c] * second
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _add_response(
+    response: FloatArray, level: int, excess: FloatArray, first: int, last: int, values: FloatArray
+) -> None:
+    """Add what excess forces (channels, NODES) do to the columns from `first` up to but without `last`."""
+    for channel in range(response.shape[1]):
+        e_0, e_1, e_2, e_3 = excess[channel, 0], excess[channel, 1], excess[channel, 2], excess[channel, 3]
+        for c in range(first, last):
+            values[c] += (
+                response[level, channel, 0, c] * e_0 + response[level, channel, 1, c] * e_1
+                + response[level, channel, 2, c] * e_2 + response[level, channel, 3, c] * e_3
+            )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _solve(matrix: FloatArray) -> None:
+    """Solve the system in the first NODES rows, right side last, which becomes x; diagonal dominant: no pivoting."""
+    for k in range(NODES):
+        inverse = 1.0 / matrix[k, k]
+        for i in range(k + 1, NODES):
+            factor = matrix[i, k] * inverse
+            for j in range(k + 1, NODES + 1):
+                matrix[i, j] -= factor * matrix[k, j]
+    for k in range(NODES - 1, -1, -1):
+        for j in range(k + 1, NODES):
+            matrix[k, NODES] -= matrix[k, j] * matrix[j, NODES]
+        matrix[k, NODES] /= matrix[k, k]
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _correct(
+    response: FloatArray,
+    linear: FloatArray,
+    level: int,
+    size: int,
+    node: FloatArray,
+    excess: FloatArray,
+    matrix: FloatArray,
+) -> float:
+    """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m].
+
+    `matrix` (NODES + 2, NODES + 1): the system, and behind it what the approach and its rate change by at the nodes.
+    """
+    channels, moved, moved_rate = response.shape[1], NODES, NODES + 1
+    for q in range(NODES):
+        matrix[moved, q], matrix[moved_rate, q] = 0.0, 0.0
+    for channel in range(1, channels):
+        for r in range(NODES):
+            change = node[NODE_FRICTION + channel - 1, r] - excess[channel, r]
+            for q in range(NODES):
+                matrix[moved, q] += response[level, channel, r, size + q] * change
+                matrix[moved_rate, q] += response[level, channel, r, size + NODES + q] * change
+    for q in range(NODES):
+        slope, slope_rate = node[NODE_SLOPE, q] - linear[STIFFNESS], node[NODE_SLOPE_RATE, q] - linear[DAMPING]
+        for r in range(NODES):
+            on_x, on_v = response[level, 0, r, size + q], response[level, 0, r, size + NODES + q]
+            matrix[q, r] = -slope * on_x - slope_rate * on_v
+        matrix[q, q] += 1.0
+        found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
+        found += slope * matrix[moved, q] + slope_rate * matrix[moved_rate, q] - linear[DAMPING] * node[NODE_RATE, q]
+        matrix[q, NODES] = found - excess[0, q]
+    _solve(matrix)
+    for r in range(NODES):
+        change = matrix[r, NODES]
+        excess[0, r] += change
+        for q in range(NODES):
+            matrix[moved, q] += response[level, 0, r, size + q] * change
+            matrix[moved_rate, q] += response[level, 0, r, size + NODES + q] * change
+    largest = 0.0
+    for q in range(NODES):
+        rise = node[NODE_SLOPE, q] * matrix[moved, q] + node[NODE_SLOPE_RATE, q] * matrix[moved_rate, q]
+        force = node[NODE_NORMAL, q]
+        grown = 1.0 + (rise / force if force != 0.0 else 0.0)
+        node[NODE_NORMAL, q] = force + rise
+        for channel in range(1, channels):
+            excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
+        largest = max(largest, abs(matrix[moved, q]))
+    return largest
+
+
+@njit(cache=True, _nrt=False)
+def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
+    scheme: Scheme,
+    law: PairLaw,
+    level: int,
+    pitches_0: float,
+    pitches_1: float,
+    speed_ratio: float,
+    tolerance_n: float,
+    memory: FloatArray,
+    pairs: FloatArray,
+    work: Work,
+) -> bool:
+    """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
+    response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
+    node, excess, matrix, seen, start, end, between = work
+    size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
+    seers = 4 if channels == 3 else 6
+    _free_motion(scheme.transition, scheme.input_response, level, start, between, end)
+    last = int(memory[CHANNELS, LAST_LEVEL])
+    for channel in range(channels):
+        for q in range(NODES):
+            excess[channel, q] = 0.0
+        for r in range(NODES):
+            force = memory[channel, r]
+            for q in range(NODES):
+                excess[channel, q] += extrapolation[last, level, r, q] * force
+    settled, touching, before = False, 0, -1
+    for iteration in range(MOST_ITERATIONS):
+        for c in range(size, columns):
+            seen[c] = end[c]
+        _add_response(response, level, excess, size, columns, seen)
+        for s in range(seers):
+            for q in range(NODES):
+                node[s, q] = seen[size + s * NODES + q]
+        for q in range(NODES):
+            node[NODE_APPROACH, q] += linear[APPROACH]
+            node[NODE_SLIDING_0, q] += linear[ROLL_0] * speed_ratio
+            node[NODE_SLIDING_1, q] += linear[ROLL_1] * speed_ratio
+            if seers > 4:
+                node[NODE_TILT, q] += linear[TILT]
+        touching = write_node_forces(
+            law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
+        )
+        change = _correct(response, linear, level, size, node, excess, matrix)
+        kinked = touching < 0 or (iteration > 0 and touching != before)
+        before = touching
+        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(linear[APPROACH]):
+            settled = True
+            break
+    if level < LEVELS - 1:
+        cubic, rubbing = 0.0, 0.0
+        for q in range(NODES):
+            cubic += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
+            rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
+        parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
+        if not settled or (level == 0 and parted) or not max(abs(cubic), abs(rubbing)) <= tolerance_n:
+            return False
+    _add_response(response, level, excess, 0, size, end)
+    for channel in range(channels):
+        for q in range(NODES):
+            memory[channel, q] = excess[channel, q]
+    memory[CHANNELS, LAST_LEVEL] = level
+    memory[CHANNELS, TOUCHING] = touching if touching >= 0 else -1 - touching
+    return True
+
+
+@njit(cache=True, _nrt=False)
+def _has_event(
+    law: PairLaw,
+    pairs: FloatArray,
+    events: NDArray[np.bool_],
+    pitch_place: float,
+    reach: float,
+    pitches_0: float,
+    pitches_1: float,
+) -> bool:
+    """Return whether a pair comes as near as `reach` [base pitches] to its pitch point, or to an edge of damage."""
+    if reach >= 0.0 and np.floor(pitches_1 - pitch_place + reach) > np.floor(pitches_0 - pitch_place - reach):
+        return True
+    for i in range(pairs.shape[0] // NODES):
+        place = pitches_0 - pairs[i, PAIR]
+        inside = 0.0 <= place < law.scalars[layout.CONTACT_RATIO]
+        if inside and events[int(pairs[i, ROW]), int(place * law.scalars[layout.PER_PITCH])]:
+            return True
+    return False
+
+
+def work_arrays(columns: int, inputs: int) -> Work:
+    """Return working space for `advance`: node values, excess forces, equations, what is seen, state, end, inputs.
+
+    Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
+    """
+    node, excess, matrix = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES)), np.zeros((NODES + 2, NODES + 1))
+    return node, excess, matrix, np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros((2, inputs))
+
+
+@njit(cache=True, _nrt=False)
+def advance(
+    scheme: Scheme,
+    law: PairLaw,
+    speed_input: int,
+    tolerance_n: float,
+    events: NDArray[np.bool_],
+    pitches: FloatArray,
+    inputs: FloatArray,
+    memory: FloatArray,
+    pairs: FloatArray,
+    work: Work,
+    apart: NDArray[np.bool_],
+    trajectory: FloatArray,
+) -> None:
+    """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which ends of steps no pair touches.
+
+    `pitches` (steps + 1,), `inputs` (steps + 1, m), `events` of `event_places`; `memory` of `fresh_memory` and `pairs`
+    (NODES slots, COLUMNS) go on from the steps before.
+    """
+    size, m = scheme.transition.shape[1], inputs.shape[1]
+    state, end, between = work[4], work[5], work[6]
+    centre = -scheme.linear[ROLL_0] / scheme.linear[ROLL_1]
+    pitch_place = (centre - law.scalars[layout.START_M]) / law.scalars[layout.PITCH_M]
+    reach = ROUND * law.scalars[layout.SLIP_SPEED] / abs(scheme.linear[ROLL_1] * law.scalars[layout.PITCH_M])
+    reach = reach if law.places[layout.ROUGHNESSES] > 0 else -1.0
+    for j in range(size):
+        state[j] = trajectory[0, j]
+    for i in range(pitches.size - 1):
+        turned, ratio = pitches[i + 1] - pitches[i], 1.0
+        if speed_input >= 0:
+            ratio += 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])
+        place, level = 0, 1 if _has_event(law, pairs, events, pitch_place, reach, pitches[i], pitches[i + 1]) else 0
+        while place < FINEST:
+            length = FINEST // SPLIT**level
+            a, b = place / FINEST, (place + length) / FINEST
+            for k in range(m):
+                rise = inputs[i + 1, k] - inputs[i, k]
+                between[0, k], between[1, k] = inputs[i, k] + a * rise, inputs[i, k] + b * rise
+            memory[CHANNELS, ATTEMPTS] += 1.0
+            if not _attempt(
+                scheme, law, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, tolerance_n, memory,
+                pairs, work,
+            ):  # fmt: skip
+                level += 1
+                memory[CHANNELS, SHORTENED] += 1.0
+                continue
+            for j in range(size):
+                state[j] = end[j]
+            place += length
+            while level > 0 and place % (FINEST // SPLIT ** (level - 1)) == 0:
+                level -= 1
+        apart[i] = memory[CHANNELS, TOUCHING] == 0.0
+        for j in range(size):
+            trajectory[i + 1, j] = state[j]
