@@ -14,6 +14,7 @@ BYTES_PER_POINT = 8 / 3
 """A 16-bit number in base 64."""
 
 LEAST_SCALE = 0.05
+MOST_FINE_SAMPLES = 16_384
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +70,10 @@ def page_detail(channel_records: int, samples: int, teeth: int, *, full: bool) -
         rest = int(room - WANTED_FULL.points(teeth))
         return replace(WANTED_FULL, fine_samples=min(samples, max(rest, WANTED.fine_samples)))
     scale = min(1.0, max(room / WANTED.points(teeth), LEAST_SCALE))
+    spare = max(int(room) - WANTED.points(teeth), 0)
     return Detail(
         int(WANTED.buckets * scale),
-        min(int(WANTED.fine_samples * scale), samples),
+        min(int(WANTED.fine_samples * scale) + spare, MOST_FINE_SAMPLES, samples),
         int(WANTED.order_points * scale),
         int(WANTED.envelope_points * scale),
         max(int(WANTED.steps_per_tooth * scale), 4),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def extreme_points(signal: np.ndarray, buckets: int) -> Drawn:
     edges = np.linspace(0, samples, buckets + 1).astype(np.int64)
     found = [
         low + place
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
+        for low, high in pairwise(edges)
         for place in sorted((int(signal[low:high].argmin()), int(signal[low:high].argmax())))
     ]
     sample = np.unique(found)  # a bucket that does not vary has one extreme

@@ -13,10 +13,10 @@ DIGITS = 3
 
 
 def flank_size(config: Mapping[str, Any], gear: str, teeth: int) -> dict[str, float] | None:
-    """Return face width and heights of base circle (0), pitch circle and tip above the base circle [mm].
+    """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
 
-    Heights lie along the tooth's axis, as in the table of damage: r cos(half tooth angle at r) - R_b, half tooth angle
-    pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
+    Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
+    g_r = pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def flank_size(config: Mapping[str, Any], gear: str, teeth: int) -> dict[str, fl
 
     def height_mm(radius: float) -> float:
         slope = acos(base / radius)
-        return round(radius * cos(half - (tan(slope) - slope)) - base, DIGITS)
+        return round(radius * cos(half - (tan(slope) - slope)) - base * cos(half), DIGITS)
 
     return {"face_mm": face, "pitch_mm": height_mm(pitch), "tip_mm": height_mm(tip)}
 
@@ -62,4 +62,5 @@ def _corners(row: Mapping[str, Any]) -> list[list[float]]:
         angle = 2.0 * np.pi * np.arange(ELLIPSE_CORNERS) / ELLIPSE_CORNERS
         face = row["face_mm"] + row["semi_axis_face_mm"] * np.cos(angle)
         height = row["height_mm"] + row["semi_axis_profile_mm"] * np.sin(angle)
-    return np.round(np.stack([face, height], axis=1), DIGITS).tolist()
+    corners: list[list[float]] = np.round(np.stack([face, height], axis=1), DIGITS).tolist()
+    return corners

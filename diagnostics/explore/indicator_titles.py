@@ -45,4 +45,3 @@ def _words(chosen: dict[str, Any]) -> list[str]:
     if "band" in chosen:
         found.append("orders " + str(chosen["band"]).removeprefix("o").replace("_", " to "))
     return found
-

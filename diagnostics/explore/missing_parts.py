@@ -20,12 +20,12 @@ def missing_parts(
     if not healthy.any():
         found.append(
             "No healthy records: no overlay, no difference, and no place of an indicator among healthy gearboxes. A "
-            "state without damage under `states` in the configuration gives them."
+            "state without damage under “states” in the configuration gives them."
         )
     elif alone:
         found.append(
             f"{counted(alone, 'record')} of {healthy.size} without another healthy record of the same gearbox at the "
-            "same operating point: these have no overlay. More `repeats` give healthy records a second one."
+            "same operating point: these have no overlay. More “repeats” give healthy records a second one."
         )
     if healthy.any() and np.unique(labels["specimen_id"][healthy]).size < 2:
         found.append("Healthy records of one gearbox only: an indicator has no place among other healthy gearboxes.")
@@ -33,7 +33,7 @@ def missing_parts(
         found.append("No table of damage beside the labels, or no damaged record: no flank is drawn.")
     if not internals:
         found.append(
-            "No internal quantities in the set: transmission error and mesh force are not there to show. `internals` "
+            "No internal quantities in the set: transmission error and mesh force are not there to show. “internals” "
             "in the configuration stores them."
         )
     return found

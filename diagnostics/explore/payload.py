@@ -20,9 +20,10 @@ from diagnostics.indicators.table import RecordTable
 from diagnostics.records.recording import recordings
 from siggen.dataset.reading import Dataset
 
-SHOWN = ("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad") + (
-    "damaged_area_mm2", "damaged_area_share", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear",
-)  # fmt: skip
+SHOWN = (
+    *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
+    *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
+)
 GEARS = ("pinion", "gear")
 
 
@@ -114,9 +115,7 @@ def _indicators(table: RecordTable, rows: np.ndarray) -> list[dict[str, Any]]:
     return found
 
 
-def _signals(
-    dataset: Dataset, labels: dict[str, np.ndarray], axes: PageAxes, stage: Stage
-) -> list[dict[str, Any]]:
+def _signals(dataset: Dataset, labels: dict[str, np.ndarray], axes: PageAxes, stage: Stage) -> list[dict[str, Any]]:
     place = {int(record): k for k, record in enumerate(labels["record_id"])}
     starts = labels.get("start_angle_rad")
     found: list[dict[str, Any]] = [{} for _ in place]

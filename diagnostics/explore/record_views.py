@@ -11,7 +11,7 @@ import numpy as np
 from diagnostics.explore.detail import Detail
 from diagnostics.explore.extreme_buckets import drawn_signal, outside
 from diagnostics.explore.order_axis import OrderAxis, decibels
-from diagnostics.explore.packed import packed_places, packed_floats, packed_steps
+from diagnostics.explore.packed import packed_floats, packed_places, packed_steps
 from diagnostics.records.recording import Recording
 from diagnostics.signal.envelope_spectrum import envelope_spectrum
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle

@@ -13,7 +13,11 @@ Explore.markHook = (marks) => (plot) => {
   ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
   ctx.clip();
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
-  for (const mark of marks(scale.min, scale.max)) {
+  ctx.textAlign = "left";
+  ctx.textBaseline = "alphabetic";
+  let free = -Infinity; // where the last text ends, so that none lies over another
+  const wanted = marks(scale.min, scale.max).sort((a, b) => a.at - b.at);
+  for (const mark of wanted) {
     const x = plot.valToPos(mark.at, "x", true);
     ctx.fillStyle = ctx.strokeStyle = Explore.colour(mark.colour || "mark");
     if (mark.to !== undefined) {
@@ -27,7 +31,13 @@ Explore.markHook = (marks) => (plot) => {
     ctx.lineTo(x, bbox.top + bbox.height);
     ctx.stroke();
     ctx.globalAlpha = 1;
-    if (mark.text) ctx.fillText(mark.text, x + 3 * devicePixelRatio, bbox.top + 11 * devicePixelRatio);
+    if (!mark.text) continue;
+    const gap = 3 * devicePixelRatio;
+    const width = ctx.measureText(mark.text).width;
+    const from = Math.min(x + gap, bbox.left + bbox.width - width);
+    if (x < bbox.left || from < free) continue;
+    ctx.fillText(mark.text, from, bbox.top + 11 * devicePixelRatio);
+    free = from + width + gap;
   }
   ctx.restore();
 };
@@ -57,6 +67,7 @@ Explore.ACTIONS = [
 
 Explore.tools = (title, plot) => {
   const tools = Explore.element("div", "", { class: "tools", role: "group", "aria-label": `Zoom: ${title}` });
+  tools.append(Explore.element("strong", title, { "aria-hidden": "true" }));
   for (const [sign, label, , act] of Explore.ACTIONS) {
     const button = Explore.element("button", sign, { type: "button", "aria-label": `${label}: ${title}` });
     button.addEventListener("click", () => act(plot()));
@@ -93,7 +104,7 @@ Explore.chart = (host, what) => {
     hooks: {
       drawClear: what.marks ? [Explore.markHook(what.marks)] : [],
       setScale: [(own, key) => {
-        if (key !== "x" || Explore.linking || !what.group) return;
+        if (key !== "x" || Explore.linking || !what.group || own.gone) return; // a destroyed plot may still have a scale to set
         Explore.linking = true;
         for (const other of followers()) other.setScale("x", { min: own.scales.x.min, max: own.scales.x.max });
         Explore.linking = false;
@@ -118,6 +129,7 @@ Explore.chart = (host, what) => {
 Explore.clear = (host) => {
   for (const [area, plot] of Explore.plots) {
     if (!host.contains(area)) continue;
+    plot.gone = true;
     plot.destroy();
     Explore.plots.delete(area);
   }

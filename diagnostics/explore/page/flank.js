@@ -48,5 +48,5 @@ Explore.showFlank = (section, row) => {
   }
   const size = Explore.data.flanks[row][teeth[0][0]];
   const more = teeth.length > Explore.MOST_FLANKS ? ` ${Explore.MOST_FLANKS} of ${teeth.length} flanks are drawn.` : "";
-  body.append(flanks, Explore.element("p", `Face ${Explore.number(size.face_mm)} mm wide, from the base circle (below) to the tip (above); dashed: pitch circle. Darker is deeper.${more}`));
+  body.append(flanks, Explore.element("p", `Face ${Explore.number(size.face_mm)} mm wide, from the base circle (below) to the tip (above); dashed: pitch circle. The stronger the colour, the deeper.${more}`));
 };
