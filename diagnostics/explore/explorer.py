@@ -14,13 +14,14 @@ from diagnostics.explore.chosen_records import chosen_records
 from diagnostics.explore.missing_parts import missing_parts
 from diagnostics.explore.payload import page_payload
 from diagnostics.indicators.table import record_table
+from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
 
 LIMIT = 100
 PAGE = Path(__file__).with_name("page")
 SCRIPTS = (
-    *("vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js", "spectra.js"),
-    *("averages.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
+    *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js"),
+    *("waveform.js", "spectra.js", "averages.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
 )
 STYLES = ("vendored/uPlot.min.css", "explorer.css")
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
@@ -86,6 +87,7 @@ def _facts(dataset: Dataset, payload: dict[str, Any], records: int) -> dict[str,
         "name": str(dataset.manifest.get("name") or dataset.path.name),
         "identity": str(dataset.manifest.get("identity", ""))[:12],
         "records": records,
+        "healthy": int(np.count_nonzero(labels["fault"] == HEALTHY)),
         "missing": missing_parts(labels, payload["overlay"], bool(payload["damage"]), internals),
     }
 
@@ -118,4 +120,10 @@ def _files(names: tuple[str, ...]) -> Any:
     """Return files of the package, which are our own text, as they are."""
     from markupsafe import Markup
 
-    return Markup("\n".join((PAGE / name).read_text(encoding="utf-8") for name in names))
+    return Markup("\n".join(_text(name) for name in names))
+
+
+def _text(name: str) -> str:
+    """Return a file of the package; a licence as a comment, since it must go along with every copy."""
+    text = (PAGE / name).read_text(encoding="utf-8")
+    return f"/*\n{text}*/" if name.endswith("LICENSE") else text

@@ -85,6 +85,7 @@ def test_the_page_reaches_for_nothing_outside_itself(page: str) -> None:
     assert Read(page).reached == []
     assert "default-src 'none'" in page
     assert "@import" not in page
+    assert "Permission is hereby granted" in page  # the licence of the library goes along with every copy of it
 
 
 def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
