@@ -20,8 +20,8 @@ from siggen.dataset.reading import Dataset
 LIMIT = 100
 PAGE = Path(__file__).with_name("page")
 SCRIPTS = (
-    *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js"),
-    *("waveform.js", "spectra.js", "averages.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
+    *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js"),
+    *("spectra.js", "averages.js", "internals.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
 )
 STYLES = ("vendored/uPlot.min.css", "explorer.css")
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
@@ -82,7 +82,7 @@ def write_explorer(
 def _facts(dataset: Dataset, payload: dict[str, Any], records: int) -> dict[str, Any]:
     """Return what the template says in words."""
     labels = {name: np.asarray([row[name] for row in payload["records"]]) for name in ("fault", "specimen_id")}
-    internals = bool(getattr(dataset, "internal_columns", ()))
+    internals = bool(payload["quantities"])
     return {
         "name": str(dataset.manifest.get("name") or dataset.path.name),
         "identity": str(dataset.manifest.get("identity", ""))[:12],

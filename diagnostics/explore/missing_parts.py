@@ -33,7 +33,7 @@ def missing_parts(
         found.append("No table of damage beside the labels, or no damaged record: no flank is drawn.")
     if not internals:
         found.append(
-            "No internal quantities in the set: transmission error and mesh force are not there to show. “internals” "
-            "in the configuration stores them."
+            "Neither transmission error nor mesh force in the set: quantities that no sensor sees are not there to "
+            "show. “internals” in the configuration stores them."
         )
     return found

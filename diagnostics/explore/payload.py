@@ -13,6 +13,7 @@ from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import page_detail
 from diagnostics.explore.flank_outlines import flank_size, outlines
 from diagnostics.explore.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.explore.internal_waves import internal_waves, shown_internals
 from diagnostics.explore.order_axis import highest_order, order_axis
 from diagnostics.explore.packed import packed_floats
 from diagnostics.explore.record_views import PageAxes, record_views
@@ -44,6 +45,8 @@ def page_payload(dataset: Dataset, table: RecordTable, rows: np.ndarray, stage: 
     """
     labels = chosen_labels(dataset, rows)
     axes = _axes(dataset, labels, full=full)
+    signals = _signals(dataset, labels, axes, stage)
+    fine = [next(iter(found["channels"].values()))["wave"]["fine"] for found in signals]
     return {
         "fs_hz": dataset.fs_hz,
         "samples": round(dataset.fs_hz * dataset.duration_s),
@@ -56,7 +59,9 @@ def page_payload(dataset: Dataset, table: RecordTable, rows: np.ndarray, stage: 
         "damage": _damage(dataset, labels["record_id"]),
         "flanks": [_flanks(dataset, labels, k) for k in range(rows.size)],
         "indicators": _indicators(table, rows),
-        "signals": _signals(dataset, labels, axes, stage),
+        "signals": signals,
+        "quantities": shown_internals(dataset),
+        "internals": internal_waves(dataset, labels["record_id"], axes.detail, fine),
     }
 
 
@@ -75,7 +80,8 @@ def _plain(value: Any) -> Any:
 def _axes(dataset: Dataset, labels: dict[str, np.ndarray], *, full: bool) -> PageAxes:
     samples, teeth = round(dataset.fs_hz * dataset.duration_s), labels["teeth_pinion"]
     both = int((teeth + labels["teeth_gear"]).max())
-    detail = page_detail(teeth.size * max(len(dataset.channels), 1), samples, both, full=full)
+    series = len(dataset.channels) + len(shown_internals(dataset))
+    detail = page_detail(teeth.size * series, samples, both, full=full)
     revolutions = int(labels["speed_hz"].max() * dataset.duration_s)
     last = max(highest_order(int(z), dataset.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
     return PageAxes(

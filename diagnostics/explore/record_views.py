@@ -60,14 +60,17 @@ def _channel(
 ) -> dict[str, Any]:
     finite = np.isfinite(signal)
     clean = np.where(finite, signal, 0.0)
-    fine = _fine(record, axes.detail, clean.size)
-    drawn = drawn_signal(clean, axes.detail.buckets, fine)
-    wave = {"sample": packed_places(outside(drawn.sample, fine)), "fine": fine, **packed_steps(drawn.value)}
     found: dict[str, Any] = {
-        "wave": wave,
+        "wave": packed_wave(clean, axes.detail, _fine(record, axes.detail, clean.size)),
         "undefined": int(signal.size - np.count_nonzero(finite)),
     }
     return found if grid is None else found | _of_angle(clean, record, grid, axes, start_rad)
+
+
+def packed_wave(signal: np.ndarray, detail: Detail, fine: tuple[int, int]) -> dict[str, Any]:
+    """Return a signal (n,) packed: places of its extremes, the stretch that is kept whole, values of both in order."""
+    drawn = drawn_signal(signal, detail.buckets, fine)
+    return {"sample": packed_places(outside(drawn.sample, fine)), "fine": fine, **packed_steps(drawn.value)}
 
 
 def _fine(record: Recording, detail: Detail, samples: int) -> tuple[int, int]:

@@ -38,6 +38,7 @@ Explore.draw = () => {
   Explore.showSpectrum(section("spectrum"), row, channel, healthy);
   Explore.showEnvelope(section("envelope"), row, channel, healthy);
   Explore.showAverages(section("averages"), row, channel, healthy);
+  Explore.showInternals(section("internals"), row, healthy);
   Explore.showFlank(section("flank"), row);
   Explore.showIndicators(section("indicators"), row, channel);
   Explore.drawScatter(section("scatter"));

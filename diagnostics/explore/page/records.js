@@ -38,6 +38,16 @@ Explore.markRow = () => {
     else line.removeAttribute("aria-current");
   }
   Explore.setTabStop();
+  Explore.bringIntoView(document.querySelector("#table tr[aria-current]"));
+};
+
+// Scrolls the table alone: the page stays where the reader looks.
+Explore.bringIntoView = (line) => {
+  const box = line.closest(".scroll");
+  const head = document.querySelector("#table thead").offsetHeight;
+  const top = line.offsetTop - head;
+  if (top < box.scrollTop) box.scrollTop = top;
+  else if (line.offsetTop + line.offsetHeight > box.scrollTop + box.clientHeight) box.scrollTop = line.offsetTop + line.offsetHeight - box.clientHeight;
 };
 
 Explore.stepRow = (line, key) => {
@@ -67,8 +77,7 @@ Explore.listen = () => {
     const line = Explore.stepRow(event.target.closest("tr"), event.key);
     if (!line) return;
     event.preventDefault();
-    line.querySelector("button").focus();
-    line.scrollIntoView({ block: "nearest" });
+    line.querySelector("button").focus({ preventScroll: true });
     Explore.open(Number(line.dataset.row));
   });
   document.getElementById("filters").addEventListener("input", Explore.filterRecords);

@@ -1,11 +1,21 @@
 // The signal over pinion revolutions: extremes of buckets, every sample of the first stretch.
-Explore.wave = (row, channel) => {
-  const view = Explore.view(row, channel);
-  const samples = Explore.samples(view.wave);
-  const turning = view.pulses.length > 1;
-  const x = turning ? Explore.revolutions(samples, view.pulses) : samples.map((sample) => sample / Explore.data.fs_hz);
-  return { x, y: Explore.values(view.wave), fine: view.wave.fine, pulses: view.pulses, turning };
+Explore.wave = (row, packed) => {
+  const samples = Explore.samples(packed);
+  const pulses = Explore.floats(Explore.data.signals[row].pulses);
+  const turning = pulses.length > 1;
+  const x = turning ? Explore.revolutions(samples, pulses) : samples.map((sample) => sample / Explore.data.fs_hz);
+  return { x, y: Explore.values(packed), fine: packed.fine, from: samples.indexOf(packed.fine[0]), turning };
 };
+
+// Series and data of a curve, over the one of the healthy record where there is one.
+Explore.overlaid = (own, other) => {
+  const series = [Explore.line("record", "record")];
+  if (!other || other.turning !== own.turning) return { series, data: [own.x, own.y] };
+  series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
+  return { series, data: uPlot.join([[other.x, other.y], [own.x, own.y]]) };
+};
+
+Explore.angleLabel = (own) => (own.turning ? "pinion revolutions since the first pulse" : "time [s]");
 
 // Angles (revolutions since the first pulse) at which a damaged tooth enters contact, within first ... last.
 Explore.entries = (row, first, last) => {
@@ -51,27 +61,20 @@ Explore.showWaveform = (section, row, channel, healthy) => {
   const controls = section.querySelector(".controls");
   Explore.clear(body);
   controls.replaceChildren();
-  const own = Explore.wave(row, channel);
-  const other = healthy === null ? null : Explore.wave(healthy, channel);
-  const series = [Explore.line("record", "record")];
-  let data = [own.x, own.y];
-  if (other && other.turning === own.turning) {
-    data = uPlot.join([[other.x, other.y], [own.x, own.y]]);
-    series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
-  }
+  const packed = (at) => Explore.data.signals[at].channels[channel].wave;
+  const own = Explore.wave(row, packed(row));
+  const other = healthy === null ? null : Explore.wave(healthy, packed(healthy));
   const peak = own.y.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
   const whole = own.fine[1] - own.fine[0] >= Explore.data.samples;
   const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; --full keeps all.`;
   const plot = Explore.chart(body, {
-    title: "Signal", x: own.turning ? "pinion revolutions since the first pulse" : "time [s]", y: "acceleration [m/s²]", series, data,
+    title: "Signal", x: Explore.angleLabel(own), y: "acceleration [m/s²]", ...Explore.overlaid(own, other), group: "turns",
     range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} m/s².`,
     caption: `${kept} Dashed: revolutions; thin: tooth passages (when near enough); shaded: a damaged tooth enters contact.`,
   });
-  const places = Explore.samples(Explore.view(row, channel).wave);
-  const from = places.indexOf(own.fine[0]);
-  const end = Math.min(from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
+  const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
   const near = Explore.element("button", own.turning ? "first revolutions" : "first stretch", { type: "button" });
-  near.addEventListener("click", () => plot.setScale("x", { min: own.x[from], max: own.turning ? Math.min(own.x[end], own.x[from] + 2) : own.x[end] }));
+  near.addEventListener("click", () => plot.setScale("x", { min: own.x[own.from], max: own.turning ? Math.min(own.x[end], own.x[own.from] + 2) : own.x[end] }));
   const all = Explore.element("button", "whole record", { type: "button" });
   all.addEventListener("click", () => Explore.reset(plot));
   controls.append(near, all);

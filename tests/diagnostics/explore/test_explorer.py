@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyarrow as pa
@@ -18,6 +20,7 @@ from diagnostics.explore.indicator_titles import indicator_definitions, indicato
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
+from tests.diagnostics.explore.unpacked import steps
 
 NAMES = {
     "healthy": "</script><script>window.broken=1</script>",
@@ -105,9 +108,32 @@ def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
     dataset.table = dataset.table.filter(pc.not_equal(dataset.table.column("fault"), "healthy"))
     text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "No healthy records" in text
-    assert "No internal quantities" in text
+    assert "Neither transmission error nor mesh force" in text
     assert "no flank is drawn" in text
     assert json.loads(Read(text).data)["overlay"] == [None, None]
+
+
+class WithInternals(MemoryDataset):
+    """Stores the transmission error of records 0 and 2: a ramp of as many metres as the record's number."""
+
+    @property
+    def internal_columns(self) -> tuple[SimpleNamespace, ...]:
+        return (SimpleNamespace(name="transmission_error_m", unit="m"),)
+
+    def internals(self, columns: list[str], batch_rows: int) -> Iterator[pa.RecordBatch]:
+        samples = round(self.fs_hz * self.duration_s)
+        rows = [{"record_id": k, "transmission_error_m": np.linspace(0.0, k, samples)} for k in (0, 2)]
+        yield pa.RecordBatch.from_pylist(rows).select(columns)
+
+
+def test_stored_quantities_that_no_sensor_sees_stand_at_their_records(tmp_path: Path) -> None:
+    plain = memory_dataset(("train",))
+    text = write_explorer(WithInternals(plain.table), tmp_path / "page.html").read_text(encoding="utf-8")
+    data = json.loads(Read(text).data)
+    assert [quantity["name"] for quantity in data["quantities"]] == ["transmission_error_m"]
+    assert [set(found) for found in data["internals"]] == [{"transmission_error_m"}, set(), {"transmission_error_m"}]
+    assert steps(data["internals"][2]["transmission_error_m"]).max() == pytest.approx(2.0)
+    assert "Neither transmission error" not in text
 
 
 @pytest.mark.parametrize("channels", [1, 2, 8])
