@@ -11,19 +11,17 @@ from diagnostics.explore.record_views import packed_wave
 from siggen.dataset.reading import Dataset
 
 SHOWN = {
-    "transmission_error_m": "Transmission error",
-    "mesh_force_n": "Mesh force",
-    "mesh_stiffness_n_per_m": "Mesh stiffness",
+    "transmission_error_m": ("Transmission error", "µm", 1e6),
+    "mesh_force_n": ("Mesh force", "N", 1.0),
+    "mesh_stiffness_n_per_m": ("Mesh stiffness", "N/µm", 1e-6),
 }
-"""Quantities that the page draws, of those that a set may store."""
+"""Title, shown unit and factor of the quantities that the page draws, of those that a set may store."""
 
 
 def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
-    """Return name, title and unit of the stored quantities that the page draws; none for a set without them."""
-    stored = {column.name: column for column in getattr(dataset, "internal_columns", ())}
-    return [
-        {"name": name, "title": title, "unit": stored[name].unit} for name, title in SHOWN.items() if name in stored
-    ]
+    """Return name, title and shown unit of the stored quantities that the page draws; none for a set without them."""
+    stored = {column.name for column in getattr(dataset, "internal_columns", ())}
+    return [{"name": name, "title": title, "unit": unit} for name, (title, unit, _) in SHOWN.items() if name in stored]
 
 
 def internal_waves(
@@ -50,6 +48,6 @@ def internal_waves(
         for line, record in enumerate(batch.column("record_id").to_pylist()):
             row = place.get(record)
             if row is not None:
-                series = {name: np.asarray(batch.column(name)[line].values, np.float64) for name in names}
+                series = {name: SHOWN[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
                 found[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
     return found

@@ -39,7 +39,10 @@ Explore.showIndicators = (section, row, channel) => {
   const label = Explore.element("label", "Indicator contains ");
   const search = Explore.element("input", "", { type: "search", autocomplete: "off" });
   label.append(search);
-  const fill = () => Explore.fillIndicators(body, found, search.value.toLowerCase(), `${healthy.length} healthy records of other gearboxes on this page, ${where}`);
+  const against = healthy.length < 3
+    ? "This page has fewer than three healthy records of other gearboxes: no indicator has a place among them."
+    : `Compared with ${healthy.length} healthy records of other gearboxes on this page, ${where}. Many are looked at, so that some stand far out by chance.`;
+  const fill = () => Explore.fillIndicators(body, found, search.value.toLowerCase(), against);
   search.addEventListener("input", fill);
   controls.replaceChildren(label);
   fill();
@@ -65,7 +68,7 @@ Explore.fillIndicators = (body, found, text, against) => {
   const box = Explore.element("div", "", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Indicators of the chosen record" });
   box.append(table);
   const shown = Math.min(matching.length, Explore.MOST_INDICATORS);
-  body.replaceChildren(Explore.element("p", `${shown} of ${matching.length} indicators, the farthest first. Compared with ${against}. Many are looked at, so that some stand far out by chance.`), box);
+  body.replaceChildren(Explore.element("p", `${shown} of ${matching.length} indicators, the farthest first. ${against}`), box);
 };
 
 Explore.pair = [0, 1];

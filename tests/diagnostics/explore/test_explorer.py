@@ -132,7 +132,7 @@ def test_stored_quantities_that_no_sensor_sees_stand_at_their_records(tmp_path: 
     data = json.loads(Read(text).data)
     assert [quantity["name"] for quantity in data["quantities"]] == ["transmission_error_m"]
     assert [set(found) for found in data["internals"]] == [{"transmission_error_m"}, set(), {"transmission_error_m"}]
-    assert steps(data["internals"][2]["transmission_error_m"]).max() == pytest.approx(2.0)
+    assert steps(data["internals"][2]["transmission_error_m"]).max() == pytest.approx(2.0e6)  # shown in um
     assert "Neither transmission error" not in text
 
 
