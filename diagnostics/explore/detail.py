@@ -14,6 +14,7 @@ BYTES_PER_POINT = 8 / 3
 """A 16-bit number in base 64."""
 
 LEAST_SCALE = 0.05
+MOST_BUCKETS = 1_500
 MOST_FINE_SAMPLES = 16_384
 
 
@@ -47,8 +48,8 @@ class Detail:
         return 4 * self.buckets + self.fine_samples + self.order_points + self.envelope_points + averages
 
 
-WANTED = Detail(350, 1_200, 1_700, 400, 24)
-WANTED_FULL = Detail(500, 0, 6_000, 1_000, 24)
+WANTED = Detail(550, 1_000, 1_500, 400, 24)
+WANTED_FULL = Detail(550, 0, 6_000, 1_000, 24)
 
 
 def page_detail(channel_records: int, samples: int, teeth: int, *, full: bool) -> Detail:
@@ -71,9 +72,11 @@ def page_detail(channel_records: int, samples: int, teeth: int, *, full: bool) -
         return replace(WANTED_FULL, fine_samples=min(samples, max(rest, WANTED.fine_samples)))
     scale = min(1.0, max(room / WANTED.points(teeth), LEAST_SCALE))
     spare = max(int(room) - WANTED.points(teeth), 0)
+    # first to the whole record, so that it looks as dense as the stretch that is kept whole
+    more = min(spare // 4, MOST_BUCKETS - WANTED.buckets)
     return Detail(
-        int(WANTED.buckets * scale),
-        min(int(WANTED.fine_samples * scale) + spare, MOST_FINE_SAMPLES, samples),
+        int(WANTED.buckets * scale) + more,
+        min(int(WANTED.fine_samples * scale) + spare - 4 * more, MOST_FINE_SAMPLES, samples),
         int(WANTED.order_points * scale),
         int(WANTED.envelope_points * scale),
         max(int(WANTED.steps_per_tooth * scale), 4),
