@@ -11,6 +11,7 @@ import typer
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
 from diagnostics.cli.check import check
+from diagnostics.cli.explore import explore
 from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
@@ -34,6 +35,7 @@ app.command()(features)
 app.command()(indicators)
 app.command()(train)
 app.command()(report)
+app.command()(explore)
 app.command()(audit)
 app.command()(predict)
 app.command()(baseline)

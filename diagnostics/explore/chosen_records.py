@@ -1,0 +1,49 @@
+"""Which records a page shows, and which healthy record each is laid over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from diagnostics.records.state_classes import HEALTHY
+
+
+def chosen_records(labels: Mapping[str, np.ndarray], limit: int) -> np.ndarray:
+    """Return the rows of whole gearboxes, spread evenly over the set, that stay within the limit.
+
+    Of a set whose first gearbox alone has more records, rows spread evenly over it come back.
+
+    Parameters
+    ----------
+    labels : mapping of str to (records,)
+        Column `specimen_id`.
+    limit : int
+        Most records.
+    """
+    specimens, counts = np.unique(labels["specimen_id"], return_counts=True)
+    if labels["specimen_id"].size <= limit:
+        return np.arange(labels["specimen_id"].size)
+    for wanted in range(specimens.size, 0, -1):
+        place = np.unique(np.linspace(0, specimens.size - 1, wanted).round().astype(np.int64))
+        if counts[place].sum() <= limit:
+            return np.flatnonzero(np.isin(labels["specimen_id"], specimens[place]))
+    rows = np.flatnonzero(labels["specimen_id"] == specimens[0])
+    return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, limit).round().astype(np.int64))])
+
+
+def overlaid_records(labels: Mapping[str, np.ndarray]) -> list[int | None]:
+    """Return for every row the row of its gearbox's healthy record, None where there is no other than itself.
+
+    Same gearbox and operating point; the same repeat if there is one, for a healthy record another repeat.
+    """
+    healthy = labels["fault"] == HEALTHY
+    found: list[int | None] = []
+    for row in range(healthy.size):
+        same = healthy & (labels["specimen_id"] == labels["specimen_id"][row])
+        same &= labels["operating_point_id"] == labels["operating_point_id"][row]
+        same[row] = False
+        rows = np.flatnonzero(same)
+        nearest = rows[np.argsort(labels["repeat"][rows] != labels["repeat"][row], kind="stable")]
+        found.append(int(nearest[0]) if nearest.size else None)
+    return found

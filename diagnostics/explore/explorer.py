@@ -1,0 +1,129 @@
+"""The page itself: one HTML file that needs neither server nor network."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnostics.base.extras import require_packages
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.explore.chosen_records import chosen_records
+from diagnostics.explore.missing_parts import missing_parts
+from diagnostics.explore.payload import page_payload
+from diagnostics.indicators.table import record_table
+from diagnostics.records.state_classes import HEALTHY
+from siggen.dataset.reading import Dataset
+
+LIMIT = 100
+PAGE = Path(__file__).with_name("page")
+SCRIPTS = (
+    *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js"),
+    *("spectra.js", "averages.js", "internals.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
+)
+STYLES = ("vendored/uPlot.min.css", "explorer.css")
+# What could end the script element, open a comment in it, or end a line of JSON for older readers.
+IN_SCRIPT: dict[str, str | int | None] = {
+    "<": "\\u003c",
+    ">": "\\u003e",
+    "&": "\\u0026",
+    "\u2028": "\\u2028",
+    "\u2029": "\\u2029",
+}
+
+
+def write_explorer(
+    dataset: Dataset,
+    path: Path,
+    *,
+    limit: int = LIMIT,
+    full: bool = False,
+    workers: int = 1,
+    stage: Stage = silent_stage,
+) -> Path:
+    """Write the page of a set and return its path.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    path : Path
+        The HTML file.
+    limit : int
+        Most records; whole gearboxes are left out beyond it.
+    full : bool
+        Whether all samples are kept, as far as 30 MB allow.
+    workers : int
+        Processes that take indicators.
+    stage : Stage, optional
+        Told of the progress.
+
+    Raises
+    ------
+    DatasetError
+        If the set holds no records.
+    UsageError
+        If Jinja2 is not installed.
+    """
+    require_packages("the page to explore a set", "jinja2")
+    labels = dataset.labels(columns=["record_id", "specimen_id"])
+    with stage("indicators", labels.num_rows) as advance:
+        table = record_table(dataset, workers=workers, advance=advance)
+    specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
+    rows = chosen_records(specimens, limit)
+    payload = page_payload(dataset, table, rows, stage, full=full)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(explorer_page(_facts(dataset, payload, labels.num_rows), payload), encoding="utf-8")
+    return path
+
+
+def _facts(dataset: Dataset, payload: dict[str, Any], records: int) -> dict[str, Any]:
+    """Return what the template says in words."""
+    labels = {name: np.asarray([row[name] for row in payload["records"]]) for name in ("fault", "specimen_id")}
+    internals = bool(payload["quantities"])
+    return {
+        "name": str(dataset.manifest.get("name") or dataset.path.name),
+        "identity": str(dataset.manifest.get("identity", ""))[:12],
+        "records": records,
+        "healthy": int(np.count_nonzero(labels["fault"] == HEALTHY)),
+        "missing": missing_parts(labels, payload["overlay"], bool(payload["damage"]), internals),
+    }
+
+
+def explorer_page(facts: dict[str, Any], payload: dict[str, Any]) -> str:
+    """Return the page; every text of the set is escaped, in the markup by Jinja, in the data as JSON escapes."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(loader=FileSystemLoader(PAGE), autoescape=True, undefined=StrictUndefined)
+    return environment.get_template("explorer.html").render(
+        facts=facts, payload=payload, data=script_json(payload), scripts=_files(SCRIPTS), styles=_files(STYLES)
+    )
+
+
+def script_json(value: Any) -> Any:
+    """Return JSON that may stand inside a script element: nothing in it can close the element or open another.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, which JSON cannot hold.
+    """
+    from markupsafe import Markup
+
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"), ensure_ascii=False)
+    return Markup(text.translate(str.maketrans(IN_SCRIPT)))
+
+
+def _files(names: tuple[str, ...]) -> Any:
+    """Return files of the package, which are our own text, as they are."""
+    from markupsafe import Markup
+
+    return Markup("\n".join(_text(name) for name in names))
+
+
+def _text(name: str) -> str:
+    """Return a file of the package; a licence as a comment, since it must go along with every copy."""
+    text = (PAGE / name).read_text(encoding="utf-8")
+    return f"/*\n{text}*/" if name.endswith("LICENSE") else text

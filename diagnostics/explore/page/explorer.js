@@ -1,0 +1,59 @@
+// Brings the parts together: what is chosen, and what then is drawn.
+Explore.chosen = null;
+
+Explore.facts = (row) => {
+  const record = Explore.data.records[row];
+  const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
+  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}.`;
+};
+
+Explore.healthyOf = (row) => (document.getElementById("overlay").checked ? Explore.data.overlay[row] : null);
+
+Explore.showOverlayNote = (row) => {
+  const note = document.getElementById("overlay-note");
+  const other = Explore.data.overlay[row];
+  note.hidden = !document.getElementById("overlay").checked;
+  note.textContent = other === null
+    ? "This page has no other healthy record of this gearbox at this operating point: nothing is laid over."
+    : `Laid over: record ${Explore.data.records[other].record_id}, healthy, same gearbox and operating point.`;
+};
+
+Explore.open = (row) => {
+  Explore.chosen = row;
+  const record = Explore.data.records[row];
+  const title = document.getElementById("chosen-title");
+  title.replaceChildren(`Record ${record.record_id}: `, Explore.element("bdi", record.state));
+  document.getElementById("chosen-facts").textContent = Explore.facts(row);
+  Explore.markRow();
+  Explore.draw();
+};
+
+Explore.draw = () => {
+  const row = Explore.chosen;
+  const channel = document.getElementById("channel").value;
+  const healthy = Explore.healthyOf(row);
+  const section = (name) => document.getElementById(name);
+  Explore.showOverlayNote(row);
+  Explore.showWaveform(section("waveform"), row, channel, healthy);
+  Explore.showSpectrum(section("spectrum"), row, channel, healthy);
+  Explore.showEnvelope(section("envelope"), row, channel, healthy);
+  Explore.showAverages(section("averages"), row, channel, healthy);
+  Explore.showInternals(section("internals"), row, healthy);
+  Explore.showFlank(section("flank"), row);
+  Explore.showIndicators(section("indicators"), row, channel);
+  Explore.drawScatter(section("scatter"));
+};
+
+Explore.begin = () => {
+  Explore.listen();
+  Explore.filterRecords();
+  Explore.buildScatter(document.getElementById("scatter"));
+  document.getElementById("channel").addEventListener("change", Explore.draw);
+  document.getElementById("overlay").addEventListener("change", Explore.draw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
+  addEventListener("resize", Explore.resize);
+  const damaged = Explore.data.records.findIndex((record) => record.fault !== "healthy");
+  Explore.open(Math.max(damaged, 0));
+};
+
+Explore.begin();

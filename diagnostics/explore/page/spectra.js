@@ -1,0 +1,71 @@
+// Order spectrum with its difference from the healthy record, and the envelope spectrum.
+Explore.orders = (count, step) => Array.from({ length: count }, (_, k) => k * step);
+
+Explore.minus = (left, right) => left.map((value, k) => (value === null || right[k] === null ? null : value - right[k]));
+
+Explore.spectrumMarks = (row) => (first, last) => {
+  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
+  const found = [];
+  for (let h = Math.max(1, Math.ceil(first / pinion)); h * pinion <= last; h++) found.push({ at: h * pinion, text: `mesh ${h}` });
+  if (last - first > 1.2 * pinion) return found;
+  for (let h = Math.max(1, Math.floor(first / pinion)); h * pinion <= last + pinion; h++)
+    for (let k = 1; k <= 6; k++)
+      for (const side of [-1, 1]) {
+        found.push({ at: h * pinion + side * k, faint: true, text: k <= 3 ? `${side > 0 ? "+" : "−"}${k} pinion` : "" });
+        if (last - first < pinion / 3) found.push({ at: h * pinion + (side * k * pinion) / gear, faint: true, colour: "accent", text: "" });
+      }
+  return found;
+};
+
+Explore.showSpectrum = (section, row, channel, healthy) => {
+  const body = section.querySelector(".body");
+  Explore.clear(body);
+  const view = Explore.view(row, channel);
+  if (!view.spectrum) return void body.append(Explore.element("p", view.missing, { class: "note" }));
+  const own = Explore.values(view.spectrum);
+  const x = Explore.orders(own.length, Explore.data.order_step);
+  const other = healthy === null ? null : Explore.view(healthy, channel);
+  const base = other && other.spectrum ? Explore.values(other.spectrum) : null;
+  const range = [0, x[x.length - 1]];
+  const top = own.reduce((found, value, k) => (k && value !== null && value > own[found] ? k : found), 1);
+  const series = [Explore.line("record", "record")];
+  if (base) series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
+  const shared = { x: "pinion order", range, marks: Explore.spectrumMarks(row), group: "orders" };
+  Explore.chart(body, {
+    ...shared, title: "Order spectrum", y: "dB over 1 m/s²", series, data: base ? [x, base, own] : [x, own],
+    summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
+    caption: "Hann amplitude over whole pinion revolutions; a point is the largest line near it. Zoom to a mesh line for its sidebands: pinion, and nearer still the gear.",
+  });
+  if (!base) return;
+  Explore.chart(body, {
+    ...shared, title: "Difference from the healthy record", y: "dB", height: 170, data: [x, Explore.minus(own, base)], series: [Explore.line("record minus healthy", "record")],
+    caption: "Record minus healthy record, point by point. Between the lines this is the noise of both.",
+  });
+};
+
+Explore.envelopeMarks = (row) => (first, last) => {
+  const { teeth_pinion: pinion, teeth_gear: gear } = Explore.data.records[row];
+  const found = [];
+  for (let k = 1; k <= 4; k++) found.push({ at: k, text: k < 3 ? `${k}× pinion` : "" }, { at: (k * pinion) / gear, faint: true, colour: "accent", text: last - first < 4 && k < 3 ? `${k}× gear` : "" });
+  found.push({ at: pinion, text: "mesh" });
+  return found;
+};
+
+Explore.showEnvelope = (section, row, channel, healthy) => {
+  const body = section.querySelector(".body");
+  Explore.clear(body);
+  const view = Explore.view(row, channel);
+  if (!view.envelope) return void body.append(Explore.element("p", view.missing, { class: "note" }));
+  const own = Explore.values(view.envelope);
+  const x = Explore.orders(own.length, Explore.data.envelope_step);
+  const other = healthy === null ? null : Explore.view(healthy, channel);
+  const base = other && other.envelope ? Explore.values(other.envelope) : null;
+  const series = [Explore.line("record", "record")];
+  if (base) series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
+  const top = own.reduce((found, value, k) => (value !== null && value > own[found] ? k : found), 1);
+  Explore.chart(body, {
+    title: "Envelope spectrum", x: "pinion order", y: "amplitude [m/s²]", series, data: base ? [x, base, own] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
+    summary: `Strongest line at order ${Explore.number(x[top])}.`,
+    caption: "Envelope of everything above half the mesh order. A local fault repeats once per revolution of its shaft: lines at its order and multiples.",
+  });
+};

@@ -1,0 +1,81 @@
+// The signal over pinion revolutions: extremes of buckets, every sample of the first stretch.
+Explore.wave = (row, packed) => {
+  const samples = Explore.samples(packed);
+  const pulses = Explore.floats(Explore.data.signals[row].pulses);
+  const turning = pulses.length > 1;
+  const x = turning ? Explore.revolutions(samples, pulses) : samples.map((sample) => sample / Explore.data.fs_hz);
+  return { x, y: Explore.values(packed), fine: packed.fine, from: samples.indexOf(packed.fine[0]), turning };
+};
+
+// Series and data of a curve, over the one of the healthy record where there is one.
+Explore.overlaid = (own, other) => {
+  const series = [Explore.line("record", "record")];
+  if (!other || other.turning !== own.turning) return { series, data: [own.x, own.y] };
+  series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
+  return { series, data: uPlot.join([[other.x, other.y], [own.x, own.y]]) };
+};
+
+Explore.angleLabel = (own) => (own.turning ? "pinion revolutions since the first pulse" : "time [s]");
+
+// Angles (revolutions since the first pulse) at which a damaged tooth enters contact, within first ... last.
+Explore.entries = (row, first, last) => {
+  const record = Explore.data.records[row];
+  const found = [];
+  const pairs = record.start_angle_rad === undefined ? 0 : Math.ceil(record.start_angle_rad / (2 * Math.PI)) * record.teeth_pinion;
+  for (const [gear, tooth] of Explore.damagedTeeth(row)) {
+    if (gear === "gear" && record.start_angle_rad === undefined) continue;
+    const teeth = gear === "pinion" ? record.teeth_pinion : record.teeth_gear;
+    const start = gear === "pinion" ? tooth : (((tooth - pairs) % teeth) + teeth) % teeth;
+    const period = teeth / record.teeth_pinion;
+    for (let n = Math.floor(first / period) - 1; ; n++) {
+      const at = start / record.teeth_pinion + n * period;
+      if (at > last) break;
+      if (at >= first - 1) found.push({ at, to: at + 1 / record.teeth_pinion, colour: "damage", text: `${gear} tooth ${tooth}` });
+    }
+  }
+  return found;
+};
+
+Explore.damagedTeeth = (row) => {
+  const rows = Explore.data.damage[String(Explore.data.records[row].record_id)] || [];
+  const found = new Map(rows.map((damage) => [`${damage.gear} ${damage.tooth}`, [damage.gear, damage.tooth]]));
+  return [...found.values()];
+};
+
+Explore.waveMarks = (row, turning) => (first, last) => {
+  if (!turning) return [];
+  const teeth = Explore.data.records[row].teeth_pinion;
+  const found = [];
+  if (last - first <= 60) for (let n = Math.ceil(first); n <= last; n++) found.push({ at: n, text: last - first <= 12 ? `rev ${n}` : "" });
+  if ((last - first) * teeth <= 130)
+    for (let k = Math.ceil(first * teeth); k <= last * teeth; k++) if (k % teeth) found.push({ at: k / teeth, faint: true });
+  if (last - first <= 12) {
+    const entries = Explore.entries(row, first, last);
+    found.push(...entries.map((entry) => (entries.length > 12 ? { ...entry, text: "" } : entry)));
+  }
+  return found;
+};
+
+Explore.showWaveform = (section, row, channel, healthy) => {
+  const body = section.querySelector(".body");
+  const controls = section.querySelector(".controls");
+  Explore.clear(body);
+  controls.replaceChildren();
+  const packed = (at) => Explore.data.signals[at].channels[channel].wave;
+  const own = Explore.wave(row, packed(row));
+  const other = healthy === null ? null : Explore.wave(healthy, packed(healthy));
+  const peak = own.y.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
+  const whole = own.fine[1] - own.fine[0] >= Explore.data.samples;
+  const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; --full keeps all.`;
+  const plot = Explore.chart(body, {
+    title: "Signal", x: Explore.angleLabel(own), y: "acceleration [m/s²]", ...Explore.overlaid(own, other), group: "turns",
+    range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} m/s².`,
+    caption: `${kept} Dashed: revolutions; thin: tooth passages (when near enough); shaded: a damaged tooth enters contact.`,
+  });
+  const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);
+  const near = Explore.element("button", own.turning ? "first revolutions" : "first stretch", { type: "button" });
+  near.addEventListener("click", () => plot.setScale("x", { min: own.x[own.from], max: own.turning ? Math.min(own.x[end], own.x[own.from] + 2) : own.x[end] }));
+  const all = Explore.element("button", "whole record", { type: "button" });
+  all.addEventListener("click", () => Explore.reset(plot));
+  controls.append(near, all);
+};

@@ -1,0 +1,134 @@
+"""Everything that the page's program needs of a set, as one value that JSON can hold."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from diagnostics.base.progress import Stage
+from diagnostics.explore.chosen_records import overlaid_records
+from diagnostics.explore.detail import page_detail
+from diagnostics.explore.flank_outlines import flank_size, outlines
+from diagnostics.explore.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.explore.internal_waves import internal_waves, shown_internals
+from diagnostics.explore.order_axis import highest_order, order_axis
+from diagnostics.explore.packed import packed_floats
+from diagnostics.explore.record_views import PageAxes, record_views
+from diagnostics.indicators.table import RecordTable
+from diagnostics.records.recording import recordings
+from siggen.dataset.reading import Dataset
+
+SHOWN = (
+    *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
+    *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
+)
+GEARS = ("pinion", "gear")
+
+
+def page_payload(dataset: Dataset, table: RecordTable, rows: np.ndarray, stage: Stage, *, full: bool) -> dict[str, Any]:
+    """Return labels, indicators and packed signals of the chosen rows.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+    table : RecordTable
+        Indicators of the whole set.
+    rows : (n,) int64
+        Rows of the table that the page shows.
+    stage : Stage
+        Told of every record.
+    full : bool
+        Whether all samples are wanted.
+    """
+    labels = chosen_labels(dataset, rows)
+    axes = _axes(dataset, labels, full=full)
+    signals = _signals(dataset, labels, axes, stage)
+    fine = [next(iter(found["channels"].values()))["wave"]["fine"] for found in signals]
+    return {
+        "fs_hz": dataset.fs_hz,
+        "samples": round(dataset.fs_hz * dataset.duration_s),
+        "channels": [channel.name for channel in dataset.channels],
+        "order_step": axes.orders.step,
+        "envelope_step": axes.envelope_orders.step,
+        "steps_per_tooth": axes.detail.steps_per_tooth,
+        "records": [{name: _plain(values[k]) for name, values in labels.items()} for k in range(rows.size)],
+        "overlay": overlaid_records(labels),
+        "damage": _damage(dataset, labels["record_id"]),
+        "flanks": [_flanks(dataset, labels, k) for k in range(rows.size)],
+        "indicators": _indicators(table, rows),
+        "signals": signals,
+        "quantities": shown_internals(dataset),
+        "internals": internal_waves(dataset, labels["record_id"], axes.detail, fine),
+    }
+
+
+def chosen_labels(dataset: Dataset, rows: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the labels that the page uses, (rows,) each; those that the set lacks are left out."""
+    found = dataset.labels()
+    present = [name for name in SHOWN if name in found.column_names]
+    return {name: np.asarray(found.column(name).to_pylist())[rows] for name in present}
+
+
+def _plain(value: Any) -> Any:
+    plain = value.item() if isinstance(value, np.generic) else value
+    return plain if not isinstance(plain, float) or np.isfinite(plain) else None
+
+
+def _axes(dataset: Dataset, labels: dict[str, np.ndarray], *, full: bool) -> PageAxes:
+    samples, teeth = round(dataset.fs_hz * dataset.duration_s), labels["teeth_pinion"]
+    both = int((teeth + labels["teeth_gear"]).max())
+    series = len(dataset.channels) + len(shown_internals(dataset))
+    detail = page_detail(teeth.size * series, samples, both, full=full)
+    revolutions = int(labels["speed_hz"].max() * dataset.duration_s)
+    last = max(highest_order(int(z), dataset.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
+    return PageAxes(
+        detail,
+        order_axis(last, revolutions, detail.order_points),
+        order_axis(min(1.5 * float(teeth.max()), last), revolutions, detail.envelope_points),
+    )
+
+
+def _damage(dataset: Dataset, ids: np.ndarray) -> dict[str, list[dict[str, Any]]]:
+    """Return the outlines of damage by record, empty for a set without a table of damage."""
+    if not hasattr(dataset, "damage"):
+        return {}
+    table = dataset.damage()
+    kept = table.filter(pc.is_in(table.column("record_id"), value_set=pa.array(ids.tolist(), pa.int64()))).to_pylist()
+    by_record: dict[str, list[dict[str, Any]]] = {}
+    for row in kept:
+        by_record.setdefault(str(row["record_id"]), []).append(row)
+    return {record: outlines(found) for record, found in by_record.items()}
+
+
+def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[str, Any]:
+    return {gear: flank_size(dataset.config, gear, int(labels[f"teeth_{gear}"][row])) for gear in GEARS}
+
+
+def _indicators(table: RecordTable, rows: np.ndarray) -> list[dict[str, Any]]:
+    """Return name, title, definition and packed values of every indicator that is defined for some record."""
+    titles, definitions = indicator_titles(table.settings), indicator_definitions(table.settings)
+    names = table.names()
+    values = table.values(names)[rows]
+    found = []
+    for name, column in zip(names, values.T, strict=True):
+        base, _, channel = name.rpartition("__") if name not in table.own else (name, "", "")
+        if np.isfinite(column).any():
+            facts = {"title": titles.get(base, name), "definition": definitions.get(base, "your own indicator")}
+            found.append({"name": name, "channel": channel, **facts, "data": packed_floats(column)})
+    return found
+
+
+def _signals(dataset: Dataset, labels: dict[str, np.ndarray], axes: PageAxes, stage: Stage) -> list[dict[str, Any]]:
+    place = {int(record): k for k, record in enumerate(labels["record_id"])}
+    starts = labels.get("start_angle_rad")
+    found: list[dict[str, Any]] = [{} for _ in place]
+    with stage("signals and spectra", len(place)) as advance:
+        for record in recordings(dataset):
+            row = place.get(int(record.labels["record_id"]))
+            if row is not None:
+                found[row] = record_views(record, axes, None if starts is None else float(starts[row]))
+                advance()
+    return found

@@ -1,0 +1,169 @@
+"""The page of a set: complete, self-contained, small, and safe against any name."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pytest
+
+from diagnostics.explore.chosen_records import chosen_records, overlaid_records
+from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
+from diagnostics.explore.explorer import write_explorer
+from diagnostics.explore.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.indicators.registry import columns
+from diagnostics.indicators.settings import IndicatorSettings
+from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
+from tests.diagnostics.explore.unpacked import steps
+
+NAMES = {
+    "healthy": "</script><script>window.broken=1</script>",
+    "slight": "<img src=x onerror=alert(1)>&amp;\"' \u202eright to left\u2066 ",
+    "severe": "long " * 60 + "{{ 7*7 }}\u2028<!--",
+}
+
+
+class Read(HTMLParser):
+    """Elements with what they reach for, texts of table cells, and the embedded data."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.reached: list[str] = []
+        self.cells: list[str] = []
+        self.data = ""
+        self._data = self._cell = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.reached += [str(value) for name, value in attributes if name in ("src", "href", "action")]
+        self._data = tag == "script" and ("id", "data") in attributes
+        if tag in ("td", "th"):
+            self._cell = True
+            self.cells.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._data = False
+        self._cell = self._cell and tag not in ("td", "th")
+
+    def handle_data(self, text: str) -> None:
+        if self._data:
+            self.data += text
+        if self._cell:
+            self.cells[-1] += text
+
+
+def renamed(dataset: MemoryDataset) -> MemoryDataset:
+    place = dataset.table.schema.get_field_index("state")
+    states = [NAMES[state] for state in dataset.table.column("state").to_pylist()]
+    dataset.table = dataset.table.set_column(place, "state", pa.array(states))
+    dataset.manifest = {**dataset.manifest, "name": NAMES["healthy"]}
+    return dataset
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("explore") / "new" / "page.html"
+    return write_explorer(renamed(memory_dataset(("train", "test"))), path).read_text(encoding="utf-8")
+
+
+def test_names_of_a_set_stay_text_wherever_they_stand(page: str) -> None:
+    found = Read(page)
+    assert found.tags.count("script") == 2
+    assert "img" not in found.tags
+    for name in NAMES.values():
+        assert name in found.cells
+    assert {record["state"] for record in json.loads(found.data)["records"]} == set(NAMES.values())
+    assert not set("<>&\u2028") & set(found.data)
+
+
+def test_the_page_reaches_for_nothing_outside_itself(page: str) -> None:
+    assert Read(page).reached == []
+    assert "default-src 'none'" in page
+    assert "@import" not in page
+    assert "Permission is hereby granted" in page  # the licence of the library goes along with every copy of it
+
+
+def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
+    data = json.loads(Read(page).data)
+    assert len(data["signals"]) == len(data["records"]) == len(data["overlay"]) == 6
+    for signals in data["signals"]:
+        assert set(signals["channels"]) == set(CHANNELS)
+        for view in signals["channels"].values():
+            assert {"wave", "spectrum", "envelope", "averages"} <= set(view)
+    assert data["overlay"] == [None, 0, 0, None, 3, 3]
+    titles = {indicator["title"] for indicator in data["indicators"]}
+    assert {"FM4, pinion", "Sideband amplitude, gear, mesh harmonic 1, upper sideband 1", "RMS [m/s²]"} <= titles
+
+
+def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:
+    dataset = memory_dataset(("train",))
+    dataset.table = dataset.table.filter(pc.not_equal(dataset.table.column("fault"), "healthy"))
+    text = write_explorer(dataset, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "No healthy records" in text
+    assert "Neither transmission error nor mesh force" in text
+    assert "no flank is drawn" in text
+    assert json.loads(Read(text).data)["overlay"] == [None, None]
+
+
+class WithInternals(MemoryDataset):
+    """Stores the transmission error of records 0 and 2: a ramp of as many metres as the record's number."""
+
+    @property
+    def internal_columns(self) -> tuple[SimpleNamespace, ...]:
+        return (SimpleNamespace(name="transmission_error_m", unit="m"),)
+
+    def internals(self, columns: list[str], batch_rows: int) -> Iterator[pa.RecordBatch]:
+        samples = round(self.fs_hz * self.duration_s)
+        rows = [{"record_id": k, "transmission_error_m": np.linspace(0.0, k, samples)} for k in (0, 2)]
+        yield pa.RecordBatch.from_pylist(rows).select(columns)
+
+
+def test_stored_quantities_that_no_sensor_sees_stand_at_their_records(tmp_path: Path) -> None:
+    plain = memory_dataset(("train",))
+    text = write_explorer(WithInternals(plain.table), tmp_path / "page.html").read_text(encoding="utf-8")
+    data = json.loads(Read(text).data)
+    assert [quantity["name"] for quantity in data["quantities"]] == ["transmission_error_m"]
+    assert [set(found) for found in data["internals"]] == [{"transmission_error_m"}, set(), {"transmission_error_m"}]
+    assert steps(data["internals"][2]["transmission_error_m"]).max() == pytest.approx(2.0e6)  # shown in um
+    assert "Neither transmission error" not in text
+
+
+@pytest.mark.parametrize("channels", [1, 2, 8])
+@pytest.mark.parametrize(("full", "most"), [(False, 4.0e6), (True, 27.5e6)])
+def test_signals_of_a_hundred_records_fit(channels: int, full: bool, most: float) -> None:
+    detail = page_detail(100 * channels, 38_400, 81, full=full)
+    assert 100 * channels * detail.points(81) * BYTES_PER_POINT < most
+    assert detail.fine_samples > 200
+
+
+def test_gearboxes_beyond_the_limit_are_left_out_whole_and_evenly() -> None:
+    labels = {"specimen_id": np.repeat(np.arange(10), 5)}
+    assert chosen_records(labels, 50).tolist() == list(range(50))
+    assert np.unique(labels["specimen_id"][chosen_records(labels, 19)]).tolist() == [0, 4, 9]
+    assert chosen_records(labels, 3).size == 3
+
+
+def test_a_record_is_laid_over_its_own_gearbox_at_its_own_operating_point() -> None:
+    labels = {
+        "specimen_id": np.array([1, 1, 1, 1, 2]),
+        "operating_point_id": np.array([0, 1, 1, 1, 1]),
+        "repeat": np.array([0, 0, 1, 1, 1]),
+        "fault": np.array(["healthy", "healthy", "healthy", "pitting", "pitting"]),
+    }
+    assert overlaid_records(labels) == [None, 2, 1, 2, None]
+
+
+def test_every_indicator_has_a_title_and_a_definition_of_its_own() -> None:
+    settings = IndicatorSettings()
+    titles, definitions = indicator_titles(settings), indicator_definitions(settings)
+    assert set(columns(settings)) <= set(titles)
+    assert set(titles) == set(definitions)
+    assert len(set(titles.values())) == len(titles)
