@@ -14,7 +14,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.background import record_background
 from siggen.specimen.instrument import specimen_instrument
 
-CONFIG = "configs/background.yaml"
+CONFIG = "configs/bench.yaml"
 GOAL_S = 1e-2
 LAYERS = ("rubbing", "floor", "shafts", "second_stage", "auxiliary_drive")
 GEARBOXES = 5

@@ -1,4 +1,4 @@
-"""Table of docs/understand/background.md: healthy channels of bench and background beside what real machines show.
+"""Table of docs/understand/background.md: healthy channels of bench, bare and as it is, beside what real machines show.
 
 `python docs/scripts/background.py [gearboxes]`; 8 gearboxes take a minute. The numbers are those of the audit
 (diagnostics/indicators/background_levels.py); the coherence of channels needs two channels at once.
@@ -18,7 +18,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.record.simulation import simulate
 
-CONFIGS = ("configs/bench.yaml", "configs/background.yaml")
+CONFIG = "configs/bench.yaml"
+WITHOUT = ["background=null", "manufacture.flank_waves=null"]
 CHANGES = ["duration_s=3.0"]
 STEPS = 1024
 AIMS = {
@@ -77,9 +78,9 @@ def turned(record: Record, channel: str, fs_hz: float, grid: AngleGrid) -> np.nd
     return resample_to_angle(record.channels[channel], fs_hz, grid).reshape(grid.revolutions, STEPS)
 
 
-def channels(config_file: str, gearboxes: int) -> dict[str, list[float]]:
+def channels(changes: list[str], gearboxes: int) -> dict[str, list[float]]:
     """Return name -> one number per healthy channel."""
-    config = load_config(config_file, [*CHANGES, f"specimens={gearboxes}"])
+    config = load_config(CONFIG, [*CHANGES, *changes, f"specimens={gearboxes}"])
     found: dict[str, list[float]] = {name: [] for name in AIMS}
     for specimen in range(gearboxes):
         record = simulate(config, [specimen * config.records_per_specimen])[0]
@@ -98,7 +99,7 @@ def channels(config_file: str, gearboxes: int) -> dict[str, list[float]]:
         rate_hz = STEPS * shaft_hz
         hz, together = coherence(*rest, fs=rate_hz, nperseg=round(0.02 * rate_hz))
         found["coherence of channels > 2.5 kHz"].append(float(np.median(together[(hz > 2500.0) & (hz < 10_000.0)])))
-        print(f"{config_file}: gearbox {specimen + 1} of {gearboxes}", file=sys.stderr)
+        print(f"{CONFIG} {' '.join(changes)}: gearbox {specimen + 1} of {gearboxes}", file=sys.stderr)
     return found
 
 
@@ -110,7 +111,7 @@ def text(values: list[float]) -> str:
 
 if __name__ == "__main__":
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 8
-    tables = [channels(file, count) for file in CONFIGS]
-    print("| quantity | aim of the median | bench | background |\n|---|---|---|---|")
+    tables = [channels(changes, count) for changes in (WITHOUT, [])]
+    print("| quantity | aim of the median | bench without background and flank waves | bench |\n|---|---|---|---|")
     for name, aim in AIMS.items():
         print(f"| {name} | {aim} | {' | '.join(text(table[name]) for table in tables)} |")

@@ -27,6 +27,7 @@ NAMES = {
     r"theta_\w+_rad": "rotation of motor (m), pinion (1), gear (2) and load (l) about the mean rotation",
     r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of pinion (1), gear (2) and casing (c)",
     r"phi_c_rad": "rocking of the casing",
+    r"phi_[xy]_[12]_rad": "tilt of pinion (1) and gear (2): how x or y of its flanks grows along the shaft",
     r"clean_accel_.*": "acceleration at this place without path, sensor and noise",
     r"bearing_force_.*": "force on the housing at both bearings of this shaft",
     r"pair_k_force_n": "force of this pair along the line of action",

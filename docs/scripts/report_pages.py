@@ -31,7 +31,7 @@ SETS = {
 
 REPORTS = {
     "quickstart": {
-        "quickstart_report": ("report.html", "report runs/quickstart --studies"),
+        "quickstart_report": ("report.html", "report runs/quickstart"),
         "quickstart_indicators": ("indicators.html", "indicators runs/quickstart"),
     },
     "bench": {
@@ -42,14 +42,6 @@ REPORTS = {
     },
 }
 """By preset: the name of a page, what the program calls it, and the command that writes it."""
-
-FIGURES = {
-    "bench_detectability.png": "bench_audit/figures/detectability.png",
-    "bench_realism.png": "bench_audit/figures/realism.png",
-    "bench_indicators.png": "bench_indicators/figures/separation.png",
-    "bench_ladder.png": "bench_ladder/figures/detection.png",
-}
-"""Figures of docs/understand/presets.md, and what writes them."""
 
 NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")}
 
@@ -96,9 +88,6 @@ def main(*presets: str) -> None:
                     run(command)
         for name, (page, command) in REPORTS[preset].items():
             write_page(name, page, command)
-            for figure, source in FIGURES.items():
-                if source.startswith(f"{name}/"):
-                    shutil.copyfile(RUNS / source, Path("docs/figures") / figure)
 
 
 if __name__ == "__main__":

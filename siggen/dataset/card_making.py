@@ -30,6 +30,14 @@ BEHIND = {
     "modal": "random flexible modes of a housing, new for every specimen",
     "measured": "a measured accelerance",
 }
+BACKGROUND = {
+    "rubbing": "rubbing of rough flanks",
+    "floor": "force noise in mesh and bearings",
+    "shafts": "lines of its shafts",
+    "second_stage": "a second gear stage",
+    "auxiliary_drive": "an auxiliary drive",
+}
+"""Part of `background` -> what it adds."""
 
 
 def making(config: Config) -> str:
@@ -76,17 +84,26 @@ def _dynamics_text(config: Config) -> str:
         mesh = "a mesh of single tooth pairs with backlash, stiffness, tip relief and damping"
     return (
         f"A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and {mesh}. "
-        f"{friction_text(config)} {drive_text(config)} Bearing accelerations are low-pass filtered before they are "
-        "sampled."
+        f"{across_text(config)}{friction_text(config)} {drive_text(config)} Bearing accelerations are low-pass "
+        "filtered before they are sampled."
     )
 
 
 def _sensing_text(config: Config) -> str:
     return (
-        f"{_path_text(config)}{force_noise_text(config)}Gain, noise, clipping at the sensor's range, and rounding to "
-        "the converter's step, which is a power of two and therefore exact in float32 (each sensor's noise and bits "
-        "are in `config.yaml`)."
+        f"{_path_text(config)}{force_noise_text(config)}{background_text(config)}Gain, noise, clipping at the sensor's "
+        "range, and rounding to the converter's step, which is a power of two and therefore exact in float32 (each "
+        "sensor's noise and bits are in `config.yaml`)."
     )
+
+
+def across_text(config: Config) -> str:
+    """Say what the contact and the shafts know of the face width."""
+    mesh = config.dynamics.mesh
+    if mesh.law == "linear" or mesh.contact == "slices":
+        return ""
+    solved = "The contact is solved across the face and depends on the load (`dynamics.mesh.contact`). "
+    return solved + ("Shafts bend and gears tilt (`dynamics.shafts`). " if config.dynamics.shafts is not None else "")
 
 
 def friction_text(config: Config) -> str:
@@ -127,3 +144,15 @@ def force_noise_text(config: Config) -> str:
     if config.housing is None or config.housing.force_noise is None or not has_path:
         return ""
     return "Broad-band noise is added to the bearing forces (`housing.force_noise`). "
+
+
+def background_text(config: Config) -> str:
+    """Say what a healthy machine adds to its gears, and whose the levels are."""
+    section = config.background
+    if section is None:
+        return ""
+    parts = [said for name, said in BACKGROUND.items() if getattr(section, name) is not None]
+    if not parts:
+        return ""
+    listed = " and ".join(part for part in (", ".join(parts[:-1]), parts[-1]) if part)
+    return f"A healthy machine adds {listed} (`background`); the levels belong to the {section.redraw}. "

@@ -21,6 +21,7 @@ RELIEF_STIFFNESS_N_UM_MM = 14.0
 BALLS = 9
 BENCH_CENTRE_MM = 97.5
 BENCH_TORQUE_NM = (60.0, 156.7)
+BENCH_FORCE_N = 2365.0
 ASSUMED = "scaled from the gearbox of bench, by size or torque"
 
 
@@ -35,7 +36,10 @@ class RotorNumbers(NamedTuple):
 
 
 class RigNumbers(NamedTuple):
-    """What `rig_text` writes; stiffnesses and dampings of couplings belong to input and output."""
+    """What `rig_text` writes; stiffnesses and dampings of couplings belong to input and output.
+
+    `load_share` is the largest tooth force over that of bench, `scale` the same of the centre distance.
+    """
 
     rotors: tuple[RotorNumbers, RotorNumbers]
     motor_inertia_kg_m2: float
@@ -45,6 +49,7 @@ class RigNumbers(NamedTuple):
     casing_kg: float
     casing_inertia_kg_m2: float
     scale: float
+    load_share: float
     tip_relief_um: Pair
     fs_hz: float
     duration_s: float
@@ -72,6 +77,7 @@ def rig_numbers(rig: Rig) -> RigNumbers:
         20.0 * scale**3,
         0.25 * scale**5,
         scale,
+        force_n / BENCH_FORCE_N,
         (max(0.75 * relief, 1.0), max(1.25 * relief, 2.0)),
         sampling_rate_hz(rig),
         duration_s(rig),

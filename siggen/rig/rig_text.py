@@ -29,7 +29,7 @@ def rig_text(rig: Rig, name: str, base: str) -> str:
     """
     numbers = rig_numbers(rig)
     parts = (_head(rig, name, base, numbers), _gears(rig, numbers), _dynamics(rig, numbers), _states(rig))
-    return "\n".join((*parts, _sensors(rig, numbers.scale)))
+    return "\n".join((*parts, _background(rig, numbers), _sensors(rig, numbers.scale)))
 
 
 def _head(rig: Rig, name: str, base: str, numbers: RigNumbers) -> str:
@@ -71,6 +71,11 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
     lines = [
         "dynamics:",
         *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
+        "  shafts:                     # the gear between its bearings as in the preset",
+        *(
+            f"    {name}: {{bearing_span_mm: {rotor.span_mm:.3g}, diameter_mm: {rotor.bore_mm:.3g}}}"
+            for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)
+        ),
         f"  # From here on {ASSUMED}.",
         f"  motor_inertia_kg_m2: {numbers.motor_inertia_kg_m2:.3g}",
         f"  load_inertia_kg_m2: {numbers.load_inertia_kg_m2:.3g}",
@@ -125,6 +130,19 @@ states:                       # on one tooth of the pinion; sizes grow with the 
     damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
   - name: severe
     damage: {{<<: *spall, profile_length_mm: {0.5 * m:.3g}, face_share: 1.0}}
+"""
+
+
+def _background(rig: Rig, numbers: RigNumbers) -> str:
+    """Return what stands around the gears: the preset's, in proportion to size and load."""
+    teeth, mass, force = rig.teeth[0], numbers.scale**3, numbers.load_share
+    return f"""\
+background:                   # {ASSUMED}
+  base: {{mass_kg: {_range((50.0 * mass, 300.0 * mass), "loguniform")}}}
+  floor:
+    density_n_per_sqrt_hz: {_range((0.03 * force, 0.3 * force), "loguniform")}
+    machines_n_per_sqrt_hz: {_range((0.16 * force, 1.6 * force), "loguniform")}
+  second_stage: {{order: {_range((0.15 * teeth, 0.6 * teeth))}}}
 """
 
 

@@ -5,7 +5,7 @@ from siggen.checks.loading import load_config
 
 
 def notes(*overrides: str) -> str:
-    return "\n".join(contact_notes(load_config("configs/paper_b.yaml", overrides)))
+    return "\n".join(contact_notes(load_config("tests/configs/casing.yaml", overrides)))
 
 
 def test_roughness_beyond_the_fit_is_noted_for_the_lands_inside_damage() -> None:

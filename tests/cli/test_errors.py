@@ -21,7 +21,7 @@ runner = CliRunner()
 
 
 def run(*arguments: object) -> None:
-    result = runner.invoke(app, ["errors", "configs/paper_b.yaml", *map(str, arguments)], catch_exceptions=True)
+    result = runner.invoke(app, ["errors", "tests/configs/casing.yaml", *map(str, arguments)], catch_exceptions=True)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output
@@ -42,13 +42,13 @@ def test_a_row_per_tooth_and_a_picture(tmp_path: Path) -> None:
 def test_the_table_is_what_the_records_were_labelled_with(tmp_path: Path) -> None:
     run("--out", tmp_path / "e.parquet", "--specimen", 4, *CLASS_6)
     table = pyarrow.parquet.read_table(tmp_path / "e.parquet")
-    pinion, _ = gear_charts(load_config("configs/paper_b.yaml", [CLASS_6[1]]), 4)
+    pinion, _ = gear_charts(load_config("tests/configs/casing.yaml", [CLASS_6[1]]), 4)
     largest = 1e6 * pinion.made.found.largest["profile_m"]
     assert table["profile_um"].to_numpy()[:18].max() == pytest.approx(largest, rel=1e-12)
 
 
 def test_drawn_profiles_and_pitches_lie_within_the_band() -> None:
-    charts = gear_charts(load_config("configs/paper_b.yaml", [CLASS_6[1]]))
+    charts = gear_charts(load_config("tests/configs/casing.yaml", [CLASS_6[1]]))
     for chart, (pitch, profiles) in zip(charts, np.reshape(error_figure(charts).axes, (2, 2)), strict=True):
         used = 1e6 * chart.made.tolerance_share * chart.made.tolerances.profile_m
         heights = [np.ptp(line.get_ydata()) for line in profiles.get_lines()]

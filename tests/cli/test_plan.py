@@ -103,7 +103,7 @@ def test_the_error_of_the_stiffness_tables_is_told_and_falls_with_their_points(p
 def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
     assert plan_summary(config())["manufacture"] == "perfect gears"
     override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_gear: 7, draw: state}")
-    text = run("plan", Path("configs/paper_b.yaml"), *override)
+    text = run("plan", Path("tests/configs/casing.yaml"), *override)
     assert "ISO 1328-1 class 6, gear 7; share of its tolerances: uniform from 0.3 to 0.5" in text
     assert "drawn anew for" in text
 

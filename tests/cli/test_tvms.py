@@ -116,8 +116,10 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
 
 
 def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
-    arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png")
-    said = run("configs/quickstart.yaml", "--out", tmp_path / "tvms.csv", *arguments)
+    spall = "{kind: spall, teeth: 1, profile_length_mm: 1.5, face_length_mm: 20.0, depth_mm: 0.2}"
+    states = f"states=[{{name: healthy}}, {{name: severe, damage: {spall}}}]"
+    arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png", "--set", states)
+    said = run("configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments)
     assert "quasi-static mesh stiffness at 45\u00a0N\u00a0m: force over approach, as simulated" in said
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
     columns = {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
@@ -186,6 +188,6 @@ def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated
 def test_a_torque_that_no_teeth_carry_is_refused_with_the_largest_of_the_set(tmp_path: Path, contact: str) -> None:
     with pytest.raises(UsageError, match=r"torque: received 1e\+09 N m[,;] .*allowed: .*up to \d+"):
         run(
-            "configs/quickstart.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9, "--pitches", 1,
+            "tests/configs/casing.yaml", "--out", tmp_path / "t.csv", "--torque", 1e9, "--pitches", 1,
             "--set", f"dynamics.mesh.contact={contact}",
         )  # fmt: skip

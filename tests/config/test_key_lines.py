@@ -67,11 +67,10 @@ def test_a_key_of_an_extended_file_is_found_there_unless_a_list_or_kind_replaces
 
 # what is written in place of what; key, and what is said
 BAD = [
-    ("  mesh:\n", "  shafts: {pinion: {bearing_span_mm: 0.0}}\n  mesh:\n", "dynamics.shafts.pinion.bearing_span_mm"),
-    ("manufacture:\n", "manufacture:\n  lead_misalignment_um: 1e6\n", "manufacture.lead_misalignment_um"),
-    ("manufacture:\n", "manufacture:\n  crowning_um: -1\n", "manufacture.crowning_um"),
-    ("manufacture:\n", "background:\n  floor: {density_n_per_sqrt_hz: 1e9}\nmanufacture:\n",
-     "background.floor.density_n_per_sqrt_hz"),
+    ("      bearing_span_mm: ", "      bearing_span_mm: 0.0 #", "dynamics.shafts.pinion.bearing_span_mm"),
+    ("  lead_misalignment_um: ", "  lead_misalignment_um: 1e6 #", "manufacture.lead_misalignment_um"),
+    ("  crowning_um: ", "  crowning_um: -1 #", "manufacture.crowning_um"),
+    ("  floor: {}\n", "  floor: {density_n_per_sqrt_hz: 1e9}\n", "background.floor.density_n_per_sqrt_hz"),
     ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 0.2, "
      "face_share: 1.0, leading_skew_mm_per_10mm: 2}}\n", "states.0.damage.leading_skew_mm_per_10mm"),
     ("states:\n", "states:\n  - {name: x, severity: slight, damage: {kind: irregular, profile_length_mm: 9, "

@@ -104,5 +104,5 @@ def test_gears_outside_the_standard_are_refused_by_name() -> None:
         "gears.gear.bore_radius_mm=2",
     ]
     with pytest.raises(ConfigError, match=r"manufacture: received tolerances for a (pinion|gear) with") as refused:
-        load_config("configs/paper_b.yaml", [*small, "manufacture={accuracy_class: 6}"])
+        load_config("tests/configs/casing.yaml", [*small, "manufacture={accuracy_class: 6}"])
     assert "ISO 1328-1: " in str(refused.value)

@@ -10,7 +10,7 @@ import yaml
 from siggen.checks.loading import load_config
 from siggen.config import Choice, Config, Manufacture
 from siggen.dataset.card import _limits
-from siggen.dataset.card_making import damage_text, drive_text, making
+from siggen.dataset.card_making import background_text, damage_text, drive_text, making
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
 
@@ -102,13 +102,25 @@ def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
 
 
 def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
-    plain, rich = making(shipped("linear_pits")), making(shipped("quickstart"))
+    plain, rich, noisy = (making(shipped(name)) for name in ("linear_pits", "quickstart", "transfer_path"))
+    longest = max(map(len, [*plain.splitlines(), *rich.splitlines()]))
+    plain, rich, noisy = (" ".join(text.split()) for text in (plain, rich, noisy))
     assert "no friction between the flanks" in plain
     assert "Speed and torque are constant" in plain
     assert "noise is added" not in plain
     assert "film of ISO VG 220" in rich
     assert "Within a record speed and torque vary" in rich
-    assert "noise is added to the bearing forces" in " ".join(rich.split())
+    assert "noise is added to the bearing forces" in noisy
     torque = shipped("linear_pits", "variation.torque.random_rms=0.01")
     assert drive_text(torque) == "Within a record torque varies (`variation`); the speed is constant."
-    assert max(map(len, [*plain.splitlines(), *rich.splitlines()])) <= 118
+    assert "Shafts bend" not in noisy
+    assert "healthy machine adds" not in noisy
+    across = "The contact is solved across the face and depends on the load (`dynamics.mesh.contact`). Shafts bend"
+    assert across in rich
+    one = background_text(shipped("quickstart", "background={floor: {}}"))
+    assert (
+        one
+        == "A healthy machine adds force noise in mesh and bearings (`background`); the levels belong to the gearbox. "
+    )
+    assert "rubbing of rough flanks, " in rich
+    assert longest <= 118

@@ -18,7 +18,7 @@ STIFF = ["dynamics.friction.model=off", "dynamics.mesh.damping=constant"]
 
 @pytest.fixture(scope="module")
 def config() -> Config:
-    return load_config("configs/paper_b.yaml", SHORT)
+    return load_config("tests/configs/casing.yaml", SHORT)
 
 
 @pytest.fixture(scope="module")
@@ -112,13 +112,13 @@ def test_tooth_pairs_work_with_every_structure(model: str) -> None:
         else ["sensors.0.place=pinion_bearing", "sensors.0.axes=[vertical]"]
     )
     raw = [*SHORT, *STIFF, f"dynamics.model={model}", "sensors.0.position_mm=null", "sensors.0.range_m_s2=10000.0"]
-    result = simulate(load_config("configs/paper_b.yaml", [*raw, *sensor]), [0])[0]
+    result = simulate(load_config("tests/configs/casing.yaml", [*raw, *sensor]), [0])[0]
     assert isinstance(result, Record)
     assert all(signal.std() > 0.1 for signal in result.channels.values())
 
 
 def test_friction_changes_the_vibration_and_keeps_the_speed(config: Config) -> None:
-    smooth = simulate(load_config("configs/paper_b.yaml", [*SHORT, *STIFF]), [0])[0]
+    smooth = simulate(load_config("tests/configs/casing.yaml", [*SHORT, *STIFF]), [0])[0]
     rough = simulate(config, [0])[0]
     assert isinstance(smooth, Record)
     assert isinstance(rough, Record)
@@ -129,7 +129,7 @@ def test_friction_changes_the_vibration_and_keeps_the_speed(config: Config) -> N
 @pytest.mark.parametrize("fluid", ["constant", "eyring"])
 def test_the_mean_friction_of_the_oil_is_that_of_lubricated_gears(fluid: str) -> None:
     overrides = [*SHORT, f"dynamics.friction.fluid={fluid}", "dynamics.friction.roughness_um=0.4"]
-    table = internals_table(load_config("configs/paper_b.yaml", overrides), 1)
+    table = internals_table(load_config("tests/configs/casing.yaml", overrides), 1)
     friction = sum(np.abs(table[f"pair_{slot}_friction_n"].to_numpy()) for slot in range(2))
     # Load-weighted mean over the mesh; lubricated steel gears show 0.02 to 0.08.
     assert 0.02 < friction.sum() / table["mesh_force_n"].to_numpy().sum() < 0.08
@@ -138,4 +138,4 @@ def test_the_mean_friction_of_the_oil_is_that_of_lubricated_gears(fluid: str) ->
 def test_an_oil_model_beyond_its_roughness_is_refused() -> None:
     overrides = ["dynamics.friction.fluid=xu_kahraman", "dynamics.friction.roughness_um=2.0"]
     with pytest.raises(ConfigError, match=r"dynamics\.friction\.roughness_um"):
-        load_config("configs/paper_b.yaml", overrides)
+        load_config("tests/configs/casing.yaml", overrides)

@@ -54,7 +54,7 @@ def test_signals_do_not_depend_on_whether_internals_are_stored() -> None:
 
 
 def test_units_follow_from_the_names() -> None:
-    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.records=all"])
     units = {column.name: column.unit for column in stored_quantities(config)}
     expected = {
         "mesh_force_n": "N", "mesh_stiffness_n_per_m": "N/m", "mesh_damping_n_s_per_m": "N s/m", "approach_m": "m",
@@ -82,7 +82,7 @@ def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_st
 
 
 def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothing() -> None:
-    config = load_config("configs/paper_b.yaml", [*SHORT, "internals.records=all"])
+    config = load_config("tests/configs/casing.yaml", [*SHORT, "internals.records=all"])
     (record,) = simulate(config, [config.records_per_specimen - 1])
     force = record.internals["pair_0_force_n"]
     assert 0.1 < np.mean(force == 0.0) < 0.9  # a pair is in contact for 1.6 of 2 pitches
@@ -95,7 +95,7 @@ def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothi
 
 
 def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_gears() -> None:
-    config = load_config("configs/paper_b.yaml", SHORT)
+    config = load_config("tests/configs/casing.yaml", SHORT)
     specimen = draw_specimen(config, 0)
     table = internals_table(config, 0)
     pair = gear_pair(specimen.gears)

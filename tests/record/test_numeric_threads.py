@@ -22,8 +22,7 @@ SHORT = ["duration_s=0.02", "specimens=1"]
 CONFIGS = {
     "linear_pits": [*SHORT, "internals.records=all"],  # product integration
     "transfer_path": SHORT,  # filters of paths and sensors
-    "background": SHORT,  # the linearised gearbox, waves of the flanks
-    "bench": SHORT,  # tooth pairs, 47 teeth with errors, slices, coupling
+    "bench": SHORT,  # tooth pairs across the face, 47 teeth with errors and waves, coupling, the linearised gearbox
 }
 
 

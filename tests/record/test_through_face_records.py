@@ -25,7 +25,7 @@ def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
     states = [{"name": "healthy"}, {"name": "damaged", "fault": "spalling", "severity": "severe", "damage": spall}]
     from siggen.config import read_yaml
 
-    raw = {**read_yaml("configs/paper_b.yaml"), "states": states, "specimens": 1, "duration_s": 0.1}
+    raw = {**read_yaml("tests/configs/casing.yaml"), "states": states, "specimens": 1, "duration_s": 0.1}
     return load_config(raw, overrides)
 
 

@@ -14,7 +14,7 @@ from siggen.columns.record import RecordFailure
 from siggen.errors import EXIT_RECORDS_FAILED, ConfigError
 from siggen.record.simulation import simulate
 
-CONFIG = "configs/paper_b.yaml"
+CONFIG = "tests/configs/casing.yaml"
 SHORT = ["specimens=1", "duration_s=0.02", "operating_points=[{speed_hz: 30.0, torque_nm: 20.0}]"]
 HEALTHY = "states=[{name: healthy}]"
 # A casing so stiff that its natural frequency is beyond any step: 1e14 N/m on 20 kg are 700 kHz.

@@ -20,7 +20,7 @@ SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, t
 
 
 def made(*overrides: str) -> Config:
-    return load_config("configs/paper_b.yaml", [*SHORT, *overrides])
+    return load_config("tests/configs/casing.yaml", [*SHORT, *overrides])
 
 
 CLASS_6 = made("manufacture={accuracy_class: 6}")

@@ -17,7 +17,7 @@ SHORT = ["specimens=20", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
 
 def made(waves: str, *overrides: str) -> Config:
     section = f"manufacture={{accuracy_class: 6, tolerance_share: 0, flank_waves: {waves}}}"
-    return load_config("configs/paper_b.yaml", [*SHORT, section, *overrides])
+    return load_config("tests/configs/casing.yaml", [*SHORT, section, *overrides])
 
 
 def record(config: Config) -> Record:

@@ -50,7 +50,8 @@ PINION = ("sensors.0.place=pinion_bearing", "sensors.0.position_mm=null")
 def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
     # Runge-Kutta steps of first order at contact events; sampled forces differ most at their steps.
     coarse, fine = (
-        differences("configs/paper_b.yaml", *STIFF, *PINION, f"dynamics.steps_per_sample={steps}") for steps in (4, 16)
+        differences("tests/configs/casing.yaml", *STIFF, *PINION, f"dynamics.steps_per_sample={steps}")
+        for steps in (4, 16)
     )
     assert max(fine) < 2e-3
     assert max(coarse) > 2.0 * max(fine)
@@ -59,7 +60,7 @@ def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
 def test_scipy_integrates_the_exported_contact_across_the_face_to_the_same_motion() -> None:
     # Contacts begin without a step of the stiffness, so that Runge-Kutta errs less than with springs.
     face = ("dynamics.mesh.contact=face", "dynamics.steps_per_sample=16")
-    assert max(differences("configs/paper_b.yaml", *STIFF, *PINION, *face, samples=100)) < 2e-3
+    assert max(differences("tests/configs/casing.yaml", *STIFF, *PINION, *face, samples=100)) < 2e-3
 
 
 SHAFTS = "dynamics.shafts={pinion: {gear_position: 0.4}, gear: {gear_position: 0.4}}"
@@ -69,7 +70,7 @@ SHAFTS = "dynamics.shafts={pinion: {gear_position: 0.4}, gear: {gear_position: 0
 def test_scipy_integrates_the_exported_tilt_of_a_damaged_gearbox_to_the_same_motion() -> None:
     frictionless = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.steps_per_sample=16")
     tilting = ("dynamics.mesh.contact=face", SHAFTS, "stiffness.coupling=none")
-    assert max(differences("configs/paper_b.yaml", *frictionless, *tilting, record=16, samples=300)) < 2e-3
+    assert max(differences("tests/configs/casing.yaml", *frictionless, *tilting, record=16, samples=300)) < 2e-3
 
 
 @pytest.mark.slow
@@ -77,34 +78,33 @@ def test_scipy_integrates_the_exported_slices_of_a_spall_to_the_same_motion() ->
     # Record 16: spalled through the face, 25 Hz; 2200 samples hold a whole revolution, hence the spalled tooth. Its
     # impacts are events of first order as above, of a force that falls to a fraction of the mean.
     steps = "dynamics.steps_per_sample=16"
-    assert max(differences("configs/paper_b.yaml", *STIFF, *PINION, steps, record=16, samples=2200)) < 5e-3
+    assert max(differences("tests/configs/casing.yaml", *STIFF, *PINION, steps, record=16, samples=2200)) < 5e-3
 
 
 @pytest.mark.parametrize("varying", ["variation.speed.end_ratio=1.1", "dynamics.unbalance.grade_mm_s=6.3"])
 def test_a_record_that_the_format_cannot_hold_is_refused(varying: str) -> None:
     with pytest.raises(UsageError, match="allowed are constant speed and torque, without other forces"):
-        exported_model(load_config(ROOT / "configs" / "paper_b.yaml", ["duration_s=0.01", varying]), 0)
+        exported_model(load_config(ROOT / "tests" / "configs" / "casing.yaml", ["duration_s=0.01", varying]), 0)
 
 
 def test_what_the_script_does_not_know_is_refused_by_name() -> None:
-    model = exported_model(load_config(ROOT / "configs" / "paper_b.yaml", ["duration_s=0.01"]), 16)
+    model = exported_model(load_config(ROOT / "tests" / "configs" / "casing.yaml", ["duration_s=0.01"]), 16)
     with pytest.raises(ValueError, match=r"law\.damping_film_root_kg"):
         script().integrate(model, np.arange(2) / 51200.0)
 
 
 @pytest.mark.parametrize(
-    ("name", "record", "overrides"),
+    ("file", "record", "overrides"),
     [
-        ("paper_a", 0, []),
-        ("linear_pits", 0, []),
-        ("paper_b", 0, []),
-        ("paper_b", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
-        ("paper_b", 16, ["dynamics.mesh.contact=face"]),
-        ("paper_b", 0, ["dynamics.mesh.contact=face", "dynamics.shafts={}"]),
+        ("configs/paper_a.yaml", 0, []),
+        ("configs/linear_pits.yaml", 0, []),
+        ("configs/paper_b.yaml", 0, []),
+        ("tests/configs/casing.yaml", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
+        ("tests/configs/casing.yaml", 16, ["dynamics.mesh.contact=face"]),
     ],
 )
-def test_every_key_is_described(name: str, record: int, overrides: list[str]) -> None:
-    model = exported_model(load_config(ROOT / "configs" / f"{name}.yaml", ["duration_s=0.01", *overrides]), record)
+def test_every_key_is_described(file: str, record: int, overrides: list[str]) -> None:
+    model = exported_model(load_config(ROOT / file, ["duration_s=0.01", *overrides]), record)
     missing = [key for key in model if f"`{key}`" not in PAGE]
     assert not missing, f"docs/reference/exported_model.md does not describe {missing}"
     assert model["format_version"] == FORMAT_VERSION

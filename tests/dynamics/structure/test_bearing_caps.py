@@ -60,10 +60,10 @@ def test_a_whole_translation_deforms_bolts_alone() -> None:
 
 def test_a_sensor_on_a_cap_shakes_more_than_the_casing() -> None:
     changes = ["duration_s=0.05", "specimens=1", "dynamics.casing.caps.mass_kg=0.3", "sensors.0.place=pinion_cap"]
-    config = load_config("configs/paper_b.yaml", [*changes, "sensors.0.position_mm=null"])
+    config = load_config("tests/configs/casing.yaml", [*changes, "sensors.0.position_mm=null"])
     (on_cap,) = simulate(config, [0])
     seat = load_config(
-        "configs/paper_b.yaml", [*changes[:3], "sensors.0.place=pinion_bearing", "sensors.0.position_mm=null"]
+        "tests/configs/casing.yaml", [*changes[:3], "sensors.0.place=pinion_bearing", "sensors.0.position_mm=null"]
     )
     (on_casing,) = simulate(seat, [0])
     assert on_cap.channels["lid_vertical"].std() > 1.5 * on_casing.channels["lid_vertical"].std()

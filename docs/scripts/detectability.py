@@ -1,0 +1,191 @@
+"""The figure and tables of docs/understand/presets.md: `python docs/scripts/detectability.py [GEARBOXES] [WORKERS]`.
+
+Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
+Markdown: the strongest attacker by state, alone and beside the gearbox's own healthy record; what the older probe of
+four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
+on two cores.
+
+* `detect_bench`, `detect_parallel`: presets bench and bench_parallel with the states of STATES and of SAME;
+* `detect_edges`: bench with spalls of 1 mm over SHARES of the face, both edges turned together by SKEWS_MM.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+from report_pages import run
+
+import siggen
+from diagnostics.audit.envelope import quantities
+from siggen.config.inheritance import inherited
+from siggen.config.yaml_source import read_yaml
+
+RUNS, CONFIGS, FIGURE = Path("runs"), Path("configs"), Path("docs/figures/presets_detectability.png")
+LENGTHS = (40, 60, 80, 100, 150)
+"""Of spalls through the face [0.01 mm]."""
+FACES = (40, 80, 95)
+STATES = (
+    "healthy",
+    "healthy_again",
+    "slight",
+    *(f"face_{share}" for share in FACES),
+    *(f"through_{i:03d}" for i in LENGTHS),
+)
+SAME = ("healthy", "healthy_again", "face_80", *(f"through_{i:03d}" for i in LENGTHS))
+"""Of bench_parallel: enough to compare it with bench."""
+SHARES, SKEWS_MM = (0.8, 1.0), (0.0, 0.4, 0.8)
+"""Shares of the face; by how much one end of both edges lies higher than the other, over a face of 20 mm."""
+HALVES = {"train": 10, "validation": 10, "test": 0}
+"""Two shards of one size, for two workers; the audit knows no splits."""
+SPALL = {"kind": "irregular", "profile_length_mm": 1.0, "waviness": 0.0, "edge_radius_mm": 0.1}
+ALONE, WITH_REFERENCE = "strongest attacker alone", "strongest attacker with a healthy reference"
+UNPAIRED = "logistic regression on four indicators"
+"""Names in audit.json."""
+SEEN = {
+    WITH_REFERENCE: ("strongest attacker, with a healthy reference", "#1b7837", "o"),
+    ALONE: ("strongest attacker, alone", "#2166ac", "s"),
+    UNPAIRED: ("older probe: four indicators, alone", "#b2182b", "^"),
+}
+Entry = dict[str, Any]
+
+
+def preset(name: str, gearboxes: int, chosen: tuple[str, ...]) -> dict[str, Any]:
+    """Return a preset with some of its states."""
+    raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
+    states = [state for state in raw["states"] if state["name"] in chosen]
+    return {**raw, "specimens": gearboxes, "states": states, "splits": HALVES}
+
+
+def edges(gearboxes: int) -> dict[str, Any]:
+    """Return bench with spalls of 1 mm by share of the face and skew of both edges."""
+    damaged = []
+    for share in SHARES:
+        for skew in SKEWS_MM:
+            slopes = dict.fromkeys(("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm"), 0.5 * skew)
+            name = f"share_{100 * share:03.0f}_skew_{100 * skew:03.0f}"
+            damage = {**SPALL, **slopes, "face_share": share}
+            damaged.append({"name": name, "severity": "severe", "grows_from": "none", "damage": damage})
+    raw = preset("bench", gearboxes, STATES[:2])
+    return {**raw, "name": "edges", "states": [*raw["states"], *damaged]}
+
+
+def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[str, Entry]]:
+    """Return way to look -> state -> what `audit` found on a set that is made where it is missing."""
+    path, out = RUNS / f"detect_{folder}", RUNS / f"detect_{folder}_audit"
+    if not (path / "manifest.json").exists():  # an interrupted set goes on
+        print(f"making {path}", file=sys.stderr)
+        siggen.generate(siggen.load_config(raw), path, workers=workers)
+    if not (out / "audit.json").exists():
+        run(f"siggen-diagnostics audit {path} --paired --realism --out {out}")
+    found = json.loads((out / "audit.json").read_text(encoding="utf-8"))
+    ways = {**found["strongest"], UNPAIRED: found["detectability"][UNPAIRED]}
+    failures = siggen.open(path).manifest.get("failures", [])
+    print(
+        f"\n{path}: {found['specimens']} gearboxes, {found['records']} records, {len(failures)} could not be simulated"
+    )
+    if found["chance"]:
+        print(f"with permuted states the strongest attacker stays below {found['chance']['auc']:.2f} in 95 %")
+    return {name: {entry["state"]: entry for entry in way["states"]} for name, way in ways.items()}
+
+
+def auc(entry: Entry) -> str:
+    """Return an AUC with its interval."""
+    found = entry["auc"]
+    return f"{found['value']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
+
+
+def attacker(entry: Entry) -> str:
+    """Return the attacker's name, without what it chose."""
+    name: str = entry["chosen"]
+    return name.partition(":")[0].partition(" (")[0]
+
+
+def title(state: str) -> str:
+    """Return a state in words."""
+    kind, _, size = state.partition("_")
+    if kind == "slight":
+        return "small pits"
+    return f"{size} % of the face, 1 mm" if kind == "face" else f"whole face, {int(size) / 100:g} mm"
+
+
+def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
+    """Return the Markdown rows of a preset."""
+    head = "| damage | area [mm²] | older probe, alone | strongest, alone | by |"
+    rows = [f"{head} strongest, with a healthy reference | by |", "|---|---|---|---|---|---|---|"]
+    for state in (state for state in STATES if state in found[ALONE]):
+        weak, alone, referenced = (found[way][state] for way in (UNPAIRED, ALONE, WITH_REFERENCE))
+        cells = (auc(alone), attacker(alone), auc(referenced), attacker(referenced))
+        rows.append(f"| {title(state)} | {alone['damaged_area_mm2']:.1f} | {auc(weak)} | {' | '.join(cells)} |")
+    return rows
+
+
+def edge_table(found: dict[str, dict[str, Entry]]) -> list[str]:
+    """Return the Markdown rows of spalls of 1 mm by share and skew."""
+    head = "| share of the face | skew over the face | area [mm²] | older probe, alone | strongest, alone |"
+    rows = [f"{head} strongest, with a healthy reference |", "|---|---|---|---|---|---|"]
+    for state, alone in sorted(found[ALONE].items()):
+        _, share, _, skew = state.split("_")
+        cells = (auc(found[way][state]) for way in (UNPAIRED, ALONE, WITH_REFERENCE))
+        area = f"{alone['damaged_area_mm2']:.1f}"
+        rows.append(f"| {int(share)} % | {int(skew) / 100:g} mm | {area} | {' | '.join(cells)} |")
+    return rows
+
+
+def realism_table(folder: str) -> list[str]:
+    """Return the Markdown rows of how healthy channel-records lie in the ranges of measured gearboxes."""
+    audit = json.loads((RUNS / f"detect_{folder}_audit" / "audit.json").read_text(encoding="utf-8"))["realism"]
+    titles = {quantity.name: quantity.title for quantity in quantities()}
+    rows = ["| quantity of healthy records | 5 %, median, 95 % | inside |", "|---|---|---|"]
+    for entry in audit["quantities"]:
+        spread = ", ".join(f"{entry[key]:.3g}" for key in ("q05", "q50", "q95"))
+        rows.append(f"| {titles[entry['name']]} | {spread} | {entry['inside']:.0%} |")
+    return [*rows, f"{audit['healthy_channel_records']} channel-records, {audit['share_inside_all']:.0%} inside all"]
+
+
+def draw(found: dict[str, dict[str, dict[str, Entry]]]) -> None:
+    """Draw the AUC over share of the face and length, one row of axes per preset."""
+    figure = Figure(figsize=(10.0, 6.6), layout="constrained")
+    axes = figure.subplots(len(found), 2, sharey=True, squeeze=False)
+    for row, (name, ways) in zip(axes, found.items(), strict=True):
+        shares = {f"face_{share}": float(share) for share in FACES} | {"through_100": 100.0}
+        lengths = {f"through_{size:03d}": size / 100 for size in LENGTHS}
+        for axis, sizes, what in zip(
+            row, (shares, lengths), ("share of the face [%], 1 mm long", "mean length [mm], whole face"), strict=True
+        ):
+            for way, (label, colour, marker) in SEEN.items():
+                at = [size for state, size in sizes.items() if state in ways[way]]
+                entries = [ways[way][state]["auc"] for state in sizes if state in ways[way]]
+                value = [entry["value"] for entry in entries]
+                axis.fill_between(
+                    at, [e["low"] for e in entries], [e["high"] for e in entries], color=colour, alpha=0.15
+                )
+                axis.plot(at, value, color=colour, marker=marker, label=label)
+            axis.axhline(0.5, color="0.6", linewidth=0.8)
+            axis.set(xlabel=what, title=f"{name}: {what.partition(' [')[0]}", ylim=(0.35, 1.02))
+        row[0].set_ylabel("AUC against healthy records [-]")
+        row[0].set_xlim(35.0, 103.0)
+    axes[1, 0].legend(handles=axes[0, 0].lines[: len(SEEN)], loc="center left", fontsize=8)
+    figure.savefig(FIGURE, dpi=110)
+
+
+def main(gearboxes: int, workers: int) -> None:
+    """Make sets, audits, figure and tables."""
+    RUNS.mkdir(exist_ok=True)
+    found = {
+        name: audited(folder, preset(name, gearboxes, chosen), workers)
+        for name, folder, chosen in (("bench", "bench", STATES), ("bench_parallel", "parallel", SAME))
+    }
+    for name, ways in found.items():
+        print(f"\n{name}\n", *ladder_table(ways), sep="\n")
+    draw(found)
+    print("\nhealthy records of bench\n", *realism_table("bench"), sep="\n")
+    print("\nspalls of 1 mm by share and skew\n", *edge_table(audited("edges", edges(gearboxes), workers)), sep="\n")
+
+
+if __name__ == "__main__":
+    given = [int(value) for value in sys.argv[1:]]
+    main(given[0] if given else 24, given[1] if len(given) > 1 else 2)
