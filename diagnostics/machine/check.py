@@ -90,6 +90,8 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
     if np.count_nonzero(alike) < FEWEST:
         return Check(name, OTHER_CONDITIONS, _conditions(machine, pulses.speed_hz, load), pulses.speed_hz)
     healthy = log_values(machine.values[alike])
+    if (same := _same(machine, logs)) is not None:
+        return Check(name, CANNOT_TELL, f"it is the reference {same}; give another recording", pulses.speed_hz)
     if (level := _level_db(machine, healthy, logs)) is not None:
         reason = f"all channels are {level:+.0f} dB off; is the unit, sensitivity or gain that of the references?"
         return Check(name, CANNOT_TELL, reason, pulses.speed_hz)
@@ -106,12 +108,15 @@ def rate_sentence(references: int, wanted: float) -> str:
     """Return how many false alarms to expect, and what more recordings would give."""
     promised = attainable_rate(references, wanted)
     if promised <= wanted:
-        return f"Of 100 recordings of the unchanged machine about {100 * wanted:.0f} will be called changed."
+        return (
+            f"On average over sets of references about {100 * wanted:.0f} of 100 recordings of the unchanged machine "
+            "will be called changed; one given set may do better or worse."
+        )
     needed = int(np.ceil(1.0 / wanted - 1.0 - 1e-9))
     return (
         f"With {references} references at most {100 * promised:.0f} of 100 recordings of the unchanged machine will be "
-        f"called changed; about {100 * wanted:.0f} if scores are log-normal. A promise of {100 * wanted:.0f} takes "
-        f"{needed} references."
+        f"called changed, on average over sets of references; one given set may do worse. If scores are log-normal it "
+        f"is about {100 * wanted:.0f} of 100. A promise of {100 * wanted:.0f} takes {needed} references."
     )
 
 
@@ -121,6 +126,14 @@ def _alike(machine: Machine, speed_hz: float, load: float | None) -> np.ndarray:
     if load is not None and np.isfinite(machine.load).all():
         same &= np.abs(machine.load - load) <= (LOAD_RATIO - 1.0) * np.abs(machine.load)
     return np.asarray(same)
+
+
+def _same(machine: Machine, logs: np.ndarray) -> str | None:
+    """Return the reference that a recording is: all indicators are equal; noise does not repeat."""
+    for name, row in zip(machine.references, log_values(machine.values), strict=True):
+        if np.array_equal(row, logs, equal_nan=True):
+            return name
+    return None
 
 
 def _conditions(machine: Machine, speed_hz: float, load: float | None) -> str:

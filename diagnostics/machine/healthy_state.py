@@ -54,7 +54,7 @@ def healthy_state(
     """
     if len(sources) < FEWEST:
         raise UsageError(
-            f"{len(sources)} healthy recordings; allowed: at least {FEWEST}, and 20 for a rate of false alarms of 5 %"
+            f"{len(sources)} healthy recordings; allowed: at least {FEWEST}, and 19 for a rate of false alarms of 5 %"
         )
     if len(loads) not in {0, 1, len(sources)}:
         raise UsageError(f"--load: received {len(loads)} numbers; allowed: one, or one per recording ({len(sources)})")

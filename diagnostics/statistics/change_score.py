@@ -76,7 +76,7 @@ def change_score(healthy: np.ndarray, new: np.ndarray, false_alarms: float = 0.0
         If there are fewer than three references, or no feature is defined in all recordings.
     """
     if len(healthy) < FEWEST:
-        raise UsageError(f"{len(healthy)} healthy recordings; allowed: at least {FEWEST}, and 20 for a rate of 5 %")
+        raise UsageError(f"{len(healthy)} healthy recordings; allowed: at least {FEWEST}, and 19 for a rate of 5 %")
     bag = np.vstack([healthy, new])
     known = np.isfinite(bag).all(axis=0)
     if not known.any():

@@ -22,13 +22,13 @@ BOOL = re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")
 NULL = re.compile(r"^(?:~|null|Null|NULL|)$")
 
 
-LARGEST_BYTES = 1 << 16
-"""Of a file: eight times the longest preset. Reading twice as much alone would take half a second."""
+LARGEST_BYTES = 1 << 22
+"""Of a file: the stored configuration of a set with measured responses holds some 200,000 numbers."""
 
 DEEPEST = 32
 """Mappings and lists within each other, aliases followed; a configuration needs eight."""
 
-MOST_VALUES = 40_000
+MOST_VALUES = 250_000
 """Keys and values of a file, those counted again that an alias repeats; without aliases no file holds as many."""
 
 

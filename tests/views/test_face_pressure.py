@@ -18,7 +18,11 @@ from siggen.views.face_pressure import FacePressure, face_pressure
 
 CONFIG = "configs/quickstart.yaml"
 SPALL = "{kind: irregular, profile_length_mm: 1.2, face_share: 0.6, face_centre_mm: 8, edge_radius_mm: 0.15}"
-LINEAR = ("--set", "dynamics.mesh.law=linear", "--set", "manufacture=null", "--set", "dynamics.friction.model=off")
+LINEAR = tuple(
+    part
+    for override in ("mesh.law=linear", "mesh.contact=slices", "shafts=null", "friction.model=off")
+    for part in ("--set", f"dynamics.{override}")
+) + ("--set", "manufacture=null")
 OVERRIDES = [
     f"states=[{{name: healthy}}, {{name: severe, damage: {SPALL}}}]",
     "duration_s=0.2",

@@ -28,6 +28,13 @@ def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: in
 
 
 @njit(cache=True, _nrt=False, inline="always")
+def _node(approach: float, unit_m: float, nodes: int) -> int:
+    """Return the node before an approach, the last but one from there on, however far."""
+    root = sqrt(approach / unit_m)
+    return int(root) if root < nodes - 1.0 else nodes - 2
+
+
+@njit(cache=True, _nrt=False, inline="always")
 def contact_spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -43,11 +50,11 @@ def contact_spring(
         Approach of this pair beyond its missing material [m].
     """
     approach = penetration_m - pairs[i, TOUCH]
-    if approach <= 0.0:
+    if not approach > 0.0:  # a motion that diverges is no number in the end: it may not become a place in the table
         return 0.0, 0.0
     nodes = index[layout.CONTACT_NODES]
     unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    node = min(int(sqrt(approach / unit_m)), nodes - 2)
+    node = _node(approach, unit_m, nodes)
     span = unit_m * (2.0 * node + 1.0)
     over = approach - unit_m * (node * node)
     t = over / span
@@ -105,8 +112,8 @@ def contact_moment(
     """Return the moment across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m] of slot i, arguments as above."""
     nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
     unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(penetration_m - pairs[i, TOUCH], 0.0)
-    node = min(int(sqrt(approach / unit_m)), nodes - 2)
+    approach = max(0.0, penetration_m - pairs[i, TOUCH])
+    node = _node(approach, unit_m, nodes)
     span, over = unit_m * (2.0 * node + 1.0), approach - unit_m * (node * node)
     here = int(pairs[i, CURVES]) + node * values
     there = here + nodes * values
@@ -123,8 +130,8 @@ def contact_shares(
     """Return the carrying share of the face and the share of the load on damage of slot i, arguments as above."""
     nodes = index[layout.CONTACT_NODES]
     unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(penetration_m - pairs[i, TOUCH], 0.0)
-    node = min(int(sqrt(approach / unit_m)), nodes - 2)
+    approach = max(0.0, penetration_m - pairs[i, TOUCH])
+    node = _node(approach, unit_m, nodes)
     t = min((approach - unit_m * (node * node)) / (unit_m * (2.0 * node + 1.0)), 1.0)
     values = index[layout.CONTACT_VALUES]
     here = int(pairs[i, CURVES]) + node * values

@@ -28,7 +28,7 @@ from siggen.dynamics.mesh.pair_columns import (
     WHOLE,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_forces import film_force, lubricated
+from siggen.dynamics.mesh.pair_forces import LEAST_CARRYING, film_force, lubricated
 from siggen.dynamics.mesh.pair_springs import least_sink
 from siggen.dynamics.mesh.pair_tangents import write_springs
 
@@ -175,7 +175,7 @@ def _middle(
     if inner == 0.0:
         carrying, rough = contact_shares(scalars, numbers, index, pairs, carries, pairs[carries, PENETRATION])
         inner = 1.0
-    return load / whole * inner / carrying, position / whole, rough / inner
+    return load / whole * inner / max(carrying, LEAST_CARRYING), position / whole, rough / inner
 
 
 @njit(cache=True, _nrt=False, inline="always")

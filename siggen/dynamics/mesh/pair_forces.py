@@ -39,6 +39,9 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import find_flanks, pair_table, place_pairs
 from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
 
+LEAST_CARRYING = 1e-3
+"""Of the face, less than a slice: what a force is divided by where a motion that diverges leaves the table."""
+
 
 @njit(cache=True, _nrt=False, inline="always")
 def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
@@ -83,7 +86,7 @@ def _lubricate(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, force_n: float
 ) -> None:
     """Write asperity share and friction coefficient of slot i at a force."""
-    load = force_n / pairs[i, CARRYING]
+    load = force_n / max(pairs[i, CARRYING], LEAST_CARRYING)
     pairs[i, ASPERITY_SHARE], pairs[i, COEFFICIENT] = lubricated(
         scalars, numbers, index, pairs[i, POSITION], load, pairs[i, ROUGH]
     )
