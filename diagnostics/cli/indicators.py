@@ -90,6 +90,9 @@ def indicators(
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
         from diagnostics.recordings.measured_recording import RecordingFacts
 
+        of_sets = {"--indicator": indicator, "--state": state, "--leave-out": leave_out}
+        if ignored := [option for option, given in of_sets.items() if given]:
+            raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
         columns = dict(named_column(said) for said in channel or ())
         facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
         _of_recordings(targets, teeth, facts, speed_range, out)
