@@ -170,7 +170,8 @@ def compare(config, overrides, samples=600, record=0):
     return times, own, integrate(model, times)
 
 
-FRICTIONLESS = ["dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.steps_per_sample=16"]
+FRICTIONLESS = ["dynamics.friction.model=off", "dynamics.mesh.damping=constant"]
+FRICTIONLESS += ["dynamics.integrator=runge_kutta", "dynamics.steps_per_sample=16"]
 IDEAL = ["manufacture=null", "dynamics.shafts=null", "dynamics.mesh.contact=slices"]
 SPALL = (
     "states.5.damage={kind: spall, gear: pinion, teeth: 1, centre_height_mm: pitch, face_length_mm: 20.0, "

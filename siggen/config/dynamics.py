@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
@@ -60,6 +61,10 @@ class OutputCoupling(Coupling):
     )
 
 
+LATER_KEYS = frozenset({"shafts", "integration_tolerance", "contact"})
+"""Keys of `dynamics` and `dynamics.mesh` that not all sets of earlier versions have written out."""
+
+
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
@@ -68,12 +73,13 @@ class Dynamics(Section):
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
     integrator: Annotated[
-        Literal["auto", "product", "runge_kutta", "exponential"], IdentityDefault("product", "auto")
+        Literal["auto", "product", "runge_kutta", "exponential"] | None, IdentityDefault("product", None)
     ] = Field(
-        default="auto",
-        description="product integrates the tabulated stiffness exactly, with the linear mesh law alone; runge_kutta "
-        "is plain, of first order where teeth enter and leave contact; exponential propagates the linear part exactly, "
-        "with the law pairs alone; auto: product where it can be, else runge_kutta",
+        default=None,
+        description="auto: product with the law linear, exponential with pairs; product integrates the tabulated "
+        "stiffness exactly, with the linear mesh law alone; runge_kutta is plain, of first order where teeth enter and "
+        "leave contact; exponential propagates the linear part exactly, with the law pairs alone; null: product with "
+        "the law linear, runge_kutta with pairs, as files without this key have always been read",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample of product and runge_kutta"
@@ -109,10 +115,25 @@ class Dynamics(Section):
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _auto_resolved(cls, raw: Any) -> Any:
+        """Read `integrator: auto` as what it stands for, so that it counts in the identity.
+
+        Sets of earlier versions have it written out beside every other key. There it stays what it was.
+        """
+        if not isinstance(raw, Mapping) or raw.get("integrator") != "auto":
+            return raw
+        mesh = raw.get("mesh", {})
+        mesh = mesh if isinstance(mesh, Mapping) else dict(mesh) if isinstance(mesh, Mesh) else {}
+        if {*cls.model_fields} - LATER_KEYS <= {*raw} and {*Mesh.model_fields} - LATER_KEYS <= {*mesh}:
+            return {**raw, "integrator": None}
+        return {**raw, "integrator": "product" if mesh.get("law") == "linear" else "exponential"}
+
     @property
     def method(self) -> str:
         """The integrator that `integrator` stands for: product, runge_kutta or exponential."""
-        if self.integrator != "auto":
+        if self.integrator is not None:
             return self.integrator
         return "product" if self.mesh.law == "linear" else "runge_kutta"
 

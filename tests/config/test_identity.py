@@ -191,7 +191,7 @@ def test_naming_the_coupling_that_a_beam_brings_along_leaves_the_identity(beam, 
 def test_a_first_default_that_is_not_named_is_another_set(key):
     if key != "integrator":  # which auto stands for
         named = {name: value for name, value in FIRST_DYNAMICS.items() if name != key} | (
-            {"integrator": "auto"} if key == "mesh" else {}
+            {"integrator": None} if key == "mesh" else {}
         )
         assert config(dynamics=named, stiffness=FIRST_STIFFNESS).identity != FIRST_GOLDEN
 
@@ -215,7 +215,7 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
     )
     known = {
         "model": "casing",
-        "integrator": "auto",
+        "integrator": None,
         "steps_per_sample": 4,
         "mesh_damping_ratio": 0.07,
         "backlash_um": 80.0,
@@ -226,6 +226,26 @@ def test_defaults_that_records_follow_from_stay_as_they_are():
     }
     assert canonical["dynamics"] | known == canonical["dynamics"]
     assert canonical["sensors"][0] | {"gain": 1.0, "range_m_s2": 500.0, "bits": 16} == canonical["sensors"][0]
+
+
+def test_auto_with_pairs_is_the_exponential_integrator_and_another_set_than_without_the_key():
+    without, auto, named = (config(), *(config(dynamics__integrator=name) for name in ("auto", "exponential")))
+    assert (without.dynamics.method, auto.dynamics.method) == ("runge_kutta", "exponential")
+    assert auto == named
+    assert auto.identity == named.identity != without.identity
+    assert config(dynamics__integrator=None) == without
+
+
+def test_auto_in_the_file_of_a_set_that_was_written_before_stays_what_it_was():
+    plain, stepped = (config(dynamics={"steps_per_sample": 2, "mesh": {"law": law}}) for law in ("linear", "pairs"))
+    for made, method in ((plain, "product"), (stepped, "runge_kutta")):
+        written = made.canonical()
+        written["dynamics"]["integrator"] = "auto"
+        for later in ((), ("shafts", "integration_tolerance")):
+            older = {**written, "dynamics": {k: v for k, v in written["dynamics"].items() if k not in later}}
+            again = parse(older).config
+            assert again.identity == made.identity
+            assert again.dynamics.method == method
 
 
 @pytest.mark.parametrize("integrator", ["auto", "product"])

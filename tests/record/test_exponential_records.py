@@ -13,8 +13,10 @@ SHAFTS = "dynamics.shafts={pinion: {bearing_span_mm: 100}, gear: {bearing_span_m
 def channel_errors(gearboxes: int, *overrides: str) -> dict[str, list[float]]:
     """Return by state the relative rms difference of all channels from Runge-Kutta with 32 steps per sample."""
     short = ("duration_s=0.1", *overrides)
-    fine = siggen.load_config("configs/quickstart.yaml", [*short, "dynamics.steps_per_sample=32"])
-    fast = siggen.load_config("configs/quickstart.yaml", [*short, "dynamics.integrator=exponential"])
+    plain = ("dynamics.integrator=runge_kutta", "dynamics.steps_per_sample=32")
+    fine = siggen.load_config("configs/quickstart.yaml", [*short, *plain])
+    fast = siggen.load_config("configs/quickstart.yaml", [*short])
+    assert fast.dynamics.method == "exponential"
     ids = [first + state for first in range(0, 4 * gearboxes, 4) for state in (0, 3)]
     found: dict[str, list[float]] = {}
     for one, other in zip(siggen.simulate(fine, ids), siggen.simulate(fast, ids), strict=True):
@@ -43,9 +45,9 @@ def test_the_integrator_makes_an_identity_of_its_own_and_the_tolerance_counts() 
     plain, fast, tight = (
         siggen.load_config("configs/quickstart.yaml", overrides).identity
         for overrides in (
+            ["dynamics.integrator=runge_kutta"],
             [],
-            ["dynamics.integrator=exponential"],
-            ["dynamics.integrator=exponential", "dynamics.integration_tolerance=1e-4"],
+            ["dynamics.integration_tolerance=1e-4"],
         )
     )
     assert len({plain, fast, tight}) == 3
