@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,9 +62,7 @@ class ExponentialMotion(PairMotion):
         self._events = event_places(
             law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * step_s
         )
-        self._rest = np.zeros(structure.mass.shape[0])
         if law.places[layout.ROUGHNESSES] > 0:
-            self._rest = self._rubbed()
             self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
         self._work = work_arrays(self.scheme.transition.shape[2], self.scheme.input_response.shape[2])
@@ -96,8 +96,11 @@ class ExponentialMotion(PairMotion):
         """How many steps of any length were tried since the start."""
         return int(self._memory[CHANNELS, ATTEMPTS])
 
-    def _rubbed(self) -> FloatArray:
-        """Return the deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed."""
+    @cached_property
+    def _rest(self) -> FloatArray:
+        """The deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed."""
+        if self.law.places[layout.ROUGHNESSES] == 0:
+            return np.zeros(self.structure.mass.shape[0])
         angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
         pairs = self.pairs(np.stack([super(ExponentialMotion, self).start(angle) for angle in angles]), angles)
         friction, structure = pairs[:, :, FRICTION], self.structure
