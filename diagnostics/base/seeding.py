@@ -20,6 +20,7 @@ class Purpose(IntEnum):
     LEARNING_CURVE = 8
     CALIBRATION = 9
     AVERAGES = 10
+    PATHS = 11
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

@@ -10,6 +10,7 @@ import typer
 
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
+from diagnostics.cli.calibrate import calibrate
 from diagnostics.cli.check import check
 from diagnostics.cli.explore import explore
 from diagnostics.cli.features import features
@@ -40,6 +41,7 @@ app.command()(audit)
 app.command()(predict)
 app.command()(baseline)
 app.command()(check)
+app.command()(calibrate)
 
 
 def _show_version(wanted: bool) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 from siggen.errors import Problem
 
 COLUMNS = ("frequency_hz", "density")
+LINE_COLUMNS = ("order", "frequency_hz", "amplitude_m_s2")
 MOST_KNOTS = 10_000
 
 
@@ -23,18 +24,19 @@ def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[st
     """
     problems: list[Problem] = []
 
-    def filled(parent: Any, key: str, path: str) -> Any:
+    def filled(parent: Any, key: str, path: str, columns: tuple[str, ...] = COLUMNS) -> Any:
         table = parent.get(key) if isinstance(parent, Mapping) else None
         if not isinstance(table, Mapping) or "file" not in table:
             return parent
-        numbers, problem = _read(folder / str(table["file"]), f"{path}.file")
+        numbers, problem = _read(folder / str(table["file"]), f"{path}.file", columns)
         problems.extend(problem)
         return {**parent, key: {**{k: v for k, v in table.items() if k != "file"}, **numbers}}
 
     found = dict(raw)
     if isinstance(raw.get("sensors"), (list, tuple)):
         places = enumerate(raw["sensors"])
-        found["sensors"] = [filled(one, "noise_spectrum", f"sensors.{i}.noise_spectrum") for i, one in places]
+        with_noise = [(i, filled(one, "noise_spectrum", f"sensors.{i}.noise_spectrum")) for i, one in places]
+        found["sensors"] = [filled(one, "lines", f"sensors.{i}.lines", LINE_COLUMNS) for i, one in with_noise]
     background = raw.get("background")
     if isinstance(background, Mapping) and "floor" in background:
         floor = filled(background["floor"], "spectrum", "background.floor.spectrum")
@@ -42,18 +44,19 @@ def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[st
     return found, problems
 
 
-def _read(file: Path, where: str) -> tuple[dict[str, list[float]], list[Problem]]:
-    """Return the two lists of a file; two harmless ones with a problem if it cannot be used."""
-    harmless = {"frequency_hz": [1.0, 2.0], "density": [1.0, 1.0]}
-    allowed = f"allowed: a CSV file with the columns {', '.join(COLUMNS)}, 2 to {MOST_KNOTS} rows of numbers"
+def _read(file: Path, where: str, columns: tuple[str, ...]) -> tuple[dict[str, list[float]], list[Problem]]:
+    """Return the lists of a file; harmless ones with a problem if it cannot be used."""
+    harmless = {column: [1.0, 2.0] for column in columns}
+    least = 2 if columns == COLUMNS else 1
+    allowed = f"allowed: a CSV file with the columns {', '.join(columns)}, {least} to {MOST_KNOTS} rows of numbers"
     try:
         with file.open(newline="") as lines:
             rows = list(csv.DictReader(lines))
-        numbers = {column: [float(row[column]) for row in rows] for column in COLUMNS}
+        numbers = {column: [float(row[column]) for row in rows] for column in columns}
     except OSError as error:
         return harmless, [Problem(where, f"{file}: {error.strerror}", allowed)]
     except (KeyError, TypeError, ValueError, csv.Error):
         return harmless, [Problem(where, f"{file}: columns are missing, or not numbers", allowed)]
-    if not 2 <= len(rows) <= MOST_KNOTS:
+    if not least <= len(rows) <= MOST_KNOTS:
         return harmless, [Problem(where, f"{file}: {len(rows)} rows", allowed)]
     return numbers, []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.column import Column
+from siggen.config.path import MeasuredPath
 
 if TYPE_CHECKING:
     from siggen.config import Config, Sensor
@@ -31,6 +32,10 @@ def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
                 accelerance, pa.float64(), "m/s^2/N", f"rms accelerance to {channel}, 100 Hz to 0.45 fs, all forces"
             ),
         ),
+        "number": (
+            isinstance(sensor.path, MeasuredPath) and sensor.path.files,
+            Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0"),
+        ),
         "pink": (
             sensor.pink_noise,
             Column(
@@ -49,13 +54,14 @@ def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
         **{
             part: (section, Column(f"{part}_{channel}_m_s2", pa.float64(), "m/s^2", f"RMS of {what} {channel}"))
             for part, section, what in (
+                ("lines", sensor.lines, "the lines of given orders or frequencies in"),
                 ("mains", sensor.mains, "mains hum in"),
                 ("tones", sensor.tones, "the tones of other machines at"),
                 ("inverter", sensor.inverter, "the inverter's lines at"),
             )
         },
     }
-    return tuple(column for section, column in parts.values() if section is not None)
+    return tuple(column for section, column in parts.values() if section not in (None, False))
 
 
 def instrument_columns(config: Config) -> Iterator[Column]:

@@ -4,7 +4,7 @@ from siggen.config.background import Background, Base, Bursts, Floor, ForeignMes
 from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
-from siggen.config.density import Density, SensorDensity
+from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor
@@ -57,6 +57,7 @@ __all__ = [
     "Internals",
     "Inverter",
     "LayeredPits",
+    "LineTable",
     "ListedPit",
     "ListedPits",
     "ListedSpall",
@@ -67,6 +68,7 @@ __all__ = [
     "Mesh",
     "ModalPath",
     "NoiseFloor",
+    "NoiseModulation",
     "NoiseRatio",
     "Normal",
     "Number",

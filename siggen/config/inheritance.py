@@ -76,16 +76,22 @@ def _extended(name: object, folder: Path, source: str) -> Path:
 
 
 def _anchored(value: Any, folder: Path) -> Any:
-    """Return a value in which files of data, named by keys `file`, do not depend on the folder of their YAML file."""
+    """Return a value in which files of data, named by keys `file` and `files`, do not depend on the folder of their YAML file."""
     match value:
         case Mapping():
             return {
-                key: str(folder / item) if key == "file" and isinstance(item, str) else _anchored(item, folder)
+                key: _beside(folder, item) if key in {"file", "files"} else _anchored(item, folder)
                 for key, item in value.items()
             }
         case list() | tuple():
             return [_anchored(item, folder) for item in value]
     return value
+
+
+def _beside(folder: Path, names: Any) -> Any:
+    if isinstance(names, (list, tuple)):
+        return [_beside(folder, name) for name in names]
+    return str(folder / names) if isinstance(names, str) else names
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.number import Number, Within
+from siggen.config.problems import refusal
 from siggen.config.section import Section
 from siggen.config.wording import AllowedText
+from siggen.errors import Problem
 
 
 class ModalPath(Section):
@@ -38,6 +40,25 @@ class MeasuredPath(Section):
     response: str | None = Field(
         default=None, description="the numbers of the file, filled in when it is read, so that the set needs no file"
     )
+    files: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="several instead of `file`: every gearbox draws one of them; sensors with as many files draw the "
+        "same number, since what one number says belongs together",
+    )
+    responses: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
+        default=None, description="the numbers of `files`, filled in when they are read"
+    )
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> MeasuredPath:
+        if self.files is not None and self.file is not None:
+            raise refusal([Problem("files", f"files beside file: {self.file}", "allowed: one of the two keys")])
+        return self
+
+    @property
+    def family(self) -> tuple[str, ...]:
+        """All responses that a gearbox may have; one unless `files` are given, none before they are read."""
+        return self.responses or (() if self.response is None else (self.response,))
 
 
 TransferPath: TypeAlias = ModalPath | MeasuredPath

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from siggen.config.density import SensorDensity
+from siggen.config.density import LineTable, SensorDensity
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
@@ -99,6 +99,9 @@ class Sensor(Section):
     pink_noise: PinkNoise | None = Field(default=None, description="of the electronics; null: none")
     noise_spectrum: SensorDensity | None = Field(
         default=None, description="noise of any density beside the white and the pink one; null: none"
+    )
+    lines: LineTable | None = Field(
+        default=None, description="lines of given orders or frequencies, such as those found in recordings; null: none"
     )
     mains: Mains | None = Field(default=None, description="null: none")
     tones: Tones | None = Field(default=None, description="null: none")

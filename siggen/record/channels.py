@@ -8,14 +8,15 @@ from functools import partial
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, NoiseFloor, NoiseRatio, at
+from siggen.config import Config, MeasuredPath, NoiseFloor, NoiseRatio, at
 from siggen.dynamics.time.response import Response
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background import record_background
 from siggen.record.background_course import noise_levels
-from siggen.record.disturbance import Draws, channel_disturbance
+from siggen.record.disturbance import channel_disturbance
 from siggen.record.forces import RecordForces, record_forces
+from siggen.record.measured_disturbance import Draws, Turning
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement, measure
 from siggen.sensing.spectral_filter import record_of, record_spectrum
@@ -39,6 +40,8 @@ def measured_channels(
     forces = record_forces(config, specimen, record, response, instrument)
     motions = _motion_spectra(instrument, response)
     background, levels = record_background(config, specimen, record, instrument), noise_levels(config, record)
+    gears = specimen.gears
+    turning = Turning(response.angle_rad, gears.pinion.teeth / gears.gear.teeth)
     signals: dict[str, np.ndarray] = {}
     labels: dict[str, object] = {}
     for channel in instrument.channels:
@@ -49,9 +52,7 @@ def measured_channels(
             named,
             None if levels is None else partial(_level, levels, channel.name),
         )
-        disturbance = channel_disturbance(
-            channel, draws, fs_hz=config.fs_hz, length=instrument.length, samples=config.samples
-        )
+        disturbance = channel_disturbance(channel, draws, turning, fs_hz=config.fs_hz, length=instrument.length)
         rng = named_generator(config.seed, Stage.NOISE, *owner, name=channel.name)
         added = None if background is None else background.spectra.get(channel.name)
         clean = _sensed(channel, response, motions, forces, instrument.length, added)
@@ -128,4 +129,6 @@ def _labels(channel: ChannelInstrument, measured: Measurement) -> dict[str, obje
     if channel.accelerance is not None:
         labels[f"path_modes_{channel.name}"] = channel.path_modes
         labels[f"path_accelerance_{channel.name}_m_s2_per_n"] = channel.path_rms_m_s2_per_n
+        if isinstance(channel.sensor.path, MeasuredPath) and channel.sensor.path.files:
+            labels[f"path_number_{channel.name}"] = channel.path_number
     return labels

@@ -6,40 +6,19 @@ is drawn from the state.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
+from siggen.record.measured_disturbance import Draws, Turning, noise_strength, table_lines
 from siggen.sensing.force_density import noise_of, tabulated
 from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
-
-
-@dataclass(frozen=True, slots=True)
-class Draws:
-    """Where the numbers of a channel come from.
-
-    Attributes
-    ----------
-    specimen, shared : name -> uniform of the gearbox, or of the record
-    record : name -> generator of this channel and record
-    levels : name -> uniform of a level that belongs to the gearbox; None: levels are the record's
-    """
-
-    specimen: Callable[[str], float]
-    shared: Callable[[str], float]
-    record: Callable[[str], np.random.Generator]
-    levels: Callable[[str], float] | None = None
-
-    def level(self, name: str, rng: np.random.Generator) -> float:
-        """Return the uniform of a level; the generator advances by one either way, so that its noise stays."""
-        own = float(rng.random())
-        return own if self.levels is None else self.levels(name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +30,14 @@ class Disturbance:
 
 
 def channel_disturbance(
-    channel: ChannelInstrument, draws: Draws, *, fs_hz: float, length: int, samples: int
+    channel: ChannelInstrument, draws: Draws, turning: Turning, *, fs_hz: float, length: int
 ) -> Disturbance:
     """Return everything that does not come from the gears but white noise.
 
-    Vibrations of other machines pass the sensor as those of the gears do; hum and 1/f noise arise behind it.
+    Vibrations of other machines pass the sensor as those of the gears do; hum, 1/f noise, noise of a given density and
+    given lines are as they are stored.
     """
+    samples = turning.angle_rad.size
     sensor, name = channel.sensor, channel.name
     signal = np.zeros(samples)
     labels: dict[str, object] = {}
@@ -66,8 +47,14 @@ def channel_disturbance(
         labels[f"pink_noise_{name}_m_s2_per_sqrt_hz"] = density
     if sensor.noise_spectrum is not None:
         added = _of_spectrum(sensor.noise_spectrum, channel, draws, fs_hz, length)[length - samples :]
+        if sensor.noise_spectrum.modulation is not None:
+            added = added * np.sqrt(noise_strength(sensor.noise_spectrum.modulation, draws, turning, fs_hz))
         signal += added
         labels[f"noise_spectrum_{name}_m_s2"] = float(added.std())
+    if sensor.lines is not None:
+        added = table_lines(sensor.lines, draws, turning, fs_hz)
+        signal += added
+        labels[f"lines_{name}_m_s2"] = float(added.std())
     for part, lines in _lines(sensor, draws):
         response = np.ones(lines.frequency_hz.size, dtype=complex)
         if part != "mains":

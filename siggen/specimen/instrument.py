@@ -43,6 +43,7 @@ class ChannelInstrument:
     accelerance : (inputs, k) m/s² per N from the bearing forces, before the sensor; None without a path
     sensor_response : (k,) of mounting, sensor and coupling, high_pass: (k,) of the coupling alone; None without
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
+    path_number : which of several measured paths
     """
 
     name: str
@@ -54,6 +55,7 @@ class ChannelInstrument:
     high_pass: ComplexArray | None
     path_modes: int
     path_rms_m_s2_per_n: float
+    path_number: int = 0
 
     @property
     def is_plain(self) -> bool:
@@ -144,7 +146,14 @@ def _channel(
         high_pass=None if sensor.high_pass_hz is None else _high_pass(sensor, draw, grid),
         path_modes=housing.modes.frequency_hz.size if modal and housing is not None else 0,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
+        path_number=path_number(sensor, draw.uniform),
     )
+
+
+def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
+    """Return which file of a measured path a gearbox drew, from 0; sensors with as many files have the same."""
+    family = sensor.path.family if isinstance(sensor.path, MeasuredPath) else ()
+    return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
 
 
 def _weights(sensor: Sensor, axis: str, draw: _Draw) -> dict[str, float]:
@@ -171,8 +180,8 @@ def _accelerance(
             shape = housing.at_sensor(sensor, direction)
             found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid)
             return np.asarray(found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us")))
-        case MeasuredPath(response=str() as text):
-            return decoded_response(text).accelerance(direction, inputs, grid)
+        case MeasuredPath(family=(_, *_) as family):
+            return decoded_response(family[path_number(sensor, draw.uniform)]).accelerance(direction, inputs, grid)
     raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")
 
 

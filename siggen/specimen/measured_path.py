@@ -2,7 +2,7 @@
 
 A file has the column frequency_hz, and for every axis of the sensor and every bearing force two columns named
 <axis>_from_<place>_<direction>_<part>_<unit>: real and imag in m_s2_per_n, or magnitude in m_s2_per_n and phase in rad
-or deg.
+or deg. The sensor's name and _ may stand before them; then those of other sensors are passed over.
 """
 
 from __future__ import annotations
@@ -39,6 +39,10 @@ MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
 
+SINGLE = "f4;"
+"""Before a response whose numbers are float32."""
+
+
 class ResponseRefusal(Exception):  # noqa: N818 - becomes a problem of the configuration, never seen outside
     """What was received instead of a usable response, and what is allowed."""
 
@@ -71,9 +75,23 @@ def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mappi
 
 def _filled(sensor: Any, folder: Path) -> Any:
     path = sensor.get("path") if isinstance(sensor, Mapping) else None
-    if not isinstance(path, Mapping) or path.get("kind") != "measured" or path.get("response") is not None:
+    if not isinstance(path, Mapping) or path.get("kind") != "measured":
         return sensor
-    return {**sensor, "path": {**path, **_read(path, folder)}}
+    name = str(sensor.get("name", ""))
+    if isinstance(path.get("files"), (list, tuple)):
+        return (
+            sensor if path.get("responses") is not None else {**sensor, "path": {**path, **_family(path, folder, name)}}
+        )
+    if path.get("response") is not None:
+        return sensor
+    return {**sensor, "path": {**path, **_read(path, folder, name)}}
+
+
+def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, Any]:
+    """Return files and responses of a path section with several files."""
+    found = [_read({"file": name}, folder, sensor) for name in path["files"]]
+    short = [encoded_response(decoded_response(one["response"]), SINGLE) for one in found]
+    return {"files": [one["file"] for one in found], "responses": short}
 
 
 def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
@@ -82,16 +100,24 @@ def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if housing is None or fs_hz is None:
         return
     for index, sensor in sections.get("sensors", {}).items():
-        if not isinstance(sensor.path, MeasuredPath) or sensor.path.response is None:
-            continue
-        where = f"sensors.{index}.path.file"
-        try:
-            response = decoded_response(sensor.path.response)
-        except ResponseRefusal as refused:
-            yield Problem(f"sensors.{index}.path.response", refused.received, refused.allowed)
-            continue
-        wrong = [Problem(where, *text) for text in grid_problems(response.frequency_hz, fs_hz)]
-        yield from wrong or _curves_problems(response, sensor.axes, housing.settle_s, where)
+        if isinstance(sensor.path, MeasuredPath):
+            for number, text in enumerate(sensor.path.family):
+                keys = (f"files.{number}", f"responses.{number}") if sensor.path.responses else ("file", "response")
+                file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
+                yield from _text_problems(text, sensor.axes, (fs_hz, housing.settle_s), file, numbers)
+
+
+def _text_problems(
+    text: str, axes: tuple[str, ...], limits: tuple[float, float], where: str, numbers: str
+) -> Iterator[Problem]:
+    """Yield what is wrong with one response; `limits` are the sampling rate [Hz] and the history kept for it [s]."""
+    try:
+        response = decoded_response(text)
+    except ResponseRefusal as refused:
+        yield Problem(numbers, refused.received, refused.allowed)
+        return
+    wrong = [Problem(where, *found) for found in grid_problems(response.frequency_hz, limits[0])]
+    yield from wrong or _curves_problems(response, axes, limits[1], where)
 
 
 def _curves_problems(
@@ -107,7 +133,7 @@ def _curves_problems(
             yield Problem(where, f"{received} in {label}", allowed)
 
 
-def _read(path: Mapping[str, Any], folder: Path) -> dict[str, str]:
+def _read(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, str]:
     """Return file, sha256 and response of a path section whose numbers are still in the file."""
     name = path.get("file")
     if not isinstance(name, str):
@@ -124,7 +150,7 @@ def _read(path: Mapping[str, Any], folder: Path) -> dict[str, str]:
         raise ResponseRefusal(
             f"'{name}' with SHA-256 {digest}", f"allowed: the file with {expected}, or leave sha256 out"
         )
-    text = encoded_response(_response(_columns(content, Path(name).suffix.lower())))
+    text = encoded_response(_response(_own(_columns(content, Path(name).suffix.lower()), sensor)))
     # the folder is no part of the set: the same measurement elsewhere gives the same identity
     return {"file": Path(name).name, "sha256": digest, "response": text}
 
@@ -148,6 +174,13 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
     except (pa.ArrowInvalid, ValueError, OSError, zipfile.BadZipFile) as error:
         raise ResponseRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
     return {name: _numbers(name, table[name].to_numpy()) for name in table.column_names}
+
+
+def _own(columns: dict[str, FloatArray], sensor: str) -> dict[str, FloatArray]:
+    """Return the columns of one sensor of a file that names sensors, as `siggen path --out` writes it; else all."""
+    own = {name.removeprefix(f"{sensor}_"): v for name, v in columns.items() if COLUMN.match(name) is None}
+    own = {name: values for name, values in own.items() if COLUMN.match(name) is not None}
+    return {FREQUENCY: columns[FREQUENCY], **own} if own and FREQUENCY in columns else columns
 
 
 def _numbers(name: str, values: NDArray[Any]) -> FloatArray:
@@ -201,15 +234,18 @@ def _complex(key: tuple[str, str], parts: Mapping[str, FloatArray]) -> NDArray[n
     raise ResponseRefusal(received, "allowed: real and imag, or magnitude and phase")
 
 
-def encoded_response(response: FrequencyResponse) -> str:
-    """Return a response as a text: one line that names its curves, and its numbers in base64."""
+def encoded_response(response: FrequencyResponse, numbers_as: str = "") -> str:
+    """Return a response as a text: one line that names its curves, and its numbers in base64.
+
+    With SINGLE numbers are float32, 1e-7 of a path that nobody knows to a per cent: a family fits into a file.
+    """
     curves = [response.frequency_hz, *(part for c in response.curves.values() for part in (c.real, c.imag))]
     names = [f"{direction} {name}" for direction, name in response.curves]
-    numbers = np.ascontiguousarray(curves, dtype="<f8").tobytes()
-    return ",".join(names) + ":" + base64.b64encode(numbers).decode()
+    numbers = np.ascontiguousarray(curves, dtype="<f4" if numbers_as == SINGLE else "<f8").tobytes()
+    return numbers_as + ",".join(names) + ":" + base64.b64encode(numbers).decode()
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def decoded_response(text: str) -> FrequencyResponse:
     """Return the response that a text stands for.
 
@@ -219,9 +255,11 @@ def decoded_response(text: str) -> FrequencyResponse:
         If it is none.
     """
     try:
-        head, _, body = text.partition(":")
+        head, _, body = text.removeprefix(SINGLE).partition(":")
         keys = [(name.split(" ")[0], name.split(" ")[1]) for name in head.split(",")]
-        numbers = np.frombuffer(base64.b64decode(body, validate=True), "<f8").reshape(1 + 2 * len(keys), -1)
+        width = "<f4" if text.startswith(SINGLE) else "<f8"
+        raw = np.frombuffer(base64.b64decode(body, validate=True), width)
+        numbers = raw.astype(np.float64).reshape(1 + 2 * len(keys), -1)
     except (ValueError, IndexError):
         raise ResponseRefusal("a text that holds no response", "allowed: what siggen filled in itself") from None
     curves = {key: numbers[1 + 2 * i] + 1j * numbers[2 + 2 * i] for i, key in enumerate(keys)}

@@ -15,8 +15,13 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.sensing.modal_path import HousingModes
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.housing import specimen_housing
-from siggen.specimen.instrument import ChannelInstrument, specimen_instrument
+from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
 from siggen.specimen.measured_path import INPUTS
+
+FILE_NUMBERS = 150_000
+"""Of one sensor in a table that shall be read again: two sensors fit into the configuration of a set."""
+MODES_PER_MEMORY = 0.8
+"""Frequency step times the time over which modes settle: half that time, e^-7 of the energy is left (as is allowed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,16 +34,28 @@ class PathCurves:
     modes: HousingModes | None
     mesh_hz: tuple[float, ...]
     mesh_harmonics: int
+    memory_s: float = 0.0
 
     @property
     def table(self) -> pa.Table:
         """One row per frequency, two columns per channel and bearing force."""
-        columns = {"frequency_hz": self.frequency_hz}
+        step = self._step
+        columns = {"frequency_hz": self.frequency_hz[::step]}
         for channel in self.channels:
             for name, curve in zip(INPUTS, _rows(channel), strict=True):
                 stem = f"{channel.name}_from_{name.replace('/', '_')}"
-                columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
+                columns |= {
+                    f"{stem}_real_m_s2_per_n": curve.real[::step],
+                    f"{stem}_imag_m_s2_per_n": curve.imag[::step],
+                }
         return pa.table(columns)
+
+    @property
+    def _step(self) -> int:
+        """Rows that are left out between two: as few as make a file that can be read again, as many as modes allow."""
+        numbers = self.frequency_hz.size * (1 + 2 * len(INPUTS) * max(len(c.sensor.axes) for c in self.channels))
+        wide = MODES_PER_MEMORY / max(self.memory_s, 1e-9) / (self.frequency_hz[1] - self.frequency_hz[0])
+        return max(min(-(-numbers // FILE_NUMBERS), int(wide)), 1)
 
     def peak(self, channel: ChannelInstrument) -> tuple[float, float]:
         """Return the largest accelerance [m/s²/N] from any bearing force, and its frequency [Hz]."""
@@ -69,6 +86,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
         modes=None if housing is None or not any(c.path_modes for c in channels) else housing.modes,
         mesh_hz=tuple(point.speed_hz * specimen.gears.pinion.teeth for point in points),
         mesh_harmonics=config.mesh_harmonics,
+        memory_s=settle_s(config),
     )
 
 

@@ -21,7 +21,7 @@ SIGGEN_ROOMS = (
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "attacks", "loader", "training", "release", "recordings",
-    "page", "prediction", "machine", "audit", "report", "explore", "cli",
+    "page", "prediction", "machine", "audit", "calibration", "report", "explore", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

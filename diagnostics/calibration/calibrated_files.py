@@ -1,0 +1,223 @@
+"""The files of a calibration: a short configuration that extends the rig, and a folder of data beside it."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnostics.calibration.calibration import Calibration, ChannelFit
+from diagnostics.calibration.jackknife import Fitted
+from diagnostics.calibration.noise_fit import NoiseFit
+from diagnostics.calibration.source_library import PLACES
+from siggen.errors import UsageError
+
+FACTS = "calibration.json"
+SETTLE_S = 0.1
+MEMORY_MS = (1.0, 8.0)
+"""Correlation time of the noise's level as measured machines have it; three recordings do not tell it."""
+
+
+def data_folder(out: Path) -> Path:
+    """Return the folder beside the configuration."""
+    return out.with_name(f"{out.stem}_data")
+
+
+def write_calibration(found: Calibration, out: Path) -> Path:
+    """Write configuration and data; return the configuration.
+
+    Raises
+    ------
+    UsageError
+        If either is there already.
+    """
+    folder = data_folder(out)
+    for path in (out, folder):
+        if path.exists():
+            raise UsageError(f"{path}: is there already; give --out a new name")
+    folder.mkdir(parents=True)
+    sensors = sensor_axes(found)
+    for channel, (name, axis) in zip(found.channels, sensors, strict=True):
+        _write_table(folder / f"noise_{name}.csv", ("frequency_hz", "density"), _noise_rows(channel.noise))
+        if channel.own:
+            rows = [(line.order, line.frequency_hz, line.amplitude) for line in channel.own]
+            _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
+        for number in range(len(channel.paths)):
+            _write_path(folder / _path_file(name, number), found.grid_hz, axis, channel, number)
+    facts = json.dumps(calibration_facts(found), indent=1, allow_nan=False)
+    (folder / FACTS).write_text(facts + "\n", encoding="utf-8")
+    out.write_text(calibrated_text(found, out), encoding="utf-8")
+    return out
+
+
+def sensor_axes(found: Calibration) -> list[tuple[str, str]]:
+    """Return name and axis of the sensor that stands for each channel; sensors of several axes become several."""
+    axes = [
+        (sensor["name"], axis, len(sensor["axes"])) for sensor in found.config["sensors"] for axis in sensor["axes"]
+    ]
+    return [(name if count == 1 else f"{name}_{axis}", axis) for name, axis, count in axes]
+
+
+def calibrated_text(found: Calibration, out: Path) -> str:
+    """Return the configuration's text."""
+    low, high = found.random_rms
+    point = found.operating_point
+    lines = [
+        f"# Made by `siggen-diagnostics calibrate` from {found.blocks.recordings} healthy recordings. It differs from",
+        "# the rig in what recordings tell; what they leave open is drawn per gearbox. Intervals and what was not",
+        f"# identified: {data_folder(out).name}/{FACTS}. Data of your recordings are in it: keep it to yourself.",
+        "",
+        f"name: {_set_name(out)}",
+        f"extends: {_beside(found.rig, out)}",
+        f"fs_hz: {found.blocks.fs_hz:g}",
+        "operating_points:",
+        f"  - speed_hz: {_number(point['speed_hz'])}    # of the recordings",
+        f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the rig, or --torque",
+        f"variation: {{speed: {{random_rms: {_range(0.7 * low, 1.4 * high)}}}}}",
+        f"housing: {{modes: 1, frequency_hz: {0.2 * found.blocks.fs_hz:g}, damping_ratio: 0.05, settle_s: {SETTLE_S}, "
+        "force_noise: null}    # paths are fitted",
+        "background: null              # noise and lines are those of the recordings",
+        "dynamics: {unbalance: {grade_mm_s: 0.0}, bearing_tones: {level: 0.0}}    # among the lines of the recordings",
+        "sensors:",
+    ]
+    for channel, (name, axis) in zip(found.channels, sensor_axes(found), strict=True):
+        lines += _sensor(channel, name, axis, data_folder(out).name)
+    return "\n".join(lines) + "\n"
+
+
+def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[str]:
+    noise, sensor = channel.noise, channel.sensor
+    yield f"  - name: {name}                # column or channel {channel.name}"
+    yield "    place: casing"
+    yield f"    axes: [{axis}]"
+    yield f"    range_m_s2: {sensor.range_m_s2:.6g}"
+    yield f"    bits: {'null' if sensor.bits is None else sensor.bits}"
+    files = ", ".join(f"{folder}/{_path_file(name, number)}" for number in range(len(channel.paths)))
+    yield f"    path: {{kind: measured, files: [{files}]}}"
+    ratio = 10.0 ** (noise.spread_db / 20.0)
+    level = noise.level_db
+    yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, 90 % {_interval(level)}"
+    yield f"      file: {folder}/noise_{name}.csv"
+    yield f"      factor: {_range(1.0 / ratio, ratio, 'loguniform')}"
+    depths = {"pinion_depth": noise.pinion_depth, "gear_depth": noise.gear_depth, "level_std": noise.level_std}
+    inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
+    yield f"      modulation: {{{inner}, level_time_ms: {_range(*MEMORY_MS)}}}"
+    if channel.own:
+        widest = max(line.spread for line in channel.own)
+        usual = float(np.median([line.spread for line in channel.own]))
+        yield f"    lines:                      # {len(channel.own)} beside the mesh"
+        yield f"      file: {folder}/lines_{name}.csv"
+        yield f"      factor: {_range(1.0 / usual, usual, 'loguniform')}    # the widest differs by {widest:.2g}"
+
+
+def calibration_facts(found: Calibration) -> dict[str, Any]:
+    """Return what was fitted, with intervals, and what was not identified."""
+    groups = [group.name for group in found.library.groups]
+    return {
+        "rig": str(found.rig),
+        "recordings": [block.name for block in found.blocks.blocks],
+        "speed_hz": [block.speed_hz for block in found.blocks.blocks],
+        "speed_random_rms": list(found.random_rms),
+        "interval": "90 %, from leaving recordings out (jackknife, Student's t)",
+        "channels": {
+            channel.name: {
+                "line_level_db": {
+                    name: _fact(level)
+                    for name, level in zip(groups, channel.levels, strict=True)
+                    if np.isfinite(level.value)
+                },
+                "noise_level_db": _fact(channel.noise.level_db),
+                "pinion_depth": _fact(channel.noise.pinion_depth),
+                "gear_depth": _fact(channel.noise.gear_depth),
+                "level_std": _fact(channel.noise.level_std),
+                "lines_beside_the_mesh": len(channel.own),
+                "step_m_s2": channel.sensor.step_m_s2,
+            }
+            for channel in found.channels
+        },
+        "gearboxes_simulated": int(found.library.energy_n2.shape[0]),
+        "not_identified": list(NOT_IDENTIFIED),
+    }
+
+
+NOT_IDENTIFIED = (
+    "path and source apart: only their product shows at a line. Paths are drawn: direction of the bearing forces, "
+    "simulated gearboxes and recordings differ from path to path",
+    "phase of the path: minimum phase is assumed",
+    "structure, tip relief, errors of the teeth: as wide as in the rig; give an accuracy class if you know it",
+    "torque and its variation: as in the rig, or --torque",
+    "correlation time of the noise's level: 1 to 8 ms",
+    "range of the sensor: four times the largest value",
+    "other gearboxes of this type: one assembly was measured",
+)
+
+
+def _fact(value: Fitted) -> list[float | None]:
+    return [float(x) if np.isfinite(x) else None for x in (value.value, value.low, value.high)]
+
+
+def _interval(value: Fitted) -> str:
+    return f"[{value.low:.1f}, {value.high:.1f}]" if np.isfinite(value.low) else "unknown from one recording"
+
+
+def _depth(value: Fitted) -> str:
+    """Return the range of a depth: its interval, and at least half and twice its value where that is unknown."""
+    low = max(value.low, 0.0) if np.isfinite(value.low) else 0.5 * value.value
+    high = min(value.high if np.isfinite(value.high) else 2.0 * value.value, 1.0)
+    return _range(low, max(high, low + 1e-3))
+
+
+def _noise_rows(noise: NoiseFit) -> Iterable[Sequence[float]]:
+    return zip(noise.frequency_hz.tolist(), noise.density.tolist(), strict=True)
+
+
+def _write_table(file: Path, head: Sequence[str], rows: Iterable[Sequence[float]]) -> None:
+    with file.open("w", newline="", encoding="utf-8") as lines:
+        writer = csv.writer(lines)
+        writer.writerow(head)
+        writer.writerows([f"{value:.7g}" for value in row] for row in rows)
+
+
+def _path_file(sensor: str, number: int) -> str:
+    return f"path_{sensor}_{number:02d}.npz"
+
+
+def _write_path(file: Path, grid_hz: np.ndarray, axis: str, channel: ChannelFit, number: int) -> None:
+    draw = channel.paths[number]
+    columns = {"frequency_hz": grid_hz}
+    for weight, (place, direction) in zip(draw.direction, PLACES, strict=True):
+        stem = f"{axis}_from_{place}_{direction}"
+        curve = weight * draw.accelerance
+        columns |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
+    np.savez(file, allow_pickle=False, **columns)
+
+
+def _beside(rig: Path, out: Path) -> str:
+    """Return how the configuration names the rig: by its way from there, or a preset by its name."""
+    if not rig.is_file():
+        return str(rig)
+    import os
+
+    return Path(os.path.relpath(rig.resolve(), out.resolve().parent)).as_posix()
+
+
+def _set_name(out: Path) -> str:
+    kept = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "_" for c in out.stem.lower())
+    return kept.lstrip("_-") or "calibrated"
+
+
+def _number(value: Any) -> str:
+    if not isinstance(value, dict):
+        return f"{value:.6g}"
+    inner = ", ".join(
+        f"{key}: {item if isinstance(item, (str, list)) else f'{item:.6g}'}" for key, item in value.items()
+    )
+    return f"{{{inner}}}"
+
+
+def _range(low: float, high: float, kind: str = "uniform") -> str:
+    return f"{{kind: {kind}, low: {low:.4g}, high: {high:.4g}}}"

@@ -1,0 +1,243 @@
+"""Calibration: what healthy recordings tell about the machine of a configuration, and what they leave open.
+
+Order of fitting: speed and angle, floor and noise, lines, library of bearing forces at the recordings' speed, one path
+per draw of what path and source share. Source: derived.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import siggen
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.calibration.healthy_blocks import HealthyBlocks
+from diagnostics.calibration.jackknife import Fitted, jackknife
+from diagnostics.calibration.noise_fit import NoiseFit, noise_fit
+from diagnostics.calibration.order_record import (
+    HIGHEST_SHARE,
+    LineGroup,
+    OrderRecord,
+    group_levels,
+    line_groups,
+    order_record,
+)
+from diagnostics.calibration.own_lines import OwnLine, own_lines
+from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path
+from diagnostics.calibration.sensor_fit import SensorFit, sensor_fit
+from diagnostics.calibration.source_library import PLACES, SourceLibrary, source_library
+from siggen.errors import UsageError
+
+GRID_STEPS = 1024
+LEAST_LINE_SHARE = 0.3
+"""Of a group's energy above the floor; below, the path is not fitted to it."""
+FEWEST_GROUPS = 2
+SPEED_MARGIN = 0.01
+SLOW_TURNS = 5
+LARGEST_RANDOM_RMS = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelFit:
+    """One channel: levels [dB re 1 (m/s²)²] of its groups of lines, noise, own lines, recorder, possible paths."""
+
+    name: str
+    levels: tuple[Fitted, ...]
+    lines: ChannelLines
+    noise: NoiseFit
+    own: tuple[OwnLine, ...]
+    sensor: SensorFit
+    paths: tuple[PathDraw, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """All of it.
+
+    Attributes
+    ----------
+    rig : Path
+    config : dict
+        The rig, resolved.
+    operating_point : dict
+        Speed range of the recordings, torque of the rig.
+    random_rms : (float, float)
+        Slow variation of the speed, lowest and highest.
+    grid_hz : (k,) float64
+        Of the paths.
+    channels : tuple of ChannelFit
+    library : SourceLibrary
+    blocks : HealthyBlocks
+    teeth : (int, int)
+    """
+
+    rig: Path
+    config: dict[str, Any]
+    operating_point: dict[str, Any]
+    random_rms: tuple[float, float]
+    grid_hz: np.ndarray
+    channels: tuple[ChannelFit, ...]
+    library: SourceLibrary
+    blocks: HealthyBlocks
+    teeth: tuple[int, int]
+
+
+def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
+    """Return the resolved configuration of a rig, and its teeth.
+
+    Raises
+    ------
+    UsageError
+        If its model has no bearings.
+    """
+    config = siggen.load_config(rig).canonical()
+    if config["dynamics"]["model"] == "torsional":
+        raise UsageError(f"{rig}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
+    return config, (config["gears"]["pinion"]["teeth"], config["gears"]["gear"]["teeth"])
+
+
+def calibrated(
+    rig: Path,
+    blocks: HealthyBlocks,
+    torque_nm: tuple[float, float] | None,
+    gearboxes: int,
+    paths: int,
+    seed: int,
+    advance: Callable[[], None],
+) -> Calibration:
+    """Return the calibration of a rig to healthy recordings.
+
+    Parameters
+    ----------
+    rig : Path
+    blocks : HealthyBlocks
+    torque_nm : (float, float), optional
+        Of the recordings; otherwise that of the rig.
+    gearboxes, paths : int
+        Sizes of the library and of the family of paths.
+    seed : int
+    advance : callable
+        Told of every gearbox of the library.
+
+    Raises
+    ------
+    UsageError
+        If a recording shows no mesh lines, or the rig has no bearings.
+    """
+    config, teeth = rig_teeth(rig)
+    point = {"speed_hz": _speeds(blocks), "torque_nm": _torque(config, torque_nm)}
+    groups = line_groups(teeth, HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks))
+    seen = {name: _seen(name, blocks, groups, teeth) for name in blocks.channels}
+    library = source_library(rig, point, blocks.fs_hz, groups, gearboxes, advance)
+    draws = _Draws.of(len(blocks.blocks), library.energy_n2.shape[0], paths, seed)
+    grid_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, GRID_STEPS + 1)
+    channels = tuple(
+        _channel(one, number, blocks, library, draws, grid_hz, teeth) for number, one in enumerate(seen.values())
+    )
+    return Calibration(rig, config, point, _random_rms(blocks), grid_hz, channels, library, blocks, teeth)
+
+
+@dataclass(frozen=True, slots=True)
+class _Draws:
+    """Blocks and gearboxes of every path, (paths, n), and the generator's seed of the directions."""
+
+    blocks: np.ndarray
+    gearboxes: np.ndarray
+    seed: int
+
+    @staticmethod
+    def of(blocks: int, gearboxes: int, paths: int, seed: int) -> _Draws:
+        rng = generator(seed, Purpose.PATHS)
+        of_blocks = rng.integers(blocks, size=(paths, blocks))
+        return _Draws(of_blocks, rng.integers(gearboxes, size=(paths, gearboxes)), seed)
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """Spectra of one channel, one per block, and its lines."""
+
+    name: str
+    records: tuple[OrderRecord, ...]
+    lines: ChannelLines
+
+
+def _seen(name: str, blocks: HealthyBlocks, groups: tuple[LineGroup, ...], teeth: tuple[int, int]) -> _Seen:
+    records = tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
+    points_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, CEPSTRUM_POINTS)
+    hz, energy, floors = [], [], []
+    for record in records:
+        level, share = group_levels(record, groups)
+        hz.append([group.centre * record.speed_hz for group in groups])
+        energy.append(np.where(share > LEAST_LINE_SHARE, 10.0 * np.log10(np.maximum(level, 1e-30)), np.nan))
+        density = np.interp(points_hz, np.arange(record.floor.size) * record.bin_hz, record.floor / record.bin_hz)
+        floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
+    lines = ChannelLines(np.array(hz), np.array(energy), np.array(floors))
+    _check_lines(name, blocks, lines)
+    return _Seen(name, records, lines)
+
+
+def _check_lines(name: str, blocks: HealthyBlocks, lines: ChannelLines) -> None:
+    known = np.isfinite(lines.energy_db[:, ::3]).sum(axis=1)
+    for block, count in zip(blocks.blocks, known.tolist(), strict=True):
+        if count < FEWEST_GROUPS:
+            raise UsageError(
+                f"{block.name}: channel {name} shows {count} mesh lines above its floor; a path needs {FEWEST_GROUPS}. "
+                "Are these the teeth of the machine, and is it loaded?"
+            )
+
+
+def _channel(
+    seen: _Seen,
+    number: int,
+    blocks: HealthyBlocks,
+    library: SourceLibrary,
+    draws: _Draws,
+    grid_hz: np.ndarray,
+    teeth: tuple[int, int],
+) -> ChannelFit:
+    rng = generator(draws.seed, Purpose.PATHS, 1 + number)
+    directions = rng.standard_normal((len(draws.blocks), len(PLACES)))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    found = tuple(
+        PathDraw(drawn_path(seen.lines, library.level_db(w, chosen), picked, grid_hz, blocks.fs_hz), w)
+        for w, chosen, picked in zip(directions, draws.gearboxes, draws.blocks, strict=True)
+    )
+    gear_order = teeth[0] / teeth[1]
+    return ChannelFit(
+        seen.name,
+        tuple(jackknife(column) for column in seen.lines.energy_db.T),
+        seen.lines,
+        noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
+        own_lines(seen.records, gear_order),
+        sensor_fit(blocks.blocks, seen.name),
+        found,
+    )
+
+
+def _speeds(blocks: HealthyBlocks) -> dict[str, Any] | float:
+    speeds = [block.speed_hz for block in blocks.blocks]
+    return {
+        "kind": "uniform",
+        "low": min(speeds) * (1.0 - SPEED_MARGIN),
+        "high": max(speeds) * (1.0 + SPEED_MARGIN),
+    }
+
+
+def _torque(config: dict[str, Any], said: tuple[float, float] | None) -> Any:
+    """Return the torque of the recordings as said, or the first of the rig."""
+    if said is None:
+        return config["operating_points"][0]["torque_nm"]
+    return said[0] if said[0] == said[1] else {"kind": "uniform", "low": said[0], "high": said[1]}
+
+
+def _random_rms(blocks: HealthyBlocks) -> tuple[float, float]:
+    """Return lowest and highest relative deviation of the speed from turn groups to turn groups."""
+    found = []
+    for block in blocks.blocks:
+        turns = np.diff(block.pulses_s[::SLOW_TURNS])
+        found.append(float(turns.std() / turns.mean()) if turns.size > 2 else 0.0)
+    return min(max(min(found), 1e-6), LARGEST_RANDOM_RMS), min(max(*found, 1e-5), LARGEST_RANDOM_RMS)

@@ -1,0 +1,110 @@
+"""HealthyBlocks: healthy recordings as blocks that are left out one by one: recordings, or pieces of one or two."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
+from diagnostics.recordings.shaft_pulses import shaft_pulses
+from siggen.errors import UsageError
+
+FEWEST_RECORDINGS = 3
+"""From so many on each recording is a block; fewer are cut, and their intervals know nothing of other days."""
+BLOCKS, BLOCK_TURNS, FEWEST_TURNS = 4, 20, 10
+PLAUSIBLE_RMS_M_S2 = (1e-4, 1e4)
+LEAST_LINE = 0.3
+"""Share of a mesh line's bins above the floor; the strongest of the recording must be that much."""
+
+Source = tuple[Path, int | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """One recording or piece: name, channels (n,) [m/s²], rate and pulse times [s] of the pinion."""
+
+    name: str
+    channels: Mapping[str, np.ndarray]
+    fs_hz: float
+    pulses_s: np.ndarray
+
+    @property
+    def speed_hz(self) -> float:
+        """Mean speed of the pinion."""
+        return float((self.pulses_s.size - 1) / (self.pulses_s[-1] - self.pulses_s[0]))
+
+
+@dataclass(frozen=True, slots=True)
+class HealthyBlocks:
+    """All blocks, the channels' names, how many recordings they come from."""
+
+    blocks: tuple[Block, ...]
+    channels: tuple[str, ...]
+    fs_hz: float
+    recordings: int
+
+
+def healthy_blocks(
+    sources: Sequence[Source],
+    channels: tuple[str, ...],
+    facts: RecordingFacts,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+) -> HealthyBlocks:
+    """Return the blocks of healthy recordings.
+
+    Raises
+    ------
+    UsageError
+        If a file cannot be read or used: unreadable, clipped, not finite, too short, without speed, of another rate or
+        of an implausible level; names the file.
+    """
+    read = [read_recording(path, channels, replace(facts, row=row)) for path, row in sources]
+    _check_alike(read)
+    cut = 1 if len(read) >= FEWEST_RECORDINGS else -(-BLOCKS // len(read))
+    found = []
+    for recording, (path, row) in zip(read, sources, strict=True):
+        pulses = shaft_pulses(recording, teeth, speed_range_hz).times_s
+        if pulses.size <= FEWEST_TURNS:
+            raise UsageError(
+                f"{path}: {pulses.size - 1} whole turns of the pinion; allowed: at least {FEWEST_TURNS}. Record longer"
+            )
+        name = path.name if row is None else f"{path.name}:{row}"
+        found += _cut(name, recording, pulses, max(1, min(cut, (pulses.size - 1) // BLOCK_TURNS)))
+    return HealthyBlocks(tuple(found), channels, read[0].fs_hz, len(read))
+
+
+def _cut(name: str, recording: MeasuredRecording, pulses: np.ndarray, pieces: int) -> list[Block]:
+    edges = np.linspace(0, pulses.size - 1, pieces + 1).round().astype(int)
+    found = []
+    for k, (first, last) in enumerate(itertools.pairwise(edges)):
+        inside = pulses[first : last + 1]
+        start = 0 if pieces == 1 else int(inside[0] * recording.fs_hz)
+        end = None if pieces == 1 else int(np.ceil(inside[-1] * recording.fs_hz)) + 1
+        signals = {channel: signal[start:end] for channel, signal in recording.channels.items()}
+        label = name if pieces == 1 else f"{name}, piece {k + 1}"
+        found.append(Block(label, signals, recording.fs_hz, inside - start / recording.fs_hz))
+    return found
+
+
+def _check_alike(read: Sequence[MeasuredRecording]) -> None:
+    first = read[0]
+    for one in read[1:]:
+        if abs(one.fs_hz / first.fs_hz - 1.0) > 1e-6:
+            raise UsageError(
+                f"{one.path}: sampled at {one.fs_hz:g} Hz, {first.path} at {first.fs_hz:g} Hz; allowed: one rate"
+            )
+        if any(np.array_equal(a, b) for a, b in zip(one.channels.values(), first.channels.values(), strict=True)):
+            raise UsageError(f"{one.path}: has the same samples as {first.path}; give every recording once")
+    low, high = PLAUSIBLE_RMS_M_S2
+    for one in read:
+        for channel, signal in one.channels.items():
+            if not low < float(signal.std()) < high:
+                raise UsageError(
+                    f"{one.path}: rms of {channel} is {signal.std():.3g} m/s2; allowed: {low:g} to {high:g}. Is --unit "
+                    "that of the file?"
+                )

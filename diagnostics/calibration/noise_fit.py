@@ -1,0 +1,95 @@
+"""The noise of a channel: density of its floor, its level between recordings, and how shafts and chance modulate it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.calibration.jackknife import Fitted, jackknife
+from diagnostics.calibration.order_record import OrderRecord, turns_of
+from diagnostics.signal.asynchronous_part import asynchronous_part, band_signal
+
+KNOTS_PER_OCTAVE, LOWEST_HZ = 24, 5.0
+MODULATION_BAND = (0.08, 0.4)
+"""Of the sampling rate: 2 to 10 kHz at 25.6 kHz."""
+SHAFT_LINES_POWER = 0.5 * (1.0 + 1.0 / 2.0 + 1.0 / 3.0)
+"""Of lines of depths d, d/√2, d/√3: kurtosis 3 (1 + d² times this) (derived)."""
+NEIGHBOURS = (0.31, 0.37, 0.43, 1.29, 1.37, 1.43, 1.71)
+"""Orders beside those of shafts: what they show is the error of the estimate."""
+LEAST_SPREAD_DB = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseFit:
+    """Noise of one channel.
+
+    Attributes
+    ----------
+    frequency_hz, density : (knots,) float64
+        One-sided density of the floor [unit/√Hz], mean in dB over recordings.
+    level_db : Fitted
+        Level of all noise [dB re 1 unit²].
+    spread_db : float
+        Half the range in which a record's level is drawn, at least LEAST_SPREAD_DB.
+    pinion_depth, gear_depth, level_std : Fitted
+        As keys of `noise_spectrum.modulation`.
+    """
+
+    frequency_hz: np.ndarray
+    density: np.ndarray
+    level_db: Fitted
+    spread_db: float
+    pinion_depth: Fitted
+    gear_depth: Fitted
+    level_std: Fitted
+
+
+def noise_fit(records: Sequence[OrderRecord], blocks: Sequence[Block], channel: str, gear_order: float) -> NoiseFit:
+    """Return the noise of a channel from its spectra and recordings, one of each per block."""
+    fs_hz = blocks[0].fs_hz
+    knots = np.geomspace(LOWEST_HZ, 0.5 * fs_hz, int(KNOTS_PER_OCTAVE * math.log2(0.5 * fs_hz / LOWEST_HZ)))
+    densities = np.array([_at_knots(record, knots) for record in records])
+    levels = np.array([10.0 * math.log10(float(record.floor.sum())) for record in records])
+    cyclic = np.array([_modulation(block, channel, gear_order) for block in blocks])
+    spread = 1.65 * float(levels.std(ddof=1)) * math.sqrt(1.0 + 1.0 / levels.size) if levels.size > 1 else 0.0
+    return NoiseFit(
+        knots,
+        np.exp(np.log(densities).mean(axis=0)),
+        jackknife(levels),
+        max(spread, LEAST_SPREAD_DB),
+        *(jackknife(column) for column in cyclic.T),
+    )
+
+
+def _at_knots(record: OrderRecord, knots: np.ndarray) -> np.ndarray:
+    hz = np.arange(1, record.floor.size) * record.bin_hz
+    return np.asarray(np.exp(np.interp(np.log(knots), np.log(hz), np.log(record.density[1:]))))
+
+
+def _modulation(block: Block, channel: str, gear_order: float) -> tuple[float, float, float]:
+    """Return depth of pinion and gear, and s of the random level, of what both averages leave."""
+    from scipy import fft
+
+    turns = turns_of(block.channels[channel], block.fs_hz, block.pulses_s)
+    rest = asynchronous_part(turns - turns.mean(), gear_order)
+    bin_hz = block.speed_hz / turns.shape[0]
+    low, high = (int(share * block.fs_hz / bin_hz) for share in MODULATION_BAND)
+    power = np.square(np.abs(band_signal(fft.rfft(rest), low, high)))
+    if not power.any():
+        return 0.0, 0.0, 0.0
+    error = np.median([_depth(power, turns.shape[0] * order) for order in NEIGHBOURS])
+    pinion, gear = (
+        math.sqrt(max(_depth(power, turns.shape[0] * order) ** 2 - error**2, 0.0)) for order in (1.0, gear_order)
+    )
+    kurtosis = 1.5 * float(np.square(power).mean() / power.mean() ** 2)
+    of_shafts = 3.0 * (1.0 + SHAFT_LINES_POWER * (pinion**2 + gear**2))
+    return pinion, gear, math.sqrt(max(math.log(kurtosis / of_shafts), 0.0))
+
+
+def _depth(power: np.ndarray, cycles: float) -> float:
+    turned = np.exp(-2j * np.pi * cycles * np.arange(power.size) / power.size)
+    return float(2.0 * abs((power * turned).mean()) / power.mean())

@@ -1,0 +1,141 @@
+"""OrderRecord: the spectrum of one channel over whole turns of the pinion, its floor, and the energy of its mesh lines.
+
+Hann spectrum, scaled so that the sum over the bins of a line is its mean square. The floor is the median over 41 bins
+beside the lines of both shafts, over ln 2 (exponential distribution of a bin's power). Source: standard literature;
+groups of lines derived.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+
+FLOOR_BINS, LINE_BINS, MASK_BINS = 41, 2, 2.2
+MESH_LINES = 12
+PINION_SIDEBANDS = (-4, -3, -2, -1, 1, 2, 3, 4)
+GEAR_SIDEBANDS = (-5, -4, -2, -1, 1, 2, 4, 5)
+HIGHEST_SHARE = 0.45
+"""Of the sampling rate: up to here bearing forces are simulated."""
+LEAST_SHARE = 0.2
+"""Of a line's bins that counts as line at least, where the floor hides it."""
+
+
+@dataclass(frozen=True, slots=True)
+class OrderRecord:
+    """One channel of one recording.
+
+    Attributes
+    ----------
+    power : (bins,) float64
+        Mean square per bin [unit²], one-sided.
+    floor : (bins,) float64
+        Floor of the power per bin.
+    free : (bins,) bool
+        Bins beside the lines of both shafts.
+    revolutions : int
+        Bins per order.
+    speed_hz : float
+        Mean speed of the pinion.
+    """
+
+    power: np.ndarray
+    floor: np.ndarray
+    free: np.ndarray
+    revolutions: int
+    speed_hz: float
+
+    @property
+    def bin_hz(self) -> float:
+        """Width of a bin."""
+        return self.speed_hz / self.revolutions
+
+    @property
+    def density(self) -> np.ndarray:
+        """One-sided density of the floor, (bins,) [unit/√Hz]."""
+        return np.asarray(np.sqrt(self.floor / self.bin_hz))
+
+    def line(self, order: float) -> tuple[float, float]:
+        """Return the mean square of a line less the floor's, and its share of these bins; NaN outside the band."""
+        centre = round(order * self.revolutions)
+        if centre - LINE_BINS < 1 or centre + LINE_BINS >= self.power.size:
+            return math.nan, math.nan
+        near = slice(centre - LINE_BINS, centre + LINE_BINS + 1)
+        total, floor = float(self.power[near].sum()), float(self.floor[near].sum())
+        share = max(1.0 - floor / total, LEAST_SHARE) if total > 0.0 else LEAST_SHARE
+        return share * total, share
+
+
+def turns_of(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray) -> np.ndarray:
+    """Return a signal at equal steps of pinion angle, (revolutions, steps), up to its whole band."""
+    slowest = 1.0 / float(np.diff(pulses_s).max())
+    grid = angle_grid(pulses_s, 2 * math.ceil(0.55 * fs_hz / slowest))
+    return resample_to_angle(signal, fs_hz, grid).reshape(grid.revolutions, -1)
+
+
+def order_record(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, teeth: tuple[int, int]) -> OrderRecord:
+    """Return the record of a channel (n,) with one pulse [s] per turn of the pinion."""
+    from scipy import fft
+
+    turns = turns_of(signal, fs_hz, pulses_s)
+    flat = turns.ravel() - turns.mean()
+    hann = np.hanning(flat.size)
+    power = 2.0 * np.square(np.abs(fft.rfft(flat * hann))) / (flat.size * float(np.square(hann).sum()))
+    speed_hz = (pulses_s.size - 1) / float(pulses_s[-1] - pulses_s[0])
+    kept = min(power.size, int(0.5 * fs_hz / speed_hz * turns.shape[0]))
+    free = free_bins(kept, turns.shape[0], teeth)
+    return OrderRecord(power[:kept], _floor(power[:kept], free), free, turns.shape[0], speed_hz)
+
+
+def free_bins(bins: int, revolutions: int, teeth: tuple[int, int]) -> np.ndarray:
+    """Return which bins (bins,) lie beside all orders of both shafts; a gear's orders too dense to pass are ignored."""
+    order = np.arange(bins) / revolutions
+    free = np.abs(order - np.round(order)) * revolutions > MASK_BINS
+    step = teeth[0] / teeth[1]
+    if step * revolutions > 4.0 * MASK_BINS:
+        free &= np.abs(order - np.round(order / step) * step) * revolutions > MASK_BINS
+    free[:3] = False
+    return np.asarray(free)
+
+
+def _floor(power: np.ndarray, free: np.ndarray) -> np.ndarray:
+    from scipy.ndimage import median_filter
+
+    places = np.flatnonzero(free)
+    middle = median_filter(power[places], FLOOR_BINS, mode="nearest") / math.log(2.0) + 1e-300
+    return np.asarray(np.exp(np.interp(np.arange(power.size), places, np.log(middle))))
+
+
+@dataclass(frozen=True, slots=True)
+class LineGroup:
+    """Orders of lines whose mean energy is taken together: a mesh line, or its sidebands of one shaft."""
+
+    name: str
+    centre: float
+    orders: tuple[float, ...]
+
+
+def line_groups(teeth: tuple[int, int], top_order: float) -> tuple[LineGroup, ...]:
+    """Return the groups below an order: of every mesh harmonic the line, pinion sidebands and gear sidebands."""
+    found = []
+    for h in range(1, MESH_LINES + 1):
+        mesh = float(h * teeth[0])
+        if mesh + max(PINION_SIDEBANDS) + 1.0 > top_order:
+            break
+        step = teeth[0] / teeth[1]
+        found += [
+            LineGroup(f"mesh {h}", mesh, (mesh,)),
+            LineGroup(f"pinion sidebands of mesh {h}", mesh, tuple(mesh + k for k in PINION_SIDEBANDS)),
+            LineGroup(f"gear sidebands of mesh {h}", mesh, tuple(mesh + k * step for k in GEAR_SIDEBANDS)),
+        ]
+    return tuple(found)
+
+
+def group_levels(record: OrderRecord, groups: tuple[LineGroup, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return mean energy [unit²] of every group and the share of it that is line, both (groups,)."""
+    found = [[record.line(order) for order in group.orders] for group in groups]
+    energy = np.array([np.mean([line[0] for line in lines]) for lines in found])
+    return energy, np.array([np.mean([line[1] for line in lines]) for lines in found])

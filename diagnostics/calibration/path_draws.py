@@ -1,0 +1,103 @@
+"""Transfer paths that a channel may have: magnitudes that turn simulated lines into measured ones, of minimum phase.
+
+Only the product of path and source is seen, and in one channel four bearing forces act as one combination w F. So w is
+drawn, and so are the gearboxes of the library and the recordings that a path is fitted to: the family of paths holds
+what is not known. Magnitude: the cepstrally liftered floor, plus a Gaussian kernel over log2 f applied to what lines
+leave beside it. Source: derived; the minimum phase by folding the cepstrum is standard literature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+KERNEL_OCTAVES, WIDE_OCTAVES, WIDE_SHARE = 0.12, 1.0, 1e-3
+LEAST_WIDTH_STEPS = 3.2
+"""Of the kernel, in steps of the grid: what is narrower rings longer than the step holds."""
+LIFTER, CEPSTRUM_POINTS = 60, 4096
+HIGH_PASS_HZ = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelLines:
+    """What one channel shows, over its recordings.
+
+    Attributes
+    ----------
+    frequency_hz, energy_db : (recordings, groups) float64
+        Where the groups lie, and their mean energy [dB re 1 unit²]; NaN where it is not a line.
+    floor_db : (recordings, CEPSTRUM_POINTS) float64
+        Floor [dB] at equal steps from 0 to half the sampling rate.
+    """
+
+    frequency_hz: np.ndarray
+    energy_db: np.ndarray
+    floor_db: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class PathDraw:
+    """One possible path: accelerance [unit/N] (frequencies,) of w F, and the direction w (4,) of unit length."""
+
+    accelerance: np.ndarray
+    direction: np.ndarray
+
+
+def liftered(floor_db: np.ndarray) -> np.ndarray:
+    """Return the smooth course of a floor (points,): its cepstrum below the lifter."""
+    cepstrum = np.fft.irfft(floor_db, 2 * (floor_db.size - 1))
+    cepstrum[LIFTER : cepstrum.size - LIFTER + 1] = 0.0
+    return np.asarray(np.fft.rfft(cepstrum).real)
+
+
+def path_level_db(
+    lines_hz: np.ndarray, level_db: np.ndarray, smooth_db: np.ndarray, grid_hz: np.ndarray, fs_hz: float
+) -> np.ndarray:
+    """Return the level of a path (k,) [dB re 1 unit/N] on a grid.
+
+    Parameters
+    ----------
+    lines_hz, level_db : (m,) float64
+        Lines and measured over simulated energy at them.
+    smooth_db : (points,) float64
+        Liftered floor from 0 to half of `fs_hz`.
+    grid_hz : (k,) float64
+    fs_hz : float
+    """
+    points_hz = np.linspace(0.0, 0.5 * fs_hz, smooth_db.size)
+    beside = level_db - np.interp(lines_hz, points_hz, smooth_db)
+    safe = np.maximum(grid_hz, 1.0)
+    octaves = np.log2(safe[:, None] / lines_hz)
+    width = np.maximum(KERNEL_OCTAVES, np.log2(1.0 + LEAST_WIDTH_STEPS * grid_hz[1] / safe))[:, None]
+    weight = np.exp(-0.5 * (octaves / width) ** 2) + WIDE_SHARE * np.exp(-0.5 * (octaves / WIDE_OCTAVES) ** 2) + 1e-12
+    moved = (weight @ beside) / weight.sum(axis=1)
+    return np.asarray(np.interp(grid_hz, points_hz, smooth_db) + moved)
+
+
+def minimum_phase(level_db: np.ndarray) -> np.ndarray:
+    """Return the response (k,) of minimum phase with this level (k,) at equal steps from 0 to half the rate."""
+    logarithm = level_db * (np.log(10.0) / 20.0)
+    size = 2 * (level_db.size - 1)
+    cepstrum = np.fft.irfft(logarithm, size)
+    cepstrum[1 : size // 2] *= 2.0
+    cepstrum[size // 2 + 1 :] = 0.0
+    return np.asarray(np.exp(np.fft.rfft(cepstrum)))
+
+
+def high_passed(response: np.ndarray, grid_hz: np.ndarray) -> np.ndarray:
+    """Return a response that falls as f² below HIGH_PASS_HZ, as that of anything on feet does."""
+    s = 1j * grid_hz / HIGH_PASS_HZ
+    return np.asarray(response * s**2 / (s**2 + np.sqrt(2.0) * s + 1.0))
+
+
+def drawn_path(
+    lines: ChannelLines, simulated_db: np.ndarray, recordings: np.ndarray, grid_hz: np.ndarray, fs_hz: float
+) -> np.ndarray:
+    """Return the accelerance (k,) that turns simulated levels (groups,) into those of the chosen recordings."""
+    frequency, energy = lines.frequency_hz[recordings], lines.energy_db[recordings]
+    level = energy - simulated_db
+    known = np.isfinite(level)
+    smooth = liftered(lines.floor_db[recordings].mean(axis=0))
+    fitted = path_level_db(frequency[known], level[known], smooth, grid_hz, fs_hz)
+    return high_passed(minimum_phase(fitted), grid_hz)

@@ -1,0 +1,93 @@
+"""`siggen-diagnostics calibrate`: a configuration fitted to healthy recordings of the machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from diagnostics.cli.recording_options import (
+    Channel,
+    FullScale,
+    Rate,
+    Sensitivity,
+    SpeedRange,
+    Tacho,
+    TachoPulses,
+    Unit,
+    file_rows,
+    named_column,
+    two_numbers,
+)
+
+
+def calibrate(
+    rig: Annotated[
+        Path, typer.Argument(metavar="RIG", help="Configuration of the machine, as `siggen init` writes it.")
+    ],
+    healthy: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="HEALTHY...",
+            help="Healthy recordings of one rate: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz; 3 or more.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="YAML", help="New configuration; data go beside it.")],
+    fs: Rate = None,
+    speed_range: SpeedRange = None,
+    channel: Channel = None,
+    unit: Unit = "m/s2",
+    sensitivity: Sensitivity = None,
+    full_scale: FullScale = None,
+    tacho: Tacho = None,
+    tacho_pulses: TachoPulses = 1,
+    torque: Annotated[
+        str, typer.Option("--torque", metavar="LOW,HIGH", help="Torque of the recordings [Nm]. Default: the rig's.")
+    ] = "",
+    gearboxes: Annotated[
+        int, typer.Option(min=2, max=500, help="Gearboxes simulated for their bearing forces, about 1 s each.")
+    ] = 24,
+    paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0,
+) -> None:
+    """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.
+
+    Transfer paths, noise, its modulation, lines beside the mesh, speed and resolution follow from the recordings, with
+    intervals from leaving recordings out. What they cannot tell is drawn per gearbox and named.
+
+    Example: siggen-diagnostics calibrate rig.yaml may.csv june.csv july.csv --fs 25600 --speed-range 14,26 -o mine.yaml
+    """
+    import siggen
+    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, write_calibration
+    from diagnostics.calibration.calibration import calibrated, rig_teeth
+    from diagnostics.calibration.channel_names import rig_channels
+    from diagnostics.calibration.family_size import family_size
+    from diagnostics.calibration.healthy_blocks import healthy_blocks
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.recordings.measured_recording import RecordingFacts
+
+    sources = [source for said in healthy for source in file_rows(said)]
+    config, teeth = rig_teeth(rig)
+    said = dict(named_column(entry) for entry in channel or ())
+    names, columns = rig_channels(config, sources[0], said, tacho)
+    facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
+    span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
+    newtons = two_numbers(torque, "--torque", "15,60") if torque else None
+    with terminal_stage("healthy recordings", 1) as advance:
+        blocks = healthy_blocks(sources, names, facts, teeth, span)
+        advance()
+    with terminal_stage("gearboxes", gearboxes) as advance:
+        found = calibrated(rig, blocks, newtons, gearboxes, family_size(paths, len(names)), seed, advance)
+    write_calibration(found, out)
+    siggen.load_config(out)  # what would be refused is said now
+    for fit in found.channels:
+        noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
+        typer.echo(
+            f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
+            f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
+        )
+    for text in NOT_IDENTIFIED:
+        typer.echo(f"not identified: {text}", err=True)
+    typer.echo(str(out))

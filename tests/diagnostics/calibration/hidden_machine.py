@@ -1,0 +1,46 @@
+"""Recordings of a machine that nobody knows: simulated with numbers of its own, written as files with a tacho."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import siggen
+
+FS_HZ = 25_600.0
+TEETH = (18, 47)
+HIDDEN: dict[str, Any] = {
+    "extends": "quickstart",
+    "name": "hidden",
+    "seed": 4242,
+    "specimens": 1,
+    "repeats": 4,
+    "states": [{"name": "healthy"}],
+    "operating_points": [{"speed_hz": 34.0, "torque_nm": 40.0}],
+}
+
+
+def write_recording(record: Any, file: Path) -> Path:
+    """Write channels and a tacho's waveform as text."""
+    signals = {f"ch{k + 1}": signal for k, signal in enumerate(record.channels.values())}
+    time_s = np.arange(next(iter(signals.values())).size) / FS_HZ
+    since = time_s - record.tacho_s[np.clip(np.searchsorted(record.tacho_s, time_s) - 1, 0, None)]
+    signals["tacho"] = np.where((since >= 0.0) & (since < 0.003), 5.0, 0.0)
+    np.savetxt(
+        file, np.stack(list(signals.values()), axis=1), delimiter=",", header=",".join(signals), comments="", fmt="%.7g"
+    )
+    return file
+
+
+def hidden_recordings(folder: Path) -> list[Path]:
+    """Write four healthy recordings of the hidden machine; return the files."""
+    config = siggen.load_config(HIDDEN)
+    records = siggen.simulate(config, range(4))
+    return [write_recording(record, folder / f"run{k}.csv") for k, record in enumerate(records)]
+
+
+def channel_data(file: Path) -> np.ndarray:
+    """Return the vibration channels (n, 2) of a file."""
+    return np.loadtxt(file, delimiter=",", skiprows=1)[:, :2]

@@ -1,0 +1,128 @@
+"""Each fit finds again what was put in, by another way than it was put in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.calibration.jackknife import jackknife
+from diagnostics.calibration.noise_fit import noise_fit
+from diagnostics.calibration.order_record import order_record
+from diagnostics.calibration.own_lines import own_lines
+from diagnostics.calibration.path_draws import liftered, minimum_phase, path_level_db
+from diagnostics.calibration.sensor_fit import smallest_step
+
+FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400
+TIME_S = np.arange(SAMPLES) / FS_HZ
+
+
+def block(signal: np.ndarray, speed_hz: float) -> Block:
+    return Block("run", {"c": signal}, FS_HZ, np.arange(0.0, SAMPLES / FS_HZ, 1.0 / speed_hz))
+
+
+def test_minimum_phase_gives_back_a_response_that_has_it() -> None:
+    z = np.exp(1j * np.linspace(0.0, np.pi, 4097))
+    zeros, poles = 0.9 * np.exp(0.5j), 0.95 * np.exp(1.2j)
+    # of a filter in discrete time, whose zeros and poles lie within the unit circle
+    response = np.abs(zeros) ** 2 - 2 * zeros.real * z + z**2
+    response /= np.abs(poles) ** 2 - 2 * poles.real * z + z**2
+    found = minimum_phase(20.0 * np.log10(np.abs(response)))
+    assert np.abs(found - response).max() < 1e-6 * np.abs(response).max()
+
+
+def test_a_path_between_dense_lines_follows_them_and_far_from_lines_the_floor() -> None:
+    grid = np.linspace(0.0, 12_800.0, 1025)
+    lines = np.arange(600.0, 4000.0, 30.0)
+    truth = 10.0 * np.sin(grid / 1500.0)
+    floor = np.full(4096, -40.0)
+    found = path_level_db(lines, np.interp(lines, grid, truth), liftered(floor), grid, FS_HZ)
+    inside = (grid > 800.0) & (grid < 3500.0)
+    # the kernel of 0.12 octave averages a slope over a tenth of the frequency
+    assert np.abs(found - truth)[inside].max() < 1.0
+    assert np.ptp(found[grid > 9000.0]) < 1.0
+
+
+def test_a_floor_is_found_beside_strong_lines_and_lines_with_their_energy() -> None:
+    noise = np.random.default_rng(1).standard_normal(SAMPLES) * 0.1
+    signal = noise + 3.0 * np.sin(2 * np.pi * 18 * 30.0 * TIME_S) + np.sin(2 * np.pi * 18 * 60.0 * TIME_S)
+    record = order_record(signal, FS_HZ, block(signal, 30.0).pulses_s, TEETH)
+    density = 0.1 * np.sqrt(2.0 / FS_HZ)
+    middle = record.density[
+        (np.arange(record.floor.size) * record.bin_hz > 200) & (np.arange(record.floor.size) * record.bin_hz < 11e3)
+    ]
+    # medians of 41 bins scatter by 11 % of the power
+    assert np.median(middle) == pytest.approx(density, rel=0.03)
+    assert record.line(18.0)[0] == pytest.approx(4.5, rel=0.01)
+    assert record.line(36.0)[0] == pytest.approx(0.5, rel=0.01)
+
+
+def test_noise_gives_back_its_density_depth_and_level() -> None:
+    rng = np.random.default_rng(2)
+    blocks, records = [], []
+    for speed in (30.0, 31.0, 29.5):
+        strength = 1.0 + 0.4 * np.cos(2 * np.pi * speed * TIME_S)
+        signal = rng.standard_normal(SAMPLES) * np.sqrt(strength)
+        blocks.append(block(signal, speed))
+        records.append(order_record(signal, FS_HZ, blocks[-1].pulses_s, TEETH))
+    fit = noise_fit(records, blocks, "c", TEETH[0] / TEETH[1])
+    inside = (fit.frequency_hz > 100.0) & (fit.frequency_hz < 11_000.0)
+    decibels = 20.0 * np.log10(fit.density[inside] / np.sqrt(2.0 / FS_HZ))
+    assert abs(np.median(decibels)) < 0.3
+    assert fit.pinion_depth.value == pytest.approx(0.4, abs=0.05)
+    # its kurtosis is that of the first line alone; the fit assumes three and leaves none for chance
+    assert fit.gear_depth.value < 0.06
+    assert fit.level_std.value < 0.15
+
+
+def test_an_order_and_a_tone_are_told_apart_where_speeds_differ() -> None:
+    rng = np.random.default_rng(3)
+    records = []
+    for speed in (30.0, 31.3, 32.9):
+        signal = 0.05 * rng.standard_normal(SAMPLES)
+        signal += np.sin(2 * np.pi * 4.35 * speed * TIME_S) + 0.5 * np.sin(2 * np.pi * 777.7 * TIME_S)
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
+    strong = [line for line in own_lines(records, TEETH[0] / TEETH[1]) if line.amplitude > 0.1]
+    assert [(round(line.order, 2), round(line.frequency_hz)) for line in strong] == [(4.35, 0), (0.0, 778)]
+    assert [line.amplitude for line in strong] == pytest.approx([1.0, 0.5], rel=0.05)
+
+
+def test_noise_alone_gives_hardly_a_line() -> None:
+    records = []
+    for seed, speed in enumerate((30.0, 31.3, 32.9)):
+        signal = np.random.default_rng(seed).standard_normal(SAMPLES)
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
+    # 50,000 bins x exp(-10) each: 2 in one recording, hardly one in two at the same place
+    assert len(own_lines(records, TEETH[0] / TEETH[1])) <= 1
+
+
+def test_the_step_of_a_converter_is_found_and_none_where_there_is_none() -> None:
+    signal = np.random.default_rng(4).standard_normal(20_000)
+    assert smallest_step(np.round(signal / 0.013) * 0.013) == pytest.approx(0.013, rel=1e-6)
+    assert smallest_step(signal) == 0.0
+
+
+def test_nine_of_ten_intervals_hold_the_mean_whatever_the_number_of_recordings() -> None:
+    rng = np.random.default_rng(5)
+    for count in (2, 3, 6):
+        inside = [one.low <= 0.0 <= one.high for one in (jackknife(rng.standard_normal(count)) for _ in range(2000))]
+        # standard error of a share of 0.9 over 2000: 0.7 %
+        assert np.mean(inside) == pytest.approx(0.9, abs=0.025)
+    assert not np.isfinite(jackknife(np.ones(1)).low)
+
+
+def test_a_path_of_blocks_of_one_recording_is_cut_at_pulses(tmp_path: Path) -> None:
+    from diagnostics.calibration.healthy_blocks import healthy_blocks
+    from diagnostics.recordings.measured_recording import RecordingFacts
+
+    signal = np.sin(2 * np.pi * 18 * 30.0 * TIME_S) + 0.1 * np.random.default_rng(6).standard_normal(SAMPLES)
+    np.savez(tmp_path / "run.npz", c=signal, pulse=np.where((TIME_S * 30.0) % 1.0 < 0.1, 5.0, 0.0))
+    facts = RecordingFacts(FS_HZ, {}, tacho="pulse")
+    found = healthy_blocks([(tmp_path / "run.npz", None)], ("c",), facts, TEETH, None)
+    assert len(found.blocks) == 4
+    assert found.recordings == 1
+    for piece in found.blocks:
+        assert piece.speed_hz == pytest.approx(30.0, rel=1e-3)
+        assert 0.0 <= piece.pulses_s[0] < piece.pulses_s[-1] <= piece.channels["c"].size / FS_HZ
