@@ -11,6 +11,7 @@ from siggen.dynamics.friction.contact_kinematics import Values
 from siggen.dynamics.friction.lubrication import FilmGroups
 from siggen.dynamics.friction.lubrication_notes import lubrication_notes
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
@@ -42,6 +43,11 @@ def contact_notes(config: Config) -> tuple[str, ...]:
 
 def _groups(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
     """Yield the groups of healthy flanks and of lands inside damage at all combinations of bounds."""
+    for own in pair_configs(config):
+        yield from _groups_of_pair(own)
+
+
+def _groups_of_pair(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
     points = [corner for point in config.operating_points for corner in corners(point)]
     for gears in corners(config.gears):
         pair = gear_pair(gears)

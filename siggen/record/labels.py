@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from siggen.config import State
+from siggen.config import Config, State
 from siggen.dynamics.time.response import Response
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
-from siggen.planning.specimen import OperatingPoint
+from siggen.planning.gearbox import pair_of
+from siggen.planning.specimen import OperatingPoint, Specimen
+from siggen.specimen.gears import gear_pair
 from siggen.specimen.static_mesh import StaticMesh
 
 
@@ -49,6 +51,21 @@ def damage_labels(
         "mesh_stiffness_loss": largest_stiffness_loss(pair, damage, options),
         "through_face": summary.through_face,
         "sink_depth_um": 1e6 * sink_depth_m,
+    }
+
+
+def pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    """Return which pair of the set a gearbox has, and its sizes; nothing for a set of one pair."""
+    index = pair_of(config, specimen.specimen_id)
+    if index is None:
+        return {}
+    pair = gear_pair(specimen.gears)
+    return {
+        "pair": index,
+        "module_mm": 1e3 * pair.pinion.module_m,
+        "face_width_mm": 1e3 * pair.face_width_m,
+        "centre_distance_mm": 1e3 * pair.working_centre_distance_m,
+        "contact_ratio": (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m,
     }
 
 

@@ -17,8 +17,7 @@ from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
-
-STEEL_DENSITY_KG_M3 = 7850.0
+from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 
 ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
