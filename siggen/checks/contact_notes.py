@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from siggen.config import Config, Friction, bounds, corners
+from siggen.config.oil import oils_of
 from siggen.dynamics.friction.contact_kinematics import Values
 from siggen.dynamics.friction.lubrication import FilmGroups
 from siggen.dynamics.friction.lubrication_notes import lubrication_notes
@@ -51,9 +52,15 @@ def _groups_of_pair(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
     points = [corner for point in config.operating_points for corner in corners(point)]
     for gears in corners(config.gears):
         pair = gear_pair(gears)
-        for section in corners(config.dynamics.friction):
+        for section in _frictions(config):
             for point in points:
                 yield _groups_at(section, pair, OperatingPoint(bounds(point.speed_hz)[0], bounds(point.torque_nm)[0]))
+
+
+def _frictions(config: Config) -> Iterator[Friction]:
+    friction = config.dynamics.friction
+    for oil in oils_of(friction.oil):
+        yield from corners(friction.model_copy(update={"oil": oil}))
 
 
 def _groups_at(section: Friction, pair: GearPair, point: OperatingPoint) -> tuple[FilmGroups, FilmGroups]:

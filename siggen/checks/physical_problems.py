@@ -31,6 +31,7 @@ from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.planning.drawn_parts import possible_states
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.damage import kind_of
 from siggen.specimen.damage_kind import allowed_text, found_problems, in_mm
@@ -66,7 +67,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     dynamics: Dynamics | None = sections.get("dynamics")
     # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
     through_face = dynamics is None or damage_is_geometry(dynamics)
-    for index, state in sections.get("states", {}).items():
+    for index, state in (item for states in possible_states(sections.get("states", {})) for item in states.items()):
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
     if sections.get("manufacture") is not None:

@@ -12,6 +12,7 @@ import pyarrow as pa
 from siggen.columns.background_columns import background_columns
 from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
 from siggen.columns.damage_columns import damage_columns
+from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.versions import SCHEMA_VERSION
@@ -129,14 +130,6 @@ VARIATION_COLUMNS = (
     Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
 )
 """Columns of sets in which speed or torque varies within a record."""
-PAIR_COLUMNS = (
-    Column("pair", pa.int32(), "", "index of the gear pair in `gears.pairs` of config.yaml"),
-    Column("module_mm", pa.float64(), MILLIMETRE, "normal module"),
-    Column("face_width_mm", pa.float64(), MILLIMETRE, "width of the teeth in contact"),
-    Column("centre_distance_mm", pa.float64(), MILLIMETRE, "working centre distance"),
-    Column("contact_ratio", pa.float64(), "", "transverse contact ratio of the unloaded pair"),
-)
-"""Columns of sets with several gear pairs."""
 TACHO_COLUMN = Column("tacho_s", list_of(pa.float64()), "s", "times of the pinion shaft's pulses from the first sample")
 
 
@@ -174,8 +167,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
     varying = VARIATION_COLUMNS if config.variation.active else ()
-    pairs = PAIR_COLUMNS if config.gears.pairs else ()
-    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *pairs, *varying, *manufacture_columns(config))
+    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *gearbox_columns(config), *varying, *manufacture_columns(config))
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 

@@ -10,6 +10,7 @@ from siggen.config.damage import KINDS
 from siggen.config.number import bounds
 from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
+from siggen.config.teeth import most_teeth
 from siggen.errors import Problem
 
 SIDEBANDS = 8
@@ -274,7 +275,8 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "gears" not in sections:
         return
     for index, state in sections.get("states", {}).items():
-        for key, gear, selected in () if state.damage is None else state.damage.hit_teeth():
+        for key, gear, teeth in () if state.damage is None else state.damage.hit_teeth():
+            selected = most_teeth(teeth)
             path, count = f"states.{index}.damage.{key}", min(sections["gears"].teeth_of(gear))
             if isinstance(selected, int):
                 if selected > count:

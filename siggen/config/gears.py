@@ -55,7 +55,9 @@ class Gears(Section):
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:
-        """Return the numbers of teeth that the pinion or the gear of a gearbox may have."""
+        """Return the numbers of teeth that the pinion, the gear or either of a gearbox may have."""
+        if which == "either":
+            return (*self.teeth_of("pinion"), *self.teeth_of("gear"))
         if not self.pairs:
             return (getattr(self, which).teeth,)
         return tuple(dict.fromkeys(pair.teeth[("pinion", "gear").index(which)] for pair in self.pairs))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from siggen.config.oil import oils_of
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def across_text(config: Config) -> str:
 
 def friction_text(config: Config) -> str:
     """Say whether and how the flanks rub."""
-    return FRICTION[config.dynamics.rubbing].format(oil=config.dynamics.friction.oil)
+    return FRICTION[config.dynamics.rubbing].format(oil=" or ".join(oils_of(config.dynamics.friction.oil)))
 
 
 def drive_text(config: Config) -> str:

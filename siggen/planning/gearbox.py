@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import Any
 
 from siggen.config import Config
+from siggen.planning.drawn_parts import with_drawn_parts
 from siggen.rig.carried_over import carried_over
 from siggen.seeding import Stage, generator
 
@@ -18,7 +19,7 @@ from siggen.seeding import Stage, generator
 def gearbox_config(config: Config, specimen_id: int) -> Config:
     """Return the configuration of one gearbox; depends on configuration and index alone, and is itself its own."""
     index = pair_of(config, specimen_id)
-    return config if index is None else pair_config(config, index)
+    return with_drawn_parts(config if index is None else pair_config(config, index), specimen_id)
 
 
 @lru_cache(maxsize=64)

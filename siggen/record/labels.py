@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from siggen.config import Config, State
+from siggen.columns.gearbox_columns import drawn_places, draws_oil
+from siggen.config import Config, State, constant
 from siggen.dynamics.time.response import Response
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -54,8 +55,15 @@ def damage_labels(
     }
 
 
-def pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    """Return which pair of the set a gearbox has, and its sizes; nothing for a set of one pair."""
+def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    """Return what a gearbox draws as a whole: its pair with sizes, oil, places of sensors; nothing that all share."""
+    oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
+    positions = {i: sensor.position_mm or () for i, sensor in enumerate(specimen.sensors)}
+    places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
+    return {**_pair_labels(config, specimen), **oil, **places}
+
+
+def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     index = pair_of(config, specimen.specimen_id)
     if index is None:
         return {}

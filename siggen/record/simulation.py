@@ -22,7 +22,7 @@ from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import damage_labels, operating_labels, pair_labels
+from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import internal_quantities
 from siggen.specimen.contact import largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
@@ -181,7 +181,7 @@ def _simulated(
 def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
     config = gearbox_config(whole, records[0].specimen_id)
     specimen = draw_specimen(whole, records[0].specimen_id)
-    family = pair_labels(whole, specimen)
+    family = gearbox_labels(whole, specimen)
     instrument = specimen_instrument(config, specimen)
     state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
     for record in records:

@@ -8,8 +8,9 @@ from math import gcd
 import pytest
 
 from siggen.config import parse
-from siggen.planning.gearbox import pair_of
+from siggen.planning.gearbox import gearbox_config, pair_of
 from siggen.planning.plan import SPLITS, plan, specimen_count, split_of
+from siggen.planning.specimen import draw_specimen
 from tests.config.minimal import config, minimal
 
 RANGES = {
@@ -68,3 +69,48 @@ def test_what_cannot_be_is_refused_with_its_place(changes: dict[str, object], pa
     problems = {problem.path: problem.allowed for problem in parse(minimal(**changes)).problems}
     assert path in problems, problems
     assert text in problems[path]
+
+
+PITS = {
+    "kind": "clustered",
+    "spread_profile_mm": 0.3,
+    "semi_axis_face_mm": 0.3,
+    "semi_axis_profile_mm": 0.2,
+    "depth_mm": 0.1,
+}
+DRAWN = {
+    "states": [
+        {"name": "healthy"},
+        *(
+            {
+                "name": name,
+                "damage": {**PITS, "gear": "either", "teeth": {"kind": "choice", "values": [1, 3]}, "count": n},
+            }
+            for name, n in (("slight", 4), ("severe", 9))
+        ),
+    ],
+    "dynamics__friction__oil": ["ISO VG 100", "ISO VG 220", "ISO VG 460"],
+    "sensors": [{"name": "lid", "place": "casing", "position_mm": [{"kind": "uniform", "low": 20, "high": 60}, 5.0]}],
+}
+
+
+def test_a_gearbox_draws_gear_teeth_and_oil_once_for_all_of_its_states_and_place_of_its_sensor() -> None:
+    made = config(**DRAWN)
+    seen: Counter[object] = Counter()
+    for specimen_id in range(40):
+        own = gearbox_config(made, specimen_id)
+        assert gearbox_config(own, specimen_id) == own
+        slight, severe = (state.damage for state in own.states[1:])
+        assert (slight.gear, slight.teeth) == (severe.gear, severe.teeth)  # type: ignore[union-attr]
+        horizontal, vertical = draw_specimen(made, specimen_id).sensors[0].position_mm or ()
+        assert vertical == 5.0
+        assert 20.0 <= float(str(horizontal)) <= 60.0
+        seen.update((slight.gear, slight.teeth, own.dynamics.friction.oil))  # type: ignore[union-attr]
+    assert all(10 <= seen[value] <= 30 for value in ("pinion", "gear", 1, 3)), seen
+    assert all(5 <= seen[oil] <= 25 for oil in DRAWN["dynamics__friction__oil"]), seen
+
+
+def test_naming_one_gear_one_number_and_one_place_keeps_the_identity() -> None:
+    plain = config(sensors=[{"name": "lid", "place": "casing", "position_mm": [20.0, 5.0]}])
+    assert plain.sensors[0].position_mm == (20.0, 5.0)
+    assert gearbox_config(plain, 3) is plain
