@@ -30,10 +30,14 @@ def gearbox_columns(config: Config) -> tuple[Column, ...]:
         *(PAIR_COLUMNS if config.gears.pairs else ()),
         *((OIL_COLUMN,) if draws_oil(config) else ()),
         *(
-            Column(name, pa.float64(), MILLIMETRE, f"place of {config.sensors[i].name} from the centre of gravity")
-            for i, _, name in drawn_places(config)
+            Column(name, pa.float64(), MILLIMETRE, _place_text(config, i, axis))
+            for i, axis, name in drawn_places(config)
         ),
     )
+
+
+def _place_text(config: Config, i: int, axis: int) -> str:
+    return f"{('horizontal', 'vertical')[axis]} place of the sensor {config.sensors[i].name} on the casing"
 
 
 def draws_oil(config: Config) -> bool:
@@ -46,4 +50,4 @@ def drawn_places(config: Config) -> Iterator[tuple[int, int, str]]:
     for i, sensor in enumerate(config.sensors):
         for axis, number in enumerate(sensor.position_mm or ()):
             if config.gears.pairs or not isinstance(number, float):
-                yield i, axis, f"position_{sensor.name}_{('horizontal', 'vertical')[axis]}_mm"
+                yield i, axis, f"position_{'xy'[axis]}_{sensor.name}_mm"
