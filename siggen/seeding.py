@@ -28,6 +28,8 @@ class Stage(IntEnum):
     FORCE_NOISE = 13
     BACKGROUND = 15
     BACKGROUND_NOISE = 16
+    PAIRS = 17
+    PAIR_ORDER = 18
 
 
 OWNER_KEYS: dict[Stage, int] = {
@@ -47,6 +49,8 @@ OWNER_KEYS: dict[Stage, int] = {
     Stage.FORCE_NOISE: 4,
     Stage.BACKGROUND: 1,
     Stage.BACKGROUND_NOISE: 4,
+    Stage.PAIRS: 1,
+    Stage.PAIR_ORDER: 1,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -71,6 +71,8 @@ def test_integers_of_stages_are_part_of_every_identity():
         "FORCE_NOISE": 13,
         "BACKGROUND": 15,
         "BACKGROUND_NOISE": 16,
+        "PAIRS": 17,
+        "PAIR_ORDER": 18,
     }
 
 

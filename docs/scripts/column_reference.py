@@ -20,7 +20,14 @@ from siggen.record.quantities import quantity_column
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "transfer_path.yaml"
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
-ADDED = {"manufacture": MADE, "variation": "variation.speed.random_rms=0.001"}
+PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
+OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
+ADDED = {
+    "manufacture": MADE,
+    "variation": "variation.speed.random_rms=0.001",
+    "gears.pairs": PAIR,
+    "dynamics.friction.oil": OILS,
+}
 """With these a configuration that has every part with columns of its own."""
 SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")
 NAMES = {

@@ -7,10 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from siggen.config import Config, Friction, bounds, corners
+from siggen.config.oil import oils_of
 from siggen.dynamics.friction.contact_kinematics import Values
 from siggen.dynamics.friction.lubrication import FilmGroups
 from siggen.dynamics.friction.lubrication_notes import lubrication_notes
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
@@ -42,12 +44,23 @@ def contact_notes(config: Config) -> tuple[str, ...]:
 
 def _groups(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
     """Yield the groups of healthy flanks and of lands inside damage at all combinations of bounds."""
+    for own in pair_configs(config):
+        yield from _groups_of_pair(own)
+
+
+def _groups_of_pair(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
     points = [corner for point in config.operating_points for corner in corners(point)]
     for gears in corners(config.gears):
         pair = gear_pair(gears)
-        for section in corners(config.dynamics.friction):
+        for section in _frictions(config):
             for point in points:
                 yield _groups_at(section, pair, OperatingPoint(bounds(point.speed_hz)[0], bounds(point.torque_nm)[0]))
+
+
+def _frictions(config: Config) -> Iterator[Friction]:
+    friction = config.dynamics.friction
+    for oil in oils_of(friction.oil):
+        yield from corners(friction.model_copy(update={"oil": oil}))
 
 
 def _groups_at(section: Friction, pair: GearPair, point: OperatingPoint) -> tuple[FilmGroups, FilmGroups]:

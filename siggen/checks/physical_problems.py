@@ -6,13 +6,15 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from siggen.checks.edge_problems import edge_problems
+from siggen.checks.pair_problems import pair_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import (
@@ -29,6 +31,7 @@ from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.planning.drawn_parts import possible_states
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.damage import kind_of
 from siggen.specimen.damage_kind import allowed_text, found_problems, in_mm
@@ -48,27 +51,32 @@ PLACES = 65
 
 
 def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
-    """Return the physical problems of the sections that are valid, each path once."""
+    """Return the physical problems of the sections that are valid, each path once; of each pair of a set the first."""
     gears: Gears | None = parsed.sections.get("gears")
     if gears is None:
         return ()
+    return pair_problems(parsed.sections, _problems) if gears.pairs else _problems(parsed.sections)
+
+
+def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
+    gears: Gears = sections["gears"]
     pairs = [gear_pair(corner) for corner in corners(_without_material(gears))]
     problems = [_located(problem) for pair in pairs for problem in geometry_problems(pair)]
     sound = [pair for pair in pairs if not geometry_problems(pair)]
     flanks = list({_without_bores(pair): pair for pair in sound}.values())
-    dynamics: Dynamics | None = parsed.sections.get("dynamics")
+    dynamics: Dynamics | None = sections.get("dynamics")
     # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
     through_face = dynamics is None or damage_is_geometry(dynamics)
-    for index, state in parsed.sections.get("states", {}).items():
+    for index, state in (item for states in possible_states(sections.get("states", {})) for item in states.items()):
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
-    if parsed.sections.get("manufacture") is not None:
+    if sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
     problems += _friction_problems(dynamics)
-    problems += _coupling_problems(gears, parsed.sections.get("stiffness"), sound)
-    problems += variation_problems(parsed.sections, sound)
-    problems += shaft_problems(parsed.sections, sound)
-    problems += edge_problems(parsed.sections, sound)
+    problems += _coupling_problems(gears, sections.get("stiffness"), sound)
+    problems += variation_problems(sections, sound)
+    problems += shaft_problems(sections, sound)
+    problems += edge_problems(sections, sound)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

@@ -12,6 +12,7 @@ from math import pi, sqrt
 
 from siggen.config import Config, Number, Sensor, bounds, corners
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.gearbox import pair_configs
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
 
@@ -58,7 +59,22 @@ class Quantity:
 
 def implausible(config: Config) -> tuple[str, ...]:
     """Return a sentence on every implausible number of a configuration, in the order of its sections."""
-    return tuple(str(quantity) for quantity in quantities(config) if quantity.implausible) + tuple(missing(config))
+    if config.gears.pairs:
+        return (*_of_pairs(config), *missing(config))
+    return (*(str(quantity) for quantity in quantities(config) if quantity.implausible), *missing(config))
+
+
+def _of_pairs(config: Config) -> Iterator[str]:
+    """Yield each implausible quantity once, of the first pair that has it, and how many pairs have."""
+    found: dict[tuple[str, str], list[tuple[int, Quantity]]] = {}
+    for index, own in enumerate(pair_configs(config)):
+        for quantity in quantities(own):
+            if quantity.implausible:
+                found.setdefault((quantity.path, quantity.what), []).append((index, quantity))
+    count = len(config.gears.pairs)
+    for of_pairs in found.values():
+        index, quantity = of_pairs[0]
+        yield f"{quantity}; gears.pairs.{index}, {config.gears.pairs[index]} ({len(of_pairs)} of {count} pairs)"
 
 
 def quantities(config: Config) -> Iterator[Quantity]:

@@ -9,6 +9,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
@@ -42,8 +43,9 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     They follow from the configuration alone: the gears of the ranges with the longest path of contact have as many
     pairs in reach as any.
     """
-    specimen, point = draw_specimen(config, 0), draw_operating_point(config, 0, 0)
-    pair = max((gear_pair(corner) for corner in corners(config.gears)), key=_contact_ratio)
+    possible = ((own, gear_pair(corner)) for own in pair_configs(config) for corner in corners(own.gears))
+    own, pair = max(possible, key=lambda one: _contact_ratio(one[1]))
+    specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
     points = specimen.stiffness.table_points
     mesh = SpecimenMesh(
         pair,

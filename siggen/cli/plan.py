@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -76,6 +77,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "name": config.name,
         "identity": config.identity,
         "specimens": config.specimens,
+        "pairs": [str(pair) for pair in config.gears.pairs],
         "records": records,
         "channels": list(config.channels),
         "fs_hz": config.fs_hz,
@@ -91,23 +93,38 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(config),
         "stiffness_tables": table_error_text(config),
-        "stiffness_notes": list(model_notes(config)),
+        "stiffness_notes": _of_every_pair(config, model_notes),
         "manufacture": _manufacture(config),
         "variation": list(variation_notes(config)),
         "lubrication_notes": list(contact_notes(config)),
-        "torque_notes": list(reversal_notes(config)),
-        "damage_notes": list(damage_notes(config)),
+        "torque_notes": _of_every_pair(config, reversal_notes),
+        "damage_notes": _of_every_pair(config, damage_notes),
         "implausible": list(implausible(config)),
-        "shaft_notes": list(shaft_notes(config)),
+        "shaft_notes": _of_every_pair(config, shaft_notes),
     }
+
+
+def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> list[str]:
+    """Return notes of all gear pairs, each once; where only some have it, with one of them and their number."""
+    from siggen.planning.gearbox import pair_configs
+
+    found: dict[str, list[int]] = {}
+    for index, own in enumerate(pair_configs(config)):
+        for note in notes(own):
+            found.setdefault(note, []).append(index)
+    pairs = config.gears.pairs
+    return [
+        note if len(own) == max(1, len(pairs)) else f"{note} (gears.pairs.{own[0]}, {pairs[own[0]]}; {len(own)} in all)"
+        for note, own in found.items()
+    ]
 
 
 def _mesh_range_hz(config: Config) -> tuple[float, float]:
     from siggen.config import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
-    teeth, (slowest, fastest) = config.gears.pinion.teeth, config.variation.speed_ratios
-    return teeth * min(low for low, _ in speeds) * slowest, teeth * max(high for _, high in speeds) * fastest
+    teeth, (slowest, fastest) = config.gears.teeth_of("pinion"), config.variation.speed_ratios
+    return min(teeth) * min(low for low, _ in speeds) * slowest, max(teeth) * max(high for _, high in speeds) * fastest
 
 
 def _manufacture(config: Config) -> str:
@@ -154,6 +171,7 @@ def _overview(summary: dict[str, Any]) -> Table:
     rows = {
         "identity": summary["identity"],
         "gearboxes": f"{summary['specimens']:,}  ({_per_split(summary['specimens_of_split'])})",
+        **_pair_row(summary["pairs"]),
         "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
@@ -170,6 +188,11 @@ def _overview(summary: dict[str, Any]) -> Table:
     for name, text in rows.items():
         table.add_row(name, text)
     return table
+
+
+def _pair_row(pairs: list[str]) -> dict[str, str]:
+    shown = "; ".join(pairs[:3])
+    return {"gear pairs": f"{len(pairs)}: {shown}{' ...' if len(pairs) > 3 else ''}"} if pairs else {}
 
 
 def _megabytes(count: int) -> str:

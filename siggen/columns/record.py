@@ -12,6 +12,7 @@ import pyarrow as pa
 from siggen.columns.background_columns import background_columns
 from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
 from siggen.columns.damage_columns import damage_columns
+from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.versions import SCHEMA_VERSION
@@ -166,7 +167,7 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
     per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
     varying = VARIATION_COLUMNS if config.variation.active else ()
-    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *varying, *manufacture_columns(config))
+    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *gearbox_columns(config), *varying, *manufacture_columns(config))
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -42,6 +42,10 @@ class Splits(Section):
     train: Annotated[Whole, Field(ge=0)] = Field(default=12, description="for fitting")
     validation: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for choosing")
     test: Annotated[Whole, Field(ge=0)] = Field(default=4, description="for judging")
+    by: Literal["gearbox", "pair"] = Field(
+        default="gearbox",
+        description="what splits never share; pair: gear pairs (gears.pairs), so that test holds gears never seen",
+    )
 
     @model_validator(mode="after")
     def _add_up(self) -> Splits:

@@ -10,6 +10,7 @@ from siggen.config.damage import KINDS
 from siggen.config.number import bounds
 from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
+from siggen.config.teeth import most_teeth
 from siggen.errors import Problem
 
 SIDEBANDS = 8
@@ -34,6 +35,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _forces_at_bearings,
         _paths,
         _background,
+        _splits,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
 
@@ -50,7 +52,7 @@ def _sample_count(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
 def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if not {"fs_hz", "mesh_harmonics", "gears", "operating_points"} <= sections.keys():
         return
-    teeth, harmonics = sections["gears"].pinion.teeth, sections["mesh_harmonics"]
+    teeth, harmonics = max(sections["gears"].teeth_of("pinion")), sections["mesh_harmonics"]
     speed_hz = max(bounds(point.speed_hz)[1] for point in sections["operating_points"])
     if "variation" in sections:
         speed_hz *= sections["variation"].speed_ratios[1]
@@ -125,6 +127,11 @@ def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterato
             yield Problem(f"background.{part}", "a section", allowed)
     if section.base is not None and model != "casing":
         yield Problem("background.base", "a section", f"allowed: null, or dynamics.model: casing (it is {model})")
+
+
+def _splits(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    if "gears" in sections and "splits" in sections and sections["splits"].by == "pair" and not sections["gears"].pairs:
+        yield Problem("splits.by", "'pair'", "allowed: gearbox, or a list gears.pairs")
 
 
 def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -268,8 +275,9 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "gears" not in sections:
         return
     for index, state in sections.get("states", {}).items():
-        for key, gear, selected in () if state.damage is None else state.damage.hit_teeth():
-            path, count = f"states.{index}.damage.{key}", getattr(sections["gears"], gear).teeth
+        for key, gear, teeth in () if state.damage is None else state.damage.hit_teeth():
+            selected = most_teeth(teeth)
+            path, count = f"states.{index}.damage.{key}", min(sections["gears"].teeth_of(gear))
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

@@ -14,11 +14,11 @@ from pydantic import Field, model_validator
 from siggen.config.damage_section import DamageSection, HitTeeth
 from siggen.config.irregular import IrregularSpalls
 from siggen.config.number import Number, Within
-from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import refusal
 from siggen.config.section import Section, Whole
 from siggen.config.spall import ListedSpall, Spalls
-from siggen.config.teeth import Teeth
+from siggen.config.teeth import DAMAGED_TEETH, Teeth
 from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
@@ -38,10 +38,8 @@ class LayeredPits(PitSize, DamageSection):
     """Rows of equal count, one above the other, as in paper A."""
 
     kind: Literal["layered"] = "layered"
-    gear: GearName = Field(default="pinion", description="damaged gear")
-    teeth: Teeth = Field(
-        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
-    )
+    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     layers: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="rows of pits")
     pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
     first_height_mm: Height = Field(default="pitch", description="height of the first row above the base circle")
@@ -66,10 +64,8 @@ class ClusteredPits(PitSize, DamageSection):
     """Pits scattered around a height."""
 
     kind: Literal["clustered"] = "clustered"
-    gear: GearName = Field(default="pinion", description="damaged gear")
-    teeth: Teeth = Field(
-        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
-    )
+    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
     centre_height_mm: Height = Field(default="pitch", description="height above the base circle around which they lie")
     height_reading: HeightReading = Field(default="axial", description=READING)

@@ -7,8 +7,9 @@ from typing import Any, TypeAlias, get_args
 
 from siggen.config.problems import BRANCHES
 from siggen.config.section import Section
+from siggen.config.teeth import TeethValue
 
-HitTeeth: TypeAlias = Iterator[tuple[str, str, int | tuple[int, ...]]]
+HitTeeth: TypeAlias = Iterator[tuple[str, str, TeethValue]]
 """Keys that name teeth, the gear they belong to, and how many or which ones they name."""
 
 

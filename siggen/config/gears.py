@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.number import Number, Within
+from siggen.config.pairs import PAIRS, Pairs
+from siggen.config.problems import refusal
 from siggen.config.section import Section, Whole
+from siggen.errors import Problem
 
 
 class Wheel(Section):
@@ -45,3 +48,24 @@ class Gears(Section):
     )
     pinion: Wheel = Field(description="the driving gear")
     gear: Wheel = Field(description="the driven gear")
+    pairs: Annotated[Pairs, PAIRS] = Field(
+        default=(),
+        description="pairs of the set, each gearbox has one; sizes, masses, torques and damage of the whole file are "
+        "those of the pair above and are carried over to each; none: all gearboxes have the pair above",
+    )
+
+    def teeth_of(self, which: str) -> tuple[int, ...]:
+        """Return the numbers of teeth that the pinion, the gear or either of a gearbox may have."""
+        if which == "either":
+            return (*self.teeth_of("pinion"), *self.teeth_of("gear"))
+        if not self.pairs:
+            return (getattr(self, which).teeth,)
+        return tuple(dict.fromkeys(pair.teeth[("pinion", "gear").index(which)] for pair in self.pairs))
+
+    @model_validator(mode="after")
+    def _each_pair_once(self) -> Gears:
+        again = [i for i, pair in enumerate(self.pairs) if pair in self.pairs[:i]]
+        if again:
+            problems = [Problem(f"pairs.{i}", str(self.pairs[i]), "allowed: each pair once") for i in again]
+            raise refusal(problems)
+        return self

@@ -15,10 +15,10 @@ from pydantic import Field, model_validator
 from siggen.config.damage_section import DamageSection
 from siggen.config.distributions import Uniform
 from siggen.config.number import Number, Within, bounds
-from siggen.config.places import READING, GearName, HeightReading, Length, PlaceOnFace
+from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
 from siggen.config.stages import STAGES, Stages, refuse_stages
-from siggen.config.teeth import Teeth
+from siggen.config.teeth import DAMAGED_TEETH, Teeth
 from siggen.errors import Problem
 
 START: Literal["below_pitch"] = "below_pitch"
@@ -32,10 +32,8 @@ class IrregularSpalls(DamageSection):
     """An irregular spall on each damaged tooth; drawn once, so that a more severe state holds the milder one."""
 
     kind: Literal["irregular"] = "irregular"
-    gear: GearName = Field(default="pinion", description="damaged gear")
-    teeth: Teeth = Field(
-        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
-    )
+    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
         default=START,

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from siggen.config.first_default import IdentityDefault
 from siggen.config.number import Number, Within
+from siggen.config.oil import Oil
 from siggen.config.section import Section
 
 
@@ -79,10 +80,9 @@ class Friction(Section):
     fluid: Literal["constant", "eyring", "xu_kahraman", "benedict_kelley"] = Field(
         default="constant", description="friction of the oil film (mixed_ehl); constant: 0.02"
     )
-    oil: Literal[
-        "ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "ISO VG 150", "ISO VG 220", "ISO VG 320", "ISO VG 460",
-        "ISO VG 680",
-    ] = Field(default="ISO VG 220", description="mineral gear oil (mixed_ehl)")  # fmt: skip
+    oil: Oil = Field(
+        default="ISO VG 220", description="mineral gear oil (mixed_ehl); a list: each gearbox draws one of them"
+    )
     oil_temperature_c: Annotated[Number, Within(least=-20, most=150)] = Field(
         default=50.0, description="at the inlet of the contact"
     )

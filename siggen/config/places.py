@@ -7,6 +7,11 @@ from typing import Annotated, Literal, TypeAlias
 from siggen.config.number import Number, Within
 
 GearName: TypeAlias = Literal["pinion", "gear"]
+AnyGear: TypeAlias = Literal["pinion", "gear", "either"]
+"""`either`: drawn per gearbox, the same for all of its states."""
+
+DAMAGED_GEAR = "damaged gear; either: drawn per gearbox, one gear in all states"
+
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
 
 Length = Annotated[Number, Within(above=0)]

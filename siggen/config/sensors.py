@@ -12,10 +12,13 @@ from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tone
 from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
 from siggen.config.problems import received_text, refusal
-from siggen.config.section import Position, Real, Section, Whole
+from siggen.config.section import Real, Section, Whole
 from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
+POSITION = AllowedText(
+    "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"
+)
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter")
 
 
@@ -63,7 +66,7 @@ class Sensor(Section):
             "torsional",
         )
     )
-    position_mm: Position | None = Field(
+    position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION] = Field(
         default=None,
         description="horizontal and vertical distance from the casing's centre of gravity (place: casing); needed "
         "where the motion of the rigid casing is measured",
@@ -125,6 +128,9 @@ class Sensor(Section):
     def _place_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
         on_casing = self.place == "casing"
+        if self.position_mm is not None and (isinstance(self.position_mm, float) or len(self.position_mm) != 2):
+            yield Problem("position_mm", received_text(self.position_mm), f"allowed: {POSITION.allowed_text}")
+            return
         if self.path is not None and not on_casing:
             yield Problem("path", f"kind: {self.path.kind} at place {self.place}", "allowed: null, or place: casing")
         if self.position_mm is None and self.sees_model and on_casing:
@@ -156,9 +162,13 @@ class Sensor(Section):
         return f"casing_{self.name}" if self.place == "casing" else self.place
 
     def drawn(self, uniform: Callable[[str], float]) -> Sensor:
-        """Return the sensor of one specimen: one gain per axis, everything per record left as it is."""
+        """Return the sensor of one specimen: gains and position are drawn, what belongs to records is left."""
         gains = self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
         drawn = (
             at(gain, uniform(f"sensors.{self.name}.{axis}.gain")) for gain, axis in zip(gains, self.axes, strict=True)
         )
-        return self.model_copy(update={"gain": tuple(drawn)})
+        place = self.position_mm
+        if place is not None:
+            path = f"sensors.{self.name}.position_mm"
+            place = tuple(at(number, uniform(f"{path}.{i}")) for i, number in enumerate(place))
+        return self.model_copy(update={"gain": tuple(drawn), "position_mm": place})

@@ -13,11 +13,11 @@ from pydantic import Field, model_validator
 
 from siggen.config.damage_section import DamageSection
 from siggen.config.number import Number, Within, bounds
-from siggen.config.places import READING, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
 from siggen.config.problems import MISSING, refusal
 from siggen.config.section import Real, Section, Whole
 from siggen.config.stages import STAGES, Stages, refuse_stages
-from siggen.config.teeth import Teeth
+from siggen.config.teeth import DAMAGED_TEETH, Teeth
 from siggen.errors import Problem, counted
 
 Shape: TypeAlias = Literal["rectangle", "ellipse", "v", "polygon"]
@@ -46,7 +46,7 @@ class Vertex(Section):
 class SpallSize(Section):
     """Outline, place and depth of one spall."""
 
-    gear: GearName = Field(default="pinion", description="damaged gear")
+    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
     shape: Shape = Field(default="rectangle", description="rectangle, ellipse, v (two widths) or polygon (vertices)")
     centre_height_mm: Height = Field(
         default="pitch",
@@ -118,9 +118,7 @@ class Spalls(SpallSize, DamageSection):
     """A spall on each damaged tooth."""
 
     kind: Literal["spall"] = "spall"
-    teeth: Teeth = Field(
-        default=1, description="number of neighbouring teeth (the first is drawn), or a list of indices"
-    )
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
     stages: Stages = Field(default=1.0, description=f"{STAGES}; not of a polygon")
 
@@ -149,4 +147,5 @@ class Spalls(SpallSize, DamageSection):
 class ListedSpall(SpallSize):
     """One spall at a given place."""
 
+    gear: GearName = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")

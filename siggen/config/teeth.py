@@ -1,41 +1,75 @@
-"""Which teeth of a gear are damaged: a number of neighbours, or their indices."""
+"""Which teeth of a gear are damaged: a number of neighbours, drawn per gearbox if it is a choice, or their indices."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field, GetCoreSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, core_schema
 
-from siggen.config.problems import received_text, refusal
+from siggen.config.distributions import Choice
+from siggen.config.problems import received_text, refusal, section_problems
 from siggen.errors import Problem
+
+TeethValue = int | tuple[int, ...] | Choice
+DAMAGED_TEETH = (
+    "number of neighbouring teeth (the first is drawn), a choice of numbers, drawn per gearbox, or a list of indices"
+)
 
 
 class TeethParser:
-    """Parser of `teeth`: a whole number from 1, or a list of different indices from 0."""
+    """Parser of `teeth`: a whole number from 1, a choice of such numbers, or a list of different indices from 0."""
 
     allowed_text = (
-        "how many neighbouring teeth (a whole number from 1), or a list of different tooth indices such as [0, 1]"
+        "how many neighbouring teeth (a whole number from 1, or kind: choice of such numbers), or a list of different "
+        "tooth indices such as [0, 1]"
     )
 
-    def parse(self, value: object) -> int | tuple[int, ...]:
-        """Return the number of teeth or their indices, or raise a refusal."""
+    def parse(self, value: object) -> TeethValue:
+        """Return the number of teeth, a choice of it, or their indices, or raise a refusal."""
+        if isinstance(value, (Mapping, Choice)):
+            return self._choice(value)
         if isinstance(value, (list, tuple)):
-            whole = [item for item in value if isinstance(item, int) and not isinstance(item, bool) and item >= 0]
-            if whole and len(whole) == len(value) == len(set(whole)):
-                return tuple(whole)
-            listed = ", ".join(received_text(item) for item in value)
-            raise refusal([Problem("", f"[{listed}]", f"allowed: {self.allowed_text}")])
+            return self._indices(value)
         if isinstance(value, int) and not isinstance(value, bool) and value >= 1:
             return value
         raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
 
+    def _indices(self, value: list[object] | tuple[object, ...]) -> tuple[int, ...]:
+        whole = [item for item in value if isinstance(item, int) and not isinstance(item, bool) and item >= 0]
+        if whole and len(whole) == len(value) == len(set(whole)):
+            return tuple(whole)
+        listed = ", ".join(received_text(item) for item in value)
+        raise refusal([Problem("", f"[{listed}]", f"allowed: {self.allowed_text}")])
+
+    def _choice(self, value: object) -> Choice:
+        if not isinstance(value, Choice) and (not isinstance(value, Mapping) or value.get("kind") != "choice"):
+            raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
+        try:
+            choice = Choice.model_validate(value)
+        except ValidationError as error:
+            raise refusal(section_problems(Choice, error.errors())) from None
+        if not all(number >= 1.0 and number.is_integer() for number in choice.values):
+            raise refusal([Problem("values", str(choice), "allowed: whole numbers from 1")])
+        return choice
+
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Parse with `parse`; the schema for readers of the file shows both forms."""
-        documented: Any = Annotated[int, Field(ge=1)] | list[Annotated[int, Field(ge=0)]]
+        """Parse with `parse`; the schema for readers of the file shows all forms."""
+        documented: Any = Annotated[int, Field(ge=1)] | list[Annotated[int, Field(ge=0)]] | Choice
         return core_schema.no_info_plain_validator_function(
             self.parse, json_schema_input_schema=handler.generate_schema(documented)
         )
 
 
-Teeth = Annotated[int | tuple[int, ...], TeethParser()]
+def most_teeth(teeth: TeethValue) -> int | tuple[int, ...]:
+    """Return the largest number of teeth that may be hit, or their indices."""
+    return round(max(teeth.values)) if isinstance(teeth, Choice) else teeth
+
+
+def drawn_teeth(teeth: TeethValue, u: float) -> int | tuple[int, ...]:
+    """Return the number of teeth at one uniform, or their indices."""
+    return round(teeth.at(u)) if isinstance(teeth, Choice) else teeth
+
+
+Teeth = Annotated[TeethValue, TeethParser()]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from siggen.config.oil import oils_of
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -56,10 +58,27 @@ def making(config: Config) -> str:
 def _gears_text(config: Config) -> str:
     models = f"`{config.stiffness.beam}`, `{config.stiffness.foundation}`"
     return (
-        f"A spur pair with {config.gears.pinion.teeth} and {config.gears.gear.teeth} teeth. Mesh stiffness by the "
+        f"{_teeth_text(config)} Mesh stiffness by the "
         f"potential energy method (bending, shear, axial compression, Hertz contact, tooth foundation: {models}), "
         "along the true involute and double-tooth contact."
     )
+
+
+def _teeth_text(config: Config) -> str:
+    gears = config.gears
+    if not gears.pairs:
+        return f"A spur pair with {gears.pinion.teeth} and {gears.gear.teeth} teeth."
+    (least, most), (low, high) = (_ends(gears.teeth_of(which)) for which in ("pinion", "gear"))
+    small, large = _ends([pair.module_mm for pair in gears.pairs])
+    return (
+        f"{len(gears.pairs)} spur pairs, with {least} to {most} and {low} to {high} teeth of module {small:g} to "
+        f"{large:g} mm; every gearbox has one of them (`pair`), and masses, supports, torque and damage of its size. "
+        f"Splits never share a {config.splits.by}."
+    )
+
+
+def _ends(values: Sequence[float]) -> tuple[float, float]:
+    return min(values), max(values)
 
 
 def damage_text(config: Config) -> str:
@@ -108,7 +127,7 @@ def across_text(config: Config) -> str:
 
 def friction_text(config: Config) -> str:
     """Say whether and how the flanks rub."""
-    return FRICTION[config.dynamics.rubbing].format(oil=config.dynamics.friction.oil)
+    return FRICTION[config.dynamics.rubbing].format(oil=" or ".join(oils_of(config.dynamics.friction.oil)))
 
 
 def drive_text(config: Config) -> str:

@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import overload
 
 from siggen.config import BLOCK, Config, Splits
+from siggen.planning.gearbox import pair_of
 from siggen.seeding import Stage, generator
 
 SPLITS = ("train", "validation", "test")
@@ -147,9 +148,15 @@ def record_ids_of(config: Config, specimen_id: int) -> range:
 
 
 def split_of(config: Config, specimen_id: int) -> str:
-    """Return the split of a specimen; depends on seed, `splits` and the specimen alone."""
-    block, place = divmod(specimen_id, BLOCK)
+    """Return the split of a specimen; depends on seed, `splits` and the specimen, or its gear pair, alone."""
+    block, place = divmod(_owner(config, specimen_id), BLOCK)
     return _splits_of_block(config.seed, config.splits, block)[place]
+
+
+def _owner(config: Config, specimen_id: int) -> int:
+    """Return the index that a split belongs to: the specimen's own, or that of its gear pair."""
+    pair = pair_of(config, specimen_id) if config.splits.by == "pair" else None
+    return specimen_id if pair is None else pair
 
 
 @lru_cache(maxsize=4096)
@@ -203,11 +210,13 @@ def shards(config: Config, split: str, earlier: Sequence[int] = ()) -> tuple[Sha
 
 
 def specimen_count(config: Config, split: str) -> int:
-    """Return the number of specimens of a split without listing them: a whole block holds its share exactly."""
-    blocks, rest = divmod(config.specimens, BLOCK)
-    first = blocks * BLOCK
+    """Return the number of specimens of a split without listing them: all whole blocks hold as many."""
+    block = len(config.gears.pairs) if config.splits.by == "pair" else BLOCK
+    blocks, rest = divmod(config.specimens, block)
+    first = blocks * block
+    own = sum(split_of(config, specimen) == split for specimen in range(block)) if blocks else 0
     tail = sum(split_of(config, specimen) == split for specimen in range(first, first + rest))
-    return blocks * int(config.splits.model_dump()[split]) + tail
+    return blocks * own + tail
 
 
 def shard_count(config: Config, split: str) -> int:

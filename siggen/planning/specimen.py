@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness, at, draw
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import split_of
 from siggen.seeding import Stage, named_uniforms
 
@@ -34,23 +35,24 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
 
     Noise of the sensors belongs to records and is left as it is.
     """
+    own = gearbox_config(config, specimen_id)
     gears = named_uniforms(config.seed, Stage.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)
     sensor = named_uniforms(config.seed, Stage.SENSOR, specimen_id)
     return Specimen(
         specimen_id,
         split_of(config, specimen_id),
-        gears=draw(config.gears, gears, "gears"),
-        stiffness=draw(config.stiffness, gears, "stiffness"),
-        dynamics=draw(config.dynamics, supports, "dynamics"),
-        sensors=tuple(one.drawn(sensor) for one in config.sensors),
+        gears=draw(own.gears, gears, "gears"),
+        stiffness=draw(own.stiffness, gears, "stiffness"),
+        dynamics=draw(own.dynamics, supports, "dynamics"),
+        sensors=tuple(one.drawn(sensor) for one in own.sensors),
     )
 
 
 def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
     """Return an operating point of a specimen; the same for all of its states."""
     uniform = named_uniforms(config.seed, Stage.OPERATING_POINT, specimen_id, operating_point_id)
-    ranges = config.operating_points[operating_point_id]
+    ranges = gearbox_config(config, specimen_id).operating_points[operating_point_id]
     return OperatingPoint(
         speed_hz=at(ranges.speed_hz, uniform("speed_hz")), torque_nm=at(ranges.torque_nm, uniform("torque_nm"))
     )

@@ -11,6 +11,7 @@ from siggen.columns.column import Column
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen
 from siggen.record.channels import measured_channels
@@ -34,8 +35,9 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         If the record cannot be simulated; says why.
     """
     record = planned_record(config, record_id)
-    specimen, _, response, point = _simulated(config, record, internals=internals)
-    stored, _ = measured_channels(config, specimen, record, response)
+    own = gearbox_config(config, record.specimen_id)
+    specimen, _, response, point = _simulated(own, record, internals=internals)
+    stored, _ = measured_channels(own, specimen, record, response)
     columns: dict[str, np.ndarray] = {
         "time_s": np.arange(config.samples) / config.fs_hz,
         "angle_rad": response.angle_rad,
@@ -63,7 +65,8 @@ def record_internals(
     SolverFailure
         If the record cannot be simulated; says why.
     """
-    specimen, state, response, point = _simulated(config, record, internals=True)
+    own = gearbox_config(config, record.specimen_id)
+    specimen, state, response, point = _simulated(own, record, internals=True)
     return state, point, response.angle_rad, internal_quantities(specimen, response)
 
 

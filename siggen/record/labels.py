@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from siggen.config import State
+from siggen.columns.gearbox_columns import drawn_places, draws_oil
+from siggen.config import Config, State, constant
 from siggen.dynamics.time.response import Response
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
-from siggen.planning.specimen import OperatingPoint
+from siggen.planning.gearbox import pair_of
+from siggen.planning.specimen import OperatingPoint, Specimen
+from siggen.specimen.gears import gear_pair
 from siggen.specimen.static_mesh import StaticMesh
 
 
@@ -49,6 +52,28 @@ def damage_labels(
         "mesh_stiffness_loss": largest_stiffness_loss(pair, damage, options),
         "through_face": summary.through_face,
         "sink_depth_um": 1e6 * sink_depth_m,
+    }
+
+
+def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    """Return what a gearbox draws as a whole: its pair with sizes, oil, places of sensors; nothing that all share."""
+    oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
+    positions = {i: sensor.position_mm or () for i, sensor in enumerate(specimen.sensors)}
+    places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
+    return {**_pair_labels(config, specimen), **oil, **places}
+
+
+def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    index = pair_of(config, specimen.specimen_id)
+    if index is None:
+        return {}
+    pair = gear_pair(specimen.gears)
+    return {
+        "pair": index,
+        "module_mm": 1e3 * pair.pinion.module_m,
+        "face_width_mm": 1e3 * pair.face_width_m,
+        "centre_distance_mm": 1e3 * pair.working_centre_distance_m,
+        "contact_ratio": (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m,
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,11 +17,12 @@ from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import damage_labels, operating_labels
+from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import internal_quantities
 from siggen.specimen.contact import largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
@@ -177,13 +178,16 @@ def _simulated(
     return Record(planned, labels, channels, response.tacho_s, internals if with_internals else None)
 
 
-def _results(config: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
-    specimen = draw_specimen(config, records[0].specimen_id)
+def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
+    config = gearbox_config(whole, records[0].specimen_id)
+    specimen = draw_specimen(whole, records[0].specimen_id)
+    family = gearbox_labels(whole, specimen)
     instrument = specimen_instrument(config, specimen)
     state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
     for record in records:
         try:
-            yield _simulated(config, specimen, instrument, state_of(record.state_id), record)
+            made = _simulated(config, specimen, instrument, state_of(record.state_id), record)
+            yield replace(made, labels={**made.labels, **family}) if family else made
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
 

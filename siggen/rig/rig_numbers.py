@@ -12,12 +12,14 @@ from math import ceil, cos, pi, radians, sqrt
 from typing import NamedTuple
 
 from siggen.rig.rig import Pair, Rig
-from siggen.specimen.structure import STEEL_DENSITY_KG_M3
 
+STEEL_DENSITY_KG_M3 = 7850.0
 SHEAR_N_MM2 = 20.0
 """Allowed in a shaft that also bends; a usual value for a first size."""
 RELIEF_STIFFNESS_N_UM_MM = 14.0
 """Single stiffness of steel gears in ISO 6336, its round value; tip relief is the deflection at full load over it."""
+LARGEST_BORE = 0.6
+"""Diameter of a bore over that of the root circle."""
 BALLS = 9
 BENCH_CENTRE_MM = 97.5
 BENCH_TORQUE_NM = (60.0, 156.7)
@@ -104,23 +106,26 @@ def duration_s(rig: Rig, longest_s: float = 10.0) -> float:
 
 def _rotor(rig: Rig, i: int, torque_nm: float, force_n: float) -> RotorNumbers:
     pitch_mm = rig.module_mm * rig.teeth[i]
-    bore_mm = rig.bores_mm[i] if rig.bores_mm else _bore_mm(torque_nm, pitch_mm - 2.5 * rig.module_mm)
-    span_mm = rig.face_width_mm + 3.0 * bore_mm
+    bore = rig.bores_mm[i] if rig.bores_mm else shaft_diameter_mm(torque_nm, root_diameter_mm(rig, i))
+    span_mm = rig.face_width_mm + 3.0 * bore
     disc, shaft = (
         STEEL_DENSITY_KG_M3 * 0.25 * pi * 1e-9 * area * length
-        for area, length in ((pitch_mm**2 - bore_mm**2, rig.face_width_mm), (bore_mm**2, span_mm))
+        for area, length in ((pitch_mm**2 - bore**2, rig.face_width_mm), (bore**2, span_mm))
     )
-    inertia = 0.125e-6 * (disc * (pitch_mm**2 + bore_mm**2) + shaft * bore_mm**2)
-    return RotorNumbers(
-        bore_mm, disc + shaft, inertia, 2.0 * bearing_stiffness_n_per_m(bore_mm, 0.5 * force_n), span_mm
-    )
+    inertia = 0.125e-6 * (disc * (pitch_mm**2 + bore**2) + shaft * bore**2)
+    return RotorNumbers(bore, disc + shaft, inertia, 2.0 * bearing_stiffness_n_per_m(bore, 0.5 * force_n), span_mm)
 
 
-def _bore_mm(torque_nm: float, root_mm: float) -> float:
+def root_diameter_mm(rig: Rig, i: int) -> float:
+    """Return the diameter of the root circle of a rig's pinion (0) or gear (1), without profile shift [mm]."""
+    return rig.module_mm * (rig.teeth[i] - 2.5)
+
+
+def shaft_diameter_mm(torque_nm: float, root_mm: float) -> float:
     """Return a shaft for the torque, in steps of 5 mm where it is that thick, at most 0.6 of the root circle [mm]."""
     needed = max((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0), 0.25 * root_mm)
     rounded = 5.0 * ceil(needed / 5.0) if needed > 10.0 else float(ceil(needed))
-    return min(rounded, 0.6 * root_mm)
+    return min(rounded, LARGEST_BORE * root_mm)
 
 
 def bearing_stiffness_n_per_m(bore_mm: float, force_n: float) -> float:

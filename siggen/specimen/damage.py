@@ -11,6 +11,7 @@ from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, Liste
 from siggen.config.irregular import IrregularSpalls
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.planning.gearbox import gearbox_config
 from siggen.specimen.damage_kind import DamageKind
 from siggen.specimen.growth import Growth
 from siggen.specimen.irregular import IRREGULAR
@@ -47,6 +48,7 @@ def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int
     ValueError
         If a height in the configuration lies below the base circle of the drawn gear.
     """
+    config = gearbox_config(config, specimen_id)
     damage_model = config.states[state_id].damage
     if damage_model is None:
         return ()

@@ -57,7 +57,7 @@ def composite_roughness_m(section: Friction) -> tuple[float, float]:
 
 def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) -> LubricatedMesh:
     """Return the lubricated pair of a drawn section at an operating point."""
-    oil, temperature_c = MINERAL_OILS[section.oil], constant(section.oil_temperature_c)
+    oil, temperature_c = MINERAL_OILS[str(section.oil)], constant(section.oil_temperature_c)
     speed = 2.0 * pi * point.speed_hz
     return LubricatedMesh(
         line_m=pair.line_of_action_m,

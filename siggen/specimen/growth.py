@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from siggen.config import Config
+from siggen.config.teeth import TeethValue
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -28,7 +29,7 @@ class OnTeeth(Protocol):
     def gear(self) -> str: ...  # noqa: D102 - see the class
 
     @property
-    def teeth(self) -> int | tuple[int, ...]: ...  # noqa: D102
+    def teeth(self) -> TeethValue: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +77,8 @@ def damaged_teeth(config: Config, specimen_id: int, gear: SpurGear, model: OnTee
     """Return the teeth that are hit: the listed ones, or neighbours from a tooth drawn once per specimen and gear."""
     if isinstance(model.teeth, tuple):
         return model.teeth
+    if not isinstance(model.teeth, int):
+        raise TypeError(f"a drawn number of teeth was expected, received {model.teeth}")
     draws = generator(config.seed, Stage.DAMAGED_TEETH, specimen_id).random(2)
     first = int(draws[("pinion", "gear").index(model.gear)] * gear.teeth)
     return tuple((first + i) % gear.teeth for i in range(model.teeth))

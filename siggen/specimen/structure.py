@@ -8,7 +8,7 @@ from math import pi
 from siggen.config import Caps as CapsSection
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Rotor, Sensor, constant
+from siggen.config import Dynamics, Number, Rotor, Sensor, constant
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.structure.bearing_caps import Caps
 from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
@@ -17,8 +17,7 @@ from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
-
-STEEL_DENSITY_KG_M3 = 7850.0
+from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 
 ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
@@ -108,7 +107,7 @@ def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sen
             places_m=tuple(_metres(place) for place in bolts.positions_mm),
         ),
         pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
-        sensor_places_m={s.name: _metres(s.position_mm) for s in sensors if s.position_mm is not None},
+        sensor_places_m={s.name: _sensor_metres(s.position_mm) for s in sensors if s.position_mm is not None},
         caps=None if section.caps is None else _caps(section.caps),
     )
 
@@ -120,6 +119,11 @@ def _caps(section: CapsSection) -> Caps:
         vertical_stiffness_n_per_m=constant(section.vertical_stiffness_n_per_m),
         damping_ratio=constant(section.damping_ratio),
     )
+
+
+def _sensor_metres(position_mm: tuple[Number, ...]) -> Point:
+    horizontal, vertical = (constant(number) for number in position_mm)
+    return _metres((horizontal, vertical))
 
 
 def _metres(position_mm: tuple[float, float]) -> Point:

@@ -23,6 +23,7 @@ from siggen.dynamics.time.equations import Equations
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import UsageError
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
@@ -40,12 +41,12 @@ Model = Mapping[str, Any]
 """Key -> array or plain value, see docs/reference/exported_model.md."""
 
 
-def exported_model(config: Config, record_id: int) -> Model:
+def exported_model(whole: Config, record_id: int) -> Model:
     """Return the model of one record: structure, mesh law, static state, start state and time grid.
 
     Parameters
     ----------
-    config : Config
+    whole : Config, of the set
     record_id : int
 
     Raises
@@ -55,7 +56,8 @@ def exported_model(config: Config, record_id: int) -> Model:
     UsageError
         If speed, torque or other forces vary: the format holds a constant speed and torque alone.
     """
-    record = planned_record(config, record_id)
+    record = planned_record(whole, record_id)
+    config = gearbox_config(whole, record.specimen_id)
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
@@ -75,8 +77,8 @@ def exported_model(config: Config, record_id: int) -> Model:
         "format": "siggen exported model",
         "format_version": FORMAT_VERSION,
         "siggen_version": version("siggen"),
-        "identity": config.identity,
-        "configuration": json.dumps(config.canonical(), sort_keys=True),
+        "identity": whole.identity,
+        "configuration": json.dumps(whole.canonical(), sort_keys=True),
         "record_id": record_id,
         "state": config.states[record.state_id].name,
         **_structure(motion.structure),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.errors import UsageError
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.sensing.modal_path import HousingModes
 from siggen.sensing.spectral_filter import frequencies
@@ -72,6 +73,7 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     UsageError
         If no sensor has a path.
     """
+    config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     instrument = specimen_instrument(config, specimen)
     channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)

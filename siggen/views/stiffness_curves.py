@@ -19,6 +19,7 @@ from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
 from siggen.specimen.contact import damage_is_geometry, largest_force_n
@@ -100,6 +101,7 @@ def stiffness_curves(
     """
     if points_per_pitch < 1 or (pitches is not None and pitches < 1):
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
+    config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     pair = gear_pair(specimen.gears)
     damages = [state_damage(config, specimen_id, pair, i) for i in range(len(config.states))]

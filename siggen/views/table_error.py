@@ -10,6 +10,7 @@ from siggen.gears.contact.contact_table_error import ContactTableError, contact_
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
+from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.specimen.contact import damage_is_geometry, face_options, largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
@@ -30,6 +31,7 @@ def worst_table_error(config: Config, specimen_id: int = 0) -> float:
     Source: `siggen.gears.stiffness.mesh_tables.table_error`, half-way between the points of the tables that simulations
     use.
     """
+    config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     damages: dict[Damage, None] = {(): None}
@@ -65,6 +67,7 @@ def worst_contact_table_error(config: Config, specimen_id: int = 0) -> tuple[Con
     ValueError
         If what was drawn cannot be built.
     """
+    config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     pair, teeth = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))

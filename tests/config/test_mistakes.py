@@ -57,12 +57,17 @@ MISTAKES = [
         "with place: casing, and only there",
     ),
     ({"sensors__0__position_mm": [1.0]}, "sensors.0.position_mm", "[1.0]", "two numbers, [horizontal, vertical] in mm"),
-    ({"sensors__0__position_mm": [1.0, 2, 3]}, "sensors.0.position_mm", "[1.0, 2, 3]", "[horizontal, vertical] in mm"),
+    (
+        {"sensors__0__position_mm": [1.0, 2, 3]},
+        "sensors.0.position_mm",
+        "[1.0, 2.0, 3.0]",
+        "[horizontal, vertical] in mm",
+    ),
     (
         {"sensors__0__position_mm": [1.0, "a"]},
         "sensors.0.position_mm.1",
         "the text 'a'",
-        "[horizontal, vertical] in mm",
+        "a number, or a distribution",
     ),
     (
         {"dynamics__casing": {"bolts": {"positions_mm": [[1.0], [2.0, 3.0]]}}},
@@ -151,6 +156,14 @@ MISTAKES = [
     ({"states__1__damage__teeth": 0}, "states.1.damage.teeth", "0", "a whole number from 1"),
     ({"states__1__damage__teeth": 19}, "states.1.damage.teeth", "19", "at most 18, the teeth of the pinion"),
     ({"states__1__damage__teeth": [3, 18]}, "states.1.damage.teeth", "tooth 18", "from 0 to 17"),
+    (
+        {"states__1__damage__teeth": {"kind": "choice", "values": [1, 1.5]}},
+        "states.1.damage.teeth.values",
+        "1.5",
+        "whole",
+    ),
+    ({"states__1__damage__gear": "any"}, "states.1.damage.gear", "'any'", "one of pinion, gear, either"),
+    ({"dynamics__friction__oil": ["ISO VG 100", "lard"]}, "dynamics.friction.oil", "a list of 2", "or a list of some"),
     ({"states__1__damage__first_height_mm": "top"}, "states.1.damage.first_height_mm", "'top'", "or pitch"),
     # contradictions
     ({"states__1__fault": "spalling"}, "states.1.fault", "spalling, with pits alone", "pitting; spalling needs"),

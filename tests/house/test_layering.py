@@ -13,10 +13,10 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "errors", "seeding", "arrays", "config", "planning",
+    "errors", "seeding", "arrays", "config", "rig", "planning",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
-    "sensing", "specimen", "checks", "rig", "columns", "record", "dataset", "engines", "sets", "views",
+    "sensing", "specimen", "checks", "columns", "record", "dataset", "engines", "sets", "views",
     "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (

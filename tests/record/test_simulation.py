@@ -10,6 +10,9 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
+from siggen.planning.gearbox import pair_config, pair_of
+from siggen.record.damage_rows import damage_rows
+from siggen.record.internals import internals_table
 from siggen.record.simulation import simulate, simulate_specimen
 
 SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_per_rad=2.0"]
@@ -124,3 +127,33 @@ def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkey
     monkeypatch.setattr("siggen.record.simulation.measured_channels", broken)
     with pytest.raises(ValueError, match="broadcast"):
         simulate_specimen(config, [0])
+
+
+PAIRS = (
+    "gears.pairs=[{teeth: [19, 48], module_mm: 3.2, face_width_mm: 16}, "
+    "{teeth: [21, 52], module_mm: 2, face_width_mm: 9}]"
+)
+
+
+def test_gearboxes_of_a_set_of_pairs_are_those_of_sets_of_one_pair_with_labels_that_tell_the_pair() -> None:
+    config = load_config("configs/linear_pits.yaml", [*SMALL, PAIRS])
+    last = config.records_per_specimen - 1
+    for specimen_id in range(2):
+        index = pair_of(config, specimen_id)
+        assert index is not None
+        record_id = specimen_id * config.records_per_specimen + last
+        found, alone = (simulate(one, [record_id])[0] for one in (config, pair_config(config, index)))
+        assert isinstance(found, Record)
+        assert isinstance(alone, Record)
+        assert all(np.array_equal(found.channels[c], alone.channels[c]) for c in alone.channels)
+        told = {key: value for key, value in found.labels.items() if key not in alone.labels}
+        assert found.labels == {**alone.labels, **told}
+        assert (told["pair"], told["module_mm"]) == (index, pytest.approx((3.2, 2.0)[index]))
+        assert told["centre_distance_mm"] == pytest.approx((107.2, 73.0)[index])
+        assert found.labels["teeth_gear"] == (48, 52)[index]
+        # What commands show of a record is what the set stores.
+        shown = internals_table(config, record_id)
+        for channel, signal in found.channels.items():
+            assert np.array_equal(shown[f"accel_{channel}_m_s2"].to_numpy(), signal)
+        rows = damage_rows(config, record_id)
+        assert len(rows) == found.labels["damage_count"]

@@ -1,0 +1,142 @@
+"""The sections of a configuration carried over from the pair that they were written for to another gear pair.
+
+What is not named here stays: speeds, orders of other machines, damping ratios, roughness, oil, accuracy class, shares,
+noise of sensors, frequencies of the housing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from siggen.config import Gears
+from siggen.config.pairs import Pair
+from siggen.config.scaling import multiplied, scaled
+from siggen.rig.pair_scales import PairScales, pair_scales
+
+PROFILE_KEYS = (
+    "semi_axis_face_mm", "semi_axis_profile_mm", "depth_mm", "first_height_mm", "centre_height_mm", "height_mm",
+    "spacing_profile_mm", "spread_profile_mm", "profile_length_mm", "waviness_length_mm", "edge_radius_mm", "jitter_mm",
+)  # fmt: skip
+"""Of damage: they grow with the module. Pits keep their outline, so both of their axes do."""
+FACE_KEYS = (
+    "spacing_face_mm", "face_centre_mm", "face_mm", "spread_face_mm", "face_length_mm", "lower_width_mm",
+    "upper_width_mm",
+)  # fmt: skip
+"""Of damage: they grow with the face width, so that a spall takes the same share of it."""
+SKEW_KEYS = ("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm")
+"""Of damage: module over face width, so that an edge rises by the same share of the spall's length."""
+
+
+def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
+    """Return the sections of a gearbox with another pair, by key; those that do not change are left out.
+
+    Parameters
+    ----------
+    sections : mapping
+        Valid sections of a configuration, `gears` and `operating_points` among them; states and sensors as tuples or
+        as mappings from their index.
+    pair : Pair
+    """
+    gears: Gears = sections["gears"]
+    scales = pair_scales(gears, pair, sections["operating_points"])
+    found: dict[str, Any] = {
+        "gears": _gears(gears, pair, scales),
+        "operating_points": _each(sections["operating_points"], {"torque_nm": scales.torque}),
+    }
+    for name, factors in _factors(scales).items():
+        if sections.get(name) is not None:
+            whole = name in {"states", "sensors"}
+            found[name] = _each(sections[name], factors) if whole else scaled(sections[name], factors)
+    return found
+
+
+def _each(entries: Any, factors: Mapping[str, float]) -> Any:
+    if isinstance(entries, Mapping):
+        return {index: scaled(entry, factors) for index, entry in entries.items()}
+    return tuple(scaled(entry, factors) for entry in entries)
+
+
+def _gears(gears: Gears, pair: Pair, scales: PairScales) -> Gears:
+    wheels = {
+        name: wheel.model_copy(
+            update={
+                "teeth": pair.teeth[i],
+                "profile_shift": pair.profile_shifts[i],
+                "bore_radius_mm": multiplied(wheel.bore_radius_mm, scales.bore[i]),
+            }
+        )
+        for i, (name, wheel) in enumerate((("pinion", gears.pinion), ("gear", gears.gear)))
+    }
+    sizes = {"module_mm": pair.module_mm, "face_width_mm": pair.face_width_mm, "centre_distance_mm": None}
+    return gears.model_copy(update={**sizes, **wheels, "pairs": ()})
+
+
+def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
+    """Return section -> path of a key below it -> factor."""
+    mass = scales.size**3
+    damage = {
+        **dict.fromkeys(PROFILE_KEYS, scales.module),
+        **dict.fromkeys(FACE_KEYS, scales.face_width),
+        **dict.fromkeys(SKEW_KEYS, scales.module / scales.face_width),
+    }
+    listed = {
+        f"{group}.{key}": factor
+        for group in ("vertices", "pits", "spalls", "spalls.vertices")
+        for key, factor in damage.items()
+    }
+    return {
+        "dynamics": _dynamics(scales),
+        "states": {f"damage.{key}": factor for key, factor in {**damage, **listed}.items()},
+        "sensors": {"position_mm": scales.size},
+        "manufacture": {
+            "lead_misalignment_um": scales.face_width,
+            "crowning_um": scales.face_width,
+            "crowning_gear_um": scales.face_width,
+        },
+        "variation": {"speed.rated_torque_nm": scales.torque},
+        "housing": {"modal_mass_kg": mass, "force_noise.density_n_per_sqrt_hz": scales.load},
+        "background": {
+            "base.mass_kg": mass,
+            "base.gyration_m": scales.size,
+            "floor.density_n_per_sqrt_hz": scales.load,
+            "floor.machines_n_per_sqrt_hz": scales.load,
+            "shafts.coupling_stiffness_n_per_um": scales.load,
+            "shafts.rotor_mass_kg": mass,
+            "second_stage.order": scales.teeth,
+        },
+    }
+
+
+def _dynamics(scales: PairScales) -> dict[str, float]:
+    mass, size = scales.size**3, scales.size
+    found = {
+        "motor_inertia_kg_m2": scales.end_inertia[0],
+        "load_inertia_kg_m2": scales.end_inertia[1],
+        "backlash_um": scales.module,
+        "casing.mass_kg": mass,
+        "casing.inertia_kg_m2": size**5,
+        "casing.pinion_position_mm": size,
+        "casing.bolts.shear_stiffness_n_per_m": size,
+        "casing.bolts.axial_stiffness_n_per_m": size,
+        "casing.bolts.positions_mm": size,
+        "casing.caps.mass_kg": mass,
+        "casing.caps.horizontal_stiffness_n_per_m": size,
+        "casing.caps.vertical_stiffness_n_per_m": size,
+        "mesh.tip_relief_um": scales.load / scales.face_width,
+        "mesh.pit_edge_radius_mm": scales.module,
+    }
+    for i, (wheel, end) in enumerate((("pinion", "input"), ("gear", "output"))):
+        damping = (scales.bearing[i] * scales.mass[i]) ** 0.5
+        for axis in "xy":
+            found[f"{wheel}.bearing_stiffness_{axis}_n_per_m"] = scales.bearing[i]
+            found[f"{wheel}.bearing_damping_{axis}_n_s_per_m"] = damping
+        found |= {
+            f"{wheel}.mass_kg": scales.mass[i],
+            f"{wheel}.inertia_kg_m2": scales.inertia[i],
+            f"shafts.{wheel}.bearing_span_mm": scales.span[i],
+            f"shafts.{wheel}.diameter_mm": scales.bore[i],
+            f"{end}_coupling.stiffness_nm_per_rad": scales.coupling[i],
+            f"{end}_coupling.damping_nm_s_per_rad": scales.coupling_damping[i],
+        }
+    return found
