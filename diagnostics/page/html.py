@@ -30,11 +30,26 @@ NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell of a table: what is shown, what is smaller behind it, and what it is sorted by (None: its text)."""
+    """One cell of a table.
+
+    Attributes
+    ----------
+    text, small : str
+        What is shown, and what is smaller behind it.
+    value : float, optional
+        What it is sorted by; None: its text.
+    link, hint : str
+        Where the text leads, such as `#term-rms`, and what is shown on hover.
+    shade : float, optional
+        0 to 1: how dark a heat map has it.
+    """
 
     text: str
     small: str = ""
     value: float | None = None
+    link: str = ""
+    hint: str = ""
+    shade: float | None = None
 
 
 def page(title: str, parts: Sequence[str]) -> str:
@@ -52,13 +67,47 @@ def numbered(body: str) -> str:
     """Return the body with a number before every caption, so that text elsewhere can cite figures and tables."""
     for word, opening in NUMBERED:
         first, *rest = body.split(opening)
-        body = first + "".join(f"{opening}<b>{word} {number}.</b> {part}" for number, part in enumerate(rest, start=1))
+        body = first + "".join(
+            f'{opening[:-1]} id="{word.lower()}-{number}"><b>{word} {number}.</b> {part}'
+            for number, part in enumerate(rest, start=1)
+        )
     return body
 
 
 def heading(text: str, level: int = 2) -> str:
-    """Return a heading."""
-    return f"<h{level}>{inline(text)}</h{level}>"
+    """Return a heading, with a name that links can lead to."""
+    return f'<h{level} id="{anchor(text)}">{inline(text)}</h{level}>'
+
+
+def anchor(text: str) -> str:
+    """Return the name of a heading for links: its letters and digits in lower case."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "section"
+
+
+def contents(titles: Sequence[str]) -> str:
+    """Return links to sections by their titles."""
+    links = "".join(f'<li><a href="#{anchor(title)}">{inline(title)}</a></li>' for title in titles)
+    return f'<nav class="contents" aria-label="Contents"><ul>{links}</ul></nav>'
+
+
+def link(text: str, target: str, hint: str = "") -> str:
+    """Return a link; its definition or target is shown on hover."""
+    title = f' title="{escape(hint, quote=True)}"' if hint else ""
+    return f'<a href="{escape(target, quote=True)}"{title}>{inline(text)}</a>'
+
+
+def answer(sentences: Sequence[tuple[str, str]], figure: str) -> str:
+    """Return what opens a page: each answer with its question, and the figure beside or below them.
+
+    Parameters
+    ----------
+    sentences : sequence of (str, str)
+        Question in a few words, and its answer.
+    figure : str
+        A block of `figure_block`, or nothing.
+    """
+    said = "".join(f"<p><b>{inline(question)}.</b> {inline(text)}</p>" for question, text in sentences)
+    return f'<section class="answer" aria-label="Answer"><div>{said}</div>{figure}</section>'
 
 
 def paragraph(text: str, style: str = "") -> str:
@@ -153,7 +202,13 @@ def _printed_note(rows: int) -> str:
 def _cell(cell: Cell, place: int) -> str:
     tag, scope = ("td", "") if place else ("th", ' scope="row"')
     small = f" <small>{inline(minus(cell.small))}</small>" if cell.small else ""
-    return f"<{tag}{scope}{_sorted_by(cell)}>{inline(minus(cell.text))}{small}</{tag}>"
+    text = link(minus(cell.text), cell.link, cell.hint) if cell.link else inline(minus(cell.text))
+    return f"<{tag}{scope}{_sorted_by(cell)}{_shaded(cell.shade)}>{text}{small}</{tag}>"
+
+
+def _shaded(shade: float | None) -> str:
+    """Return the class of a cell of a heat map: tenths of its shade, each with text that can be read on it."""
+    return "" if shade is None or math.isnan(shade) else f' class="shade{round(10.0 * min(max(shade, 0.0), 1.0))}"'
 
 
 def _sorted_by(cell: Cell) -> str:
