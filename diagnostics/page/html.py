@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from diagnostics.page.sort_script import SORT_SCRIPT
+from diagnostics.page.scripts import HINT_SCRIPT, SORT_SCRIPT
 from diagnostics.page.style_sheet import style_sheet
 
 PRINTED_ROWS = 20
@@ -39,9 +39,12 @@ class Cell:
     value : float, optional
         What it is sorted by; None: its text.
     link, hint : str
-        Where the text leads, such as `#term-rms`, and what is shown on hover.
+        Where the text leads, such as `#term-rms`, and what is shown on hover. A cell with a name instead of a link
+        gives its hint to all links that lead to it.
     shade : float, optional
         0 to 1: how dark a heat map has it.
+    name : str
+        What links lead to it by.
     """
 
     text: str
@@ -50,6 +53,7 @@ class Cell:
     link: str = ""
     hint: str = ""
     shade: float | None = None
+    name: str = ""
 
 
 def page(title: str, parts: Sequence[str]) -> str:
@@ -59,7 +63,7 @@ def page(title: str, parts: Sequence[str]) -> str:
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<title>{escape(title)}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
-        + f"\n</main><script>{SORT_SCRIPT}</script></body></html>\n"
+        + f"\n</main><script>{HINT_SCRIPT}{SORT_SCRIPT}</script></body></html>\n"
     )
 
 
@@ -84,9 +88,10 @@ def anchor(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "section"
 
 
-def contents(titles: Sequence[str]) -> str:
-    """Return links to sections by their titles."""
-    links = "".join(f'<li><a href="#{anchor(title)}">{inline(title)}</a></li>' for title in titles)
+def contents(parts: Sequence[str]) -> str:
+    """Return links to the sections of these parts of a page, by their headings."""
+    found = re.findall(r'<h2 id="([^"]*)">(.*?)</h2>', "\n".join(part for part in parts if part.startswith("<h2")))
+    links = "".join(f'<li><a href="#{name}">{title}</a></li>' for name, title in found)
     return f'<nav class="contents" aria-label="Contents"><ul>{links}</ul></nav>'
 
 
@@ -203,7 +208,8 @@ def _cell(cell: Cell, place: int) -> str:
     tag, scope = ("td", "") if place else ("th", ' scope="row"')
     small = f" <small>{inline(minus(cell.small))}</small>" if cell.small else ""
     text = link(minus(cell.text), cell.link, cell.hint) if cell.link else inline(minus(cell.text))
-    return f"<{tag}{scope}{_sorted_by(cell)}{_shaded(cell.shade)}>{text}{small}</{tag}>"
+    name = f' id="{escape(cell.name, quote=True)}" data-hint="{escape(cell.hint, quote=True)}"' if cell.name else ""
+    return f"<{tag}{scope}{name}{_sorted_by(cell)}{_shaded(cell.shade)}>{text}{small}</{tag}>"
 
 
 def _shaded(shade: float | None) -> str:

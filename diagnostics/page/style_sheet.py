@@ -46,7 +46,6 @@ a{color:var(--accent)}th a{color:inherit;text-decoration-color:var(--soft)}
 .contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;list-style:none;margin:1rem 0 0;padding:.6rem 0;
 border:solid var(--line);border-width:1px 0}
 .contents li{max-width:none}
-dt{margin-top:.8rem;font-weight:600}dd{margin:0 0 0 1rem;max-width:46rem}
 :target{scroll-margin-top:1rem;background:#fff7e6}
 code{overflow-wrap:anywhere;font-size:.88em}
 @media(max-width:800px){.answer{grid-template-columns:minmax(0,1fr);gap:.4rem}}
@@ -76,12 +75,10 @@ h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orpha
 
 
 SHADES = "".join(
-    f".shade{tenth}{{background:color-mix(in srgb,#1f6f8b {9 * tenth}%,#fff);"
-    f"color:{'#fff' if tenth > 5 else 'inherit'}}}"
-    f".shade{tenth} a,.shade{tenth} small{{color:inherit}}\n"
+    f".shade{tenth}{{background:color-mix(in srgb,#1f6f8b {7 * tenth}%,#fff)}}.shade{tenth} small{{color:inherit}}\n"
     for tenth in range(11)
 )
-"""Cells of a heat map: white to the accent, text that keeps a contrast of 4.5 on it."""
+"""Cells of a heat map, so light that dark text keeps a contrast of 4.5."""
 
 
 def style_sheet(printed_rows: int) -> str:

@@ -132,7 +132,7 @@ def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dic
     """Write all figures and return them with their captions; those that an earlier run alone had are removed."""
     pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in figures.items()}
     (folder / "figures").mkdir(exist_ok=True)
-    for name in TITLES:
+    for name in TITLES:  # matrices are tables now
         (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
     for name, (png, _) in pictures.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)

@@ -16,7 +16,9 @@ from diagnostics.report.comparison_tables import score_blocks, study_blocks
 from diagnostics.report.detection_tables import detection_blocks
 from diagnostics.report.detector_table import detector_table
 from diagnostics.report.drawing import Drawing
-from diagnostics.report.indicator_terms import glossary_html, term_cell
+from diagnostics.report.indicator_tables import definition_html
+from diagnostics.report.indicator_terms import term_cell
+from diagnostics.report.record_tables import confusion_table, wrong_records_table
 from diagnostics.report.sentences import (
     area_sentence,
     comparison_sentence,
@@ -52,6 +54,7 @@ class Reported:
     detectors: Detectors
     audit: str
     drawing: Drawing
+    explorer: str = ""
 
 
 def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
@@ -65,10 +68,8 @@ def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -
     """
     title = f"Diagnostics of {reported.dataset.path.name}"
     sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if blocks}
-    parts = [html.heading(title, 1), _answer(reported, pictures), html.contents(list(sections))]
-    for name, blocks in sections.items():
-        parts += [html.heading(name), *blocks]
-    return html.page(title, parts)
+    parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
+    return html.page(title, [html.heading(title, 1), _answer(reported, pictures), html.contents(parts), *parts])
 
 
 def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
@@ -92,11 +93,12 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Detectors": [detector_table(reported.detectors)] if reported.detectors.alone else [],
         "Records": [tables.set_table(labels, ordered_states(labels))],
         "Scores": [*_scores(training), grid(drawing.scores)],
+        "Records named wrongly": _named(reported),
         "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
         "Indicators": [*_indicators(reported.found), grid(drawing.indicators)],
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
-        "Definitions of the indicators": [glossary_html()],
+        "Definitions of the indicators": [definition_html()],
         "Notes": html.notes(notes),
     }
 
@@ -121,6 +123,16 @@ def _scores(training: Training | None) -> list[str]:
         *detection_blocks(training),
         *score_blocks(training),
     ]
+
+
+def _named(reported: Reported) -> list[str]:
+    """Return confusion matrices and wrongly named records; the explorer shows what the first classifier names."""
+    training, explorer = reported.training, reported.explorer
+    if training is None:
+        return []
+    matrices = [confusion_table(found, "" if place else explorer) for place, found in enumerate(training.judged)]
+    wrong = wrong_records_table(training, reported.matrix, explorer)
+    return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
 
 
 def _indicators(found: list[Separability]) -> list[str]:
