@@ -50,36 +50,46 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 
 
 def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
-    """Return AUC over profile length with intervals; a colour per variant, a marker per fault; dotted: targets.
+    """Return AUC over profile length with intervals: a panel per variant, a marker per fault; dotted: targets.
 
     Faults whose states do not differ in length stand in the tables only, unless there are no others.
     """
-    figure, axes = new_figure(height_in=4.2)
-    axis = axes[0, 0]
-    lines = [
+    lines = [line for line in _ladders(variants) if differ_in_length(line[2])] or _ladders(variants)
+    names = list(dict.fromkeys(name for name, _, _ in lines))
+    faults = list(dict.fromkeys(fault for _, fault, _ in lines))
+    figure, axes = new_figure(len(names), 1, height_in=0.9 + 1.9 * len(names), sharex=True, sharey=True)
+    for name, fault, entries in lines:
+        colour, marker = FAULT_COLOURS[faults.index(fault) % len(FAULT_COLOURS)], MARKERS[faults.index(fault) % 5]
+        _draw_ladder(axes[names.index(name), 0], entries, colour, marker, fault if name == names[0] else None)
+    for axis, name in zip(axes[:, 0], names, strict=True):
+        _frame(axis, name)
+    axes[0, 0].set_xlim(0.0, 1.05 * axes[0, 0].get_xlim()[1])
+    axes[-1, 0].set_xlabel("Length of the damage along the profile [mm]")
+    figure.supylabel("AUC against healthy [-]", fontsize=10)
+    figure.legend(fontsize=8.5, loc="outside upper center", ncols=min(len(faults), 2))
+    return figure
+
+
+def _ladders(variants: dict[str, list[Detection]]) -> list[tuple[str, str, list[Detection]]]:
+    """Return what was judged, by variant and fault."""
+    found = [
         (name, fault, [entry for entry in entries if entry.fault == fault and np.isfinite(entry.auc.value)])
         for name, entries in variants.items()
         for fault in dict.fromkeys(entry.fault for entry in entries)
     ]
-    lines = [line for line in lines if line[2]]
-    lines = [line for line in lines if differ_in_length(line[2])] or lines
-    variant, kind = (list(dict.fromkeys(line[place] for line in lines)).index for place in (0, 1))
-    for name, fault, entries in lines:
-        length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
-        value = np.array([entry.auc.value for entry in entries])
-        low = np.array([entry.auc.low for entry in entries])
-        high = np.array([entry.auc.high for entry in entries])
-        limits = np.nan_to_num([value - low, high - value]).clip(0.0)
-        colour, marker = FAULT_COLOURS[variant(name) % len(FAULT_COLOURS)], MARKERS[kind(fault) % len(MARKERS)]
-        axis.errorbar(
-            length, value, limits, marker=marker, markersize=4, color=colour, label=f"{fault}, {name}", capsize=2
-        )
+    return [line for line in found if line[2]]
+
+
+def _draw_ladder(axis: Any, entries: list[Detection], colour: str, marker: str, label: str | None) -> None:
+    length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
+    value, low, high = (np.array([getattr(entry.auc, part) for entry in entries]) for part in ("value", "low", "high"))
+    limits = np.nan_to_num([value - low, high - value]).clip(0.0)
+    axis.errorbar(length, value, limits, marker=marker, markersize=4, color=colour, label=label, capsize=2)
+
+
+def _frame(axis: Any, name: str) -> None:
     axis.axhline(0.5, color="#9aa7b2", linestyle="--", linewidth=0.8)
     for target in TARGETS:
         axis.axhline(target, color="#9aa7b2", linestyle=":", linewidth=0.8)
     axis.set_ylim(0.3, 1.02)
-    axis.set_xlim(0.0, 1.05 * axis.get_xlim()[1])
-    axis.set_xlabel("Length of the damage along the profile [mm]")
-    axis.set_ylabel("AUC against healthy [-]")
-    figure.legend(fontsize=8, loc="outside upper center")
-    return figure
+    axis.set_title(name, loc="left", fontsize=9, fontweight="bold")

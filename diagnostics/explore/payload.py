@@ -12,11 +12,11 @@ from diagnostics.base.progress import Stage
 from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import page_detail
 from diagnostics.explore.flank_outlines import flank_size, outlines
-from diagnostics.explore.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.explore.internal_waves import internal_waves, shown_internals
 from diagnostics.explore.order_axis import highest_order, order_axis
 from diagnostics.explore.packed import packed_floats
 from diagnostics.explore.record_views import PageAxes, record_views
+from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.recording import recordings
 from siggen.dataset.reading import Dataset

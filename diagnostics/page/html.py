@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from diagnostics.page.sort_script import SORT_SCRIPT
+from diagnostics.page.scripts import HINT_SCRIPT, SORT_SCRIPT
 from diagnostics.page.style_sheet import style_sheet
 
 PRINTED_ROWS = 20
@@ -30,11 +30,30 @@ NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell of a table: what is shown, what is smaller behind it, and what it is sorted by (None: its text)."""
+    """One cell of a table.
+
+    Attributes
+    ----------
+    text, small : str
+        What is shown, and what is smaller behind it.
+    value : float, optional
+        What it is sorted by; None: its text.
+    link, hint : str
+        Where the text leads, such as `#term-rms`, and what is shown on hover. A cell with a name instead of a link
+        gives its hint to all links that lead to it.
+    shade : float, optional
+        0 to 1: how dark a heat map has it.
+    name : str
+        What links lead to it by.
+    """
 
     text: str
     small: str = ""
     value: float | None = None
+    link: str = ""
+    hint: str = ""
+    shade: float | None = None
+    name: str = ""
 
 
 def page(title: str, parts: Sequence[str]) -> str:
@@ -44,7 +63,7 @@ def page(title: str, parts: Sequence[str]) -> str:
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<title>{escape(title)}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
-        + f"\n</main><script>{SORT_SCRIPT}</script></body></html>\n"
+        + f"\n</main><script>{HINT_SCRIPT}{SORT_SCRIPT}</script></body></html>\n"
     )
 
 
@@ -52,13 +71,48 @@ def numbered(body: str) -> str:
     """Return the body with a number before every caption, so that text elsewhere can cite figures and tables."""
     for word, opening in NUMBERED:
         first, *rest = body.split(opening)
-        body = first + "".join(f"{opening}<b>{word} {number}.</b> {part}" for number, part in enumerate(rest, start=1))
+        body = first + "".join(
+            f'{opening[:-1]} id="{word.lower()}-{number}"><b>{word} {number}.</b> {part}'
+            for number, part in enumerate(rest, start=1)
+        )
     return body
 
 
 def heading(text: str, level: int = 2) -> str:
-    """Return a heading."""
-    return f"<h{level}>{inline(text)}</h{level}>"
+    """Return a heading, with a name that links can lead to."""
+    return f'<h{level} id="{anchor(text)}">{inline(text)}</h{level}>'
+
+
+def anchor(text: str) -> str:
+    """Return the name of a heading for links: its letters and digits in lower case."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "section"
+
+
+def contents(parts: Sequence[str]) -> str:
+    """Return links to the sections of these parts of a page, by their headings."""
+    found = re.findall(r'<h2 id="([^"]*)">(.*?)</h2>', "\n".join(part for part in parts if part.startswith("<h2")))
+    links = "".join(f'<li><a href="#{name}">{title}</a></li>' for name, title in found)
+    return f'<nav class="contents" aria-label="Contents"><ul>{links}</ul></nav>'
+
+
+def link(text: str, target: str, hint: str = "") -> str:
+    """Return a link; its definition or target is shown on hover."""
+    title = f' title="{escape(hint, quote=True)}"' if hint else ""
+    return f'<a href="{escape(target, quote=True)}"{title}>{inline(text)}</a>'
+
+
+def answer(sentences: Sequence[tuple[str, str]], figure: str) -> str:
+    """Return what opens a page: each answer with its question, and the figure beside or below them.
+
+    Parameters
+    ----------
+    sentences : sequence of (str, str)
+        Question in a few words, and its answer.
+    figure : str
+        A block of `figure_block`, or nothing.
+    """
+    said = "".join(f"<p><b>{inline(question)}.</b> {inline(text)}</p>" for question, text in sentences)
+    return f'<section class="answer" aria-label="Answer"><div>{said}</div>{figure}</section>'
 
 
 def paragraph(text: str, style: str = "") -> str:
@@ -153,7 +207,14 @@ def _printed_note(rows: int) -> str:
 def _cell(cell: Cell, place: int) -> str:
     tag, scope = ("td", "") if place else ("th", ' scope="row"')
     small = f" <small>{inline(minus(cell.small))}</small>" if cell.small else ""
-    return f"<{tag}{scope}{_sorted_by(cell)}>{inline(minus(cell.text))}{small}</{tag}>"
+    text = link(minus(cell.text), cell.link, cell.hint) if cell.link else inline(minus(cell.text))
+    name = f' id="{escape(cell.name, quote=True)}" data-hint="{escape(cell.hint, quote=True)}"' if cell.name else ""
+    return f"<{tag}{scope}{name}{_sorted_by(cell)}{_shaded(cell.shade)}>{text}{small}</{tag}>"
+
+
+def _shaded(shade: float | None) -> str:
+    """Return the class of a cell of a heat map: tenths of its shade, each with text that can be read on it."""
+    return "" if shade is None or math.isnan(shade) else f' class="shade{round(10.0 * min(max(shade, 0.0), 1.0))}"'
 
 
 def _sorted_by(cell: Cell) -> str:

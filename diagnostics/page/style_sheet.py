@@ -40,8 +40,17 @@ th[aria-sort=ascending] button::after{content:"\\00a0\\2191";color:var(--accent)
 th[aria-sort=descending] button::after{content:"\\00a0\\2193";color:var(--accent)}
 table.text th,table.text td{text-align:left;white-space:normal;min-width:7rem}
 .printed{display:none}
+a{color:var(--accent)}th a{color:inherit;text-decoration-color:var(--soft)}
+.answer{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1.1fr);gap:1.2rem;align-items:start}
+.answer p{margin:0 0 .7rem;max-width:none}.answer figure{margin:0}
+.contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.1rem;list-style:none;margin:1rem 0 0;padding:.6rem 0;
+border:solid var(--line);border-width:1px 0}
+.contents li{max-width:none}
+:target{scroll-margin-top:1rem;background:#fff7e6}
 code{overflow-wrap:anywhere;font-size:.88em}
-@media(max-width:600px){body{font-size:15px}main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
+@media(max-width:800px){.answer{grid-template-columns:minmax(0,1fr);gap:.4rem}}
+@media(max-width:600px){body{font-size:15px;line-height:1.45}.answer p{margin-bottom:.45rem}
+main{padding:.6rem .7rem 3rem}h1{font-size:1.3rem}figure{padding:.3rem}
 th,td{padding:.3rem .4rem}th:first-child{min-width:8.5rem;max-width:10rem}}
 """
 
@@ -65,6 +74,13 @@ h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orpha
 """
 
 
+SHADES = "".join(
+    f".shade{tenth}{{background:color-mix(in srgb,#1f6f8b {7 * tenth}%,#fff)}}.shade{tenth} small{{color:inherit}}\n"
+    for tenth in range(11)
+)
+"""Cells of a heat map, so light that dark text keeps a contrast of 4.5."""
+
+
 def style_sheet(printed_rows: int) -> str:
     """Return the style; of a table that is cut on paper so many rows are printed."""
-    return STYLE + PRINT_STYLE.replace("ROWS", str(printed_rows + 1))
+    return STYLE + SHADES + PRINT_STYLE.replace("ROWS", str(printed_rows + 1))

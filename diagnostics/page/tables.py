@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -94,12 +95,12 @@ def strength_text(name: str, strength: float) -> str:
     return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"
 
 
-def separability_html(found: list[Separability]) -> str:
-    """Return all features, strongest first."""
+def separability_html(found: list[Separability], named: Callable[[str], Cell]) -> str:
+    """Return all features, strongest first, each in the cell that names it."""
     states = list(dict.fromkeys(state for entry in found for state in entry.auc))
     rows = [
         [
-            Cell(entry.feature),
+            named(entry.feature),
             *(interval_cell(entry.auc[state]) for state in states),
             interval_cell(entry.spearman, sign=True),
             Cell(f"{100.0 * entry.defined_share:.0f}", value=entry.defined_share),

@@ -12,7 +12,6 @@ from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures, stiffness_figures, vibration_figures
 from diagnostics.report.examples import example_set
 from diagnostics.signal.order_spectrum import strongest_harmonic
-from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
@@ -125,7 +124,3 @@ def _draw_scores(drawing: Drawing, training: Training) -> None:
     drawing.scores["scores"] = (score_figures.score_figure(training), caption)
     caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
     drawing.scores["permuted"] = (score_figures.permutation_figure(training), caption)
-    for judged in training.judged:
-        figure = score_figures.confusion_figure(judged)
-        caption = f"Confusion matrix on test records, {TITLES[judged.name]}: count and share of the true state."
-        drawing.scores[f"confusion_{judged.name}"] = (figure, caption)

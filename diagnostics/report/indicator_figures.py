@@ -1,4 +1,4 @@
-"""Figures of the evaluation of indicators: heat map, curves over severity, size of damage and noise, and causes."""
+"""Figures of the evaluation of indicators: curves over severity, size of damage and noise, and causes."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CROWDED = 8
-"""Columns beyond which their names stand upright and numbers are small."""
+"""States beyond which their names are small."""
 ROWS_SHOWN = 36
 CAUSES = ("speed", "load", "sensor", "noise", "specimen")
 CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
 MARKERS = "osD^vP"
+MOST_LINES = 5
 
 
-def separation_figure(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> Figure:
-    """Return the heat map: indicators over states in both designs, median over channels, best first."""
-    names = list(dict.fromkeys(result.indicator for result in found))
+def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:
+    """Return the separations in both designs by indicator, median over channels, best first: `others` then `same`."""
+    names = list(dict.fromkeys(result.indicator for result in found)) if states else []
     values = {name: _medians(found, name, states) for name in names}
     shown = sorted(names, key=lambda name: -_mean(values[name][: len(states)]))[:ROWS_SHOWN]
-    head = [f"{state}\nothers" for state in states] + [f"{state}\nsame" for state in states]
-    return _heat_map(np.array([values[name] for name in shown]), shown, head, (0.0, 1.0), "RdBu_r", "Separation [-]")
+    return {name: values[name] for name in shown}
 
 
 def _medians(found: Sequence[IndicatorResult], name: str, states: tuple[str, ...]) -> list[float]:
@@ -65,25 +65,18 @@ def sensitivity_figure(found: Sequence[IndicatorResult]) -> Figure:
         row = np.full(len(CAUSES), np.nan)
         row[defined] = np.nanmedian(shares[:, defined], axis=0)
         rows.append(row)
-    return _heat_map(np.array(rows), names, list(CAUSES), (0.0, 1.0), "Greys", "Explained share [-]")
+    return _heat_map(np.array(rows), names, list(CAUSES), "Explained share [-]")
 
 
-def _heat_map(
-    values: np.ndarray, rows: list[str], columns: list[str], limits: tuple[float, float], colours: str, title: str
-) -> Figure:
+def _heat_map(values: np.ndarray, rows: list[str], columns: list[str], title: str) -> Figure:
     figure, axes = new_figure(height_in=1.2 + 0.2 * len(rows))
-    axis, crowded = axes[0, 0], len(columns) > CROWDED
-    picture = axis.imshow(values, cmap=colours, vmin=limits[0], vmax=limits[1], aspect="auto")
+    axis = axes[0, 0]
+    picture = axis.imshow(values, cmap="Greys", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if math.isfinite(value):
-            dark = abs(value - 0.5) > 0.32 if colours == "RdBu_r" else value > 0.55
-            size, colour = 6.5 if crowded else 7.5, "white" if dark else "#1c2733"
-            text = f"{value:.2f}".removeprefix("0").replace("1.00", "1") if crowded else f"{value:.2f}"
-            axis.text(column, row, text, ha="center", va="center", fontsize=size, color=colour)
-    if crowded:
-        axis.set_xticks(range(len(columns)), [name.replace("\n", ", ") for name in columns], fontsize=7.5, rotation=90)
-    else:
-        axis.set_xticks(range(len(columns)), columns, fontsize=8)
+            colour = "white" if value > 0.55 else "#1c2733"
+            axis.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=7.5, color=colour)
+    axis.set_xticks(range(len(columns)), columns, fontsize=8)
     axis.xaxis.tick_top()
     axis.set_yticks(range(len(rows)), rows, fontsize=7.5)
     axis.grid(visible=False)
@@ -164,8 +157,19 @@ def detection_figure(
     return figure
 
 
+def shown_states(states: tuple[str, ...]) -> tuple[str, ...]:
+    """Return at most five states, spread evenly over their order, the first and the last among them."""
+    if len(states) <= MOST_LINES:
+        return states
+    return tuple(states[k] for k in np.linspace(0, len(states) - 1, MOST_LINES).round().astype(int))
+
+
 def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ...]) -> Figure | None:
-    """Return AUC over signal-to-noise ratio, one panel per indicator, a line per state; None without curves."""
+    """Return AUC over signal-to-noise ratio, one panel per indicator, a line per state; None without curves.
+
+    Of many states a few stand for all, spread evenly over their order: more lines could not be told apart.
+    """
+    states = shown_states(states)
     usable = {name: found for name, found in curves.items() if any(curve.auc for curve in found.values())}
     if not usable:
         return None

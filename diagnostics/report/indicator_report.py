@@ -19,7 +19,7 @@ from diagnostics.page import html
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import set_table
-from diagnostics.page.wording import percent
+from diagnostics.page.wording import joined, percent
 from diagnostics.records.damage_kind import damage_kinds
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
@@ -160,12 +160,6 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     matrix = evaluated.table.matrix
     intact = tuple(state for state in ordered_states(matrix.labels) if state not in names)
     drawn: dict[str, tuple[Figure | None, str]] = {
-        "separation": (
-            indicator_figures.separation_figure(found, names),
-            f"Separation of each state from healthy by the best {indicator_figures.ROWS_SHOWN} indicators, median over "
-            "channels. 1 (red) is perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs "
-            "of one specimen that move in the direction of the indicator.",
-        ),
         "sensitivity": (
             indicator_figures.sensitivity_figure(found),
             "What changes the same indicators in healthy records. Shown is the adjusted share of rank variance that "
@@ -184,7 +178,8 @@ def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
         ),
         "noise": (
             indicator_figures.noise_figure(evaluated.noise, names),
-            "Separation over the signal-to-noise ratio, with 95 % limits. Each group has the same number of records.",
+            f"Separation of {joined(indicator_figures.shown_states(names))} over the signal-to-noise ratio, with 95 % "
+            "limits. Each group has the same number of records.",
         ),
     }
     return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
@@ -232,16 +227,16 @@ def _write_page(
     title = f"Indicators of {dataset.path.name}"
     first = found[:MOST_DETAILED]
     undefined = indicator_tables.undefined_html(found, _left_out(table))
-    parts = [
-        html.heading(title, 1),
-        *html.summary(sentences),
+    sections = [
+        html.heading("Records"),
         set_table(table.matrix.labels, ordered_states(table.matrix.labels)),
         html.heading("Ranking"),
         html.paragraph(HOW_TO_READ),
         indicator_tables.best_html(best_by_state(found, names)),
         indicator_tables.ranking_html(found, names),
         *([html.paragraph(_detail_text(len(found)))] if len(found) > MOST_DETAILED else []),
-        grid("separation", "sensitivity"),
+        indicator_tables.separation_html(indicator_figures.separation_rows(found, names), names),
+        grid("sensitivity"),
         *(indicator_tables.same_specimen_html(first, names), indicator_tables.p_value_html(first, names)),
         html.heading("Trend with severity, and the smallest damage found"),
         html.paragraph(_size_text(evaluated)),
@@ -259,6 +254,7 @@ def _write_page(
         html.heading("Notes"),
         *html.notes(_notes(dataset, evaluated)),
     ]
+    parts = [html.heading(title, 1), *html.summary(sentences), html.contents(sections), *sections]
     path = folder / PAGE
     path.write_text(html.page(title, parts), encoding="utf-8")
     return path

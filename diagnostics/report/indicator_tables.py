@@ -10,6 +10,7 @@ from diagnostics.indicators.registry import ALL, BY_NAME
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.report.indicator_figures import CAUSES
+from diagnostics.report.indicator_terms import term_cell
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.indicator_result import IndicatorResult
 
@@ -21,7 +22,7 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
         [
-            Cell(r.indicator, r.channel), Cell(str(rank), value=rank), interval_cell(r.score_others),
+            term_cell(r.column), Cell(str(rank), value=rank), interval_cell(r.score_others),
             *(interval_cell(r.others[state].separation) for state in states), Cell(ARROWS[r.direction]),
         ]
         for rank, r in enumerate(found, start=1)
@@ -30,12 +31,30 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
     return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]) -> str:
+    """Return the heat map: separation of every state in both designs, best first, empty without rows."""
+    head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
+    cells = [[term_cell(name), *(_separation(value) for value in values)] for name, values in rows.items()]
+    caption = (
+        f"Separation of each state from healthy by the best {len(cells)} indicators, median over channels. 1 (dark) is "
+        "perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs of one specimen that move "
+        "in the direction of the indicator."
+    )
+    return table(head, cells, caption=caption, sortable=True, tall=True) if cells else ""
+
+
+def _separation(value: float) -> Cell:
+    if not math.isfinite(value):
+        return Cell("–", value=math.nan)
+    return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
+
+
 def same_specimen_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
     """Return the shares of pairs of one specimen that rise, by state."""
     head = ["Indicator, channel", "Score", *(f"Pairs that rise, {state}" for state in states)]
     rows = [
         [
-            Cell(r.indicator, r.channel),
+            term_cell(r.column),
             interval_cell(r.score_same),
             *(interval_cell(r.same[state].separation) for state in states),
         ]
@@ -50,7 +69,7 @@ def p_value_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
     head = ["Indicator, channel", *(f"Others, {state}" for state in states), *(f"Same, {state}" for state in states)]
     rows = [
         [
-            Cell(r.indicator, r.channel), *(p_cell(r.others[state].holm) for state in states),
+            term_cell(r.column), *(p_cell(r.others[state].holm) for state in states),
             *(p_cell(r.same[state].holm) for state in states),
         ]
         for r in found
@@ -61,7 +80,9 @@ def p_value_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
 
 def best_html(best: Mapping[str, tuple[float, str]]) -> str:
     """Return the best single indicator of every state."""
-    rows = [[Cell(state), Cell(f"{value:.2f}", value=value), Cell(column)] for state, (value, column) in best.items()]
+    rows = [
+        [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column)] for state, (value, column) in best.items()
+    ]
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     head = ["State", "AUC [-]", "Indicator and channel"]
     return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
@@ -73,7 +94,7 @@ def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str
     head = ["Indicator, channel", "Spearman, area", "Spearman, stiffness loss", "Monotonicity", *map(size_title, sizes)]
     rows = [
         [
-            Cell(r.indicator, r.channel), interval_cell(r.spearman_area, sign=True),
+            term_cell(r.column), interval_cell(r.spearman_area, sign=True),
             interval_cell(r.spearman_stiffness, sign=True), interval_cell(r.monotonicity, sign=True),
             *(size_cell(r, name) for name in sizes),
         ]
@@ -83,7 +104,7 @@ def trend_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str
     effects = [f"Cohen's d, {state}" for state in states] + [f"Paired d, {state}" for state in states]
     effect_rows = [
         [
-            Cell(r.indicator, r.channel),
+            term_cell(r.column),
             *(interval_cell(r.others[state].effect, sign=True) for state in states),
             *(interval_cell(r.same[state].effect, sign=True) for state in states),
         ]
@@ -136,9 +157,7 @@ def p_cell(p_value: float) -> Cell:
 
 def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
     """Return what explains each indicator in healthy records."""
-    rows = [
-        [Cell(r.indicator, r.channel), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)] for r in found
-    ]
+    rows = [[term_cell(r.column), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)] for r in found]
     head = ["Indicator, channel", *(cause.capitalize() for cause in CAUSES)]
     caption = "Share of the rank variance of healthy records that each cause explains alone [-]."
     return table(head, rows, caption=caption, sortable=True, tall=True)
@@ -164,7 +183,7 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
         if missing > 1e-9:
             known = BY_NAME.get(base_name(result.indicator))
             reason = known.undefined if known else "its function returned nan"
-            rows.append([Cell(result.column), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)])
+            rows.append([term_cell(result.column), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)])
     head = ["Indicator and channel", "Undefined [%]", "When"]
     caption = "Indicators that are undefined in some of the records."
     return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""
@@ -183,6 +202,10 @@ def definition_html() -> str:
         "Source",
     ]
     rows = [
-        [Cell(t) for t in (d.name, d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)] for d in ALL
+        [
+            Cell(d.name, name=f"term-{d.name}", hint=f"{d.formula}; from {d.signal}"),
+            *(Cell(t) for t in (d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)),
+        ]
+        for d in ALL
     ]
     return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)

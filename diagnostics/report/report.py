@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -17,31 +17,32 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
-from diagnostics.page import html, tables
-from diagnostics.page.provenance import provenance, without_path
+from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted
 from diagnostics.records.state_classes import ordered_states
 from diagnostics.release.saved_models import save_models
-from diagnostics.report.comparison_tables import score_blocks, study_blocks
-from diagnostics.report.detection_tables import detection_blocks
-from diagnostics.report.drawing import Drawing, draw
-from diagnostics.report.sentences import area_sentence, summary
+from diagnostics.report.answer_figure import answer_figure
+from diagnostics.report.answer_sentences import answer_sentences
+from diagnostics.report.audit_beside import audit_beside, audit_sentence
+from diagnostics.report.drawing import draw
+from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
+from diagnostics.report.sentences import summary
 from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability, separability, separability_table
+from diagnostics.training.detectors import judged_detectors
 from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.realism import is_error_free
 from diagnostics.training.studies import Studies, run_studies, studies_metrics
 from diagnostics.training.training import OtherSet, Training, train_models, training_metrics
 from diagnostics.training.training_sets import other_table, set_table
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
-SECTIONS = (
-    ("vibration", "Signals"),
-    ("damage", "Damage"),
-    ("scores", "Scores"),
-    ("indicators", "Indicators"),
-)
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+THROUGH = "through_face"
 
 
 def write_report(
@@ -91,16 +92,51 @@ def write_report(
         advance()
     training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
     studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
+    with stage("detectors", 1) as advance:
+        detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
+        advance()
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies)
+        opening = answer_figure(detectors)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]
     _write_tables(table, found, folder)
-    sentences = summary(dataset.config, training, found)
+    audit = audit_sentence(dataset, audit_beside(dataset))
+    answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
+    sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
+    metrics["detectors"] = {
+        side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
+        for side in ("alone", "referenced")
+    }
     metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return _write_page(dataset, folder, seed, matrix, training, studies, found, drawing, sentences)
+    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing)
+    pictures = _write_pictures(folder, {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()})
+    path = folder / "report.html"
+    path.write_text(report_page(reported, pictures), encoding="utf-8")
+    return path
+
+
+def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
+    """Return the matrix with the label that sets damage through the face apart, where the set has it."""
+    if THROUGH not in dataset.labels().column_names:
+        return matrix
+    found = dataset.labels(columns=["record_id", THROUGH])
+    by_record = dict(zip(found.column("record_id").to_pylist(), found.column(THROUGH).to_pylist(), strict=True))
+    through = np.array([bool(by_record[record]) for record in matrix.labels["record_id"].tolist()])
+    return replace(matrix, labels={**matrix.labels, THROUGH: through})
+
+
+def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dict[str, tuple[bytes, str]]:
+    """Write all figures and return them with their captions; those that an earlier run alone had are removed."""
+    pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in figures.items()}
+    (folder / "figures").mkdir(exist_ok=True)
+    for name in TITLES:  # matrices are tables now
+        (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
+    for name, (png, _) in pictures.items():
+        (folder / "figures" / f"{name}.png").write_bytes(png)
+    return pictures
 
 
 def _trained(
@@ -199,60 +235,3 @@ def _entry(entry: Separability) -> dict[str, Any]:
         "spearman_damaged_area": entry.spearman.numbers(),
         "defined_share": entry.defined_share if math.isfinite(entry.defined_share) else None,
     }
-
-
-def _write_page(
-    dataset: Dataset,
-    folder: Path,
-    seed: int,
-    matrix: FeatureMatrix,
-    training: Training | None,
-    studies: Studies | None,
-    found: list[Separability],
-    drawing: Drawing,
-    sentences: list[str],
-) -> Path:
-    pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in drawing.figures().items()}
-    (folder / "figures").mkdir(exist_ok=True)
-    for name in TITLES:  # matrices of classifiers that an earlier run had and this one has not
-        (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
-    for name, (png, _) in pictures.items():
-        (folder / "figures" / f"{name}.png").write_bytes(png)
-    parts = [
-        html.heading(f"Diagnostics of {dataset.path.name}", 1),
-        *html.summary(sentences),
-        tables.set_table(matrix.labels, ordered_states(matrix.labels)),
-    ]
-    for section, title in SECTIONS:
-        blocks = [html.figure_block(*pictures[name]) for name in getattr(drawing, section)]
-        parts += [html.heading(title), *_section_tables(section, training, found), html.figure_grid(blocks)]
-        if section == "scores" and training:
-            parts += [html.heading("Splits and training specimens"), *study_blocks(studies)]
-            parts.append(html.figure_grid([html.figure_block(*pictures[name]) for name in drawing.studies]))
-    notes = [*drawing.notes, "Shaft angles come from the once-per-revolution pulses.", provenance(dataset, seed)]
-    parts += [html.heading("Notes"), *html.notes(notes)]
-    path = folder / "report.html"
-    path.write_text(html.page(f"Diagnostics of {dataset.path.name}", parts), encoding="utf-8")
-    return path
-
-
-def _section_tables(section: str, training: Training | None, found: list[Separability]) -> list[str]:
-    if section == "scores":
-        return (
-            [
-                tables.score_table(training),
-                tables.calibration_table(training),
-                *detection_blocks(training),
-                *score_blocks(training),
-            ]
-            if training
-            else [html.paragraph("No classifier was trained. The notes give the reason.")]
-        )
-    if section == "indicators":
-        text = (
-            f"The table has all {counted(len(found), 'feature')} on all specimens. Nothing is trained here, so no "
-            "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
-        )
-        followed = area_sentence(found)
-        return [html.paragraph(" ".join([*followed, text])), tables.separability_html(found)]
-    return []

@@ -1,4 +1,4 @@
-"""Figures of scores: values with intervals, confusion matrices, the permutation control, the strongest indicators."""
+"""Figures of scores: values with intervals, the permutation control, the strongest indicators."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.statistics.judgement import TITLES, Judged
+from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.learning_curve import CurvePoint
 from diagnostics.training.training import Training
@@ -36,25 +36,6 @@ def score_figure(training: Training) -> Figure:
         axis.set_xlabel(title)
     axes[0, 0].set_yticks(range(len(training.judged)), [judged.name for judged in training.judged])
     axes[0, 0].set_ylim(len(training.judged) - 0.5, -0.5)
-    return figure
-
-
-def confusion_figure(judged: Judged) -> Figure:
-    """Return the confusion matrix of one classifier on the test records: counts and shares of the true state."""
-    classes, counts = judged.scores.classes, judged.scores.confusion
-    figure, axes = new_figure(height_in=1.4 + 0.55 * len(classes))
-    axis = axes[0, 0]
-    share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    axis.imshow(share, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
-    for (row, column), count in np.ndenumerate(counts):
-        colour = "white" if share[row, column] > 0.55 else "#1c2733"
-        axis.text(column, row, f"{count}\n{share[row, column]:.0%}", ha="center", va="center", color=colour, fontsize=9)
-    state_ticks(axis, classes)
-    axis.set_yticks(range(len(classes)), classes)
-    axis.grid(visible=False)
-    axis.set_xlabel("Predicted state")
-    axis.set_ylabel("True state")
-    axis.set_title(TITLES[judged.name], loc="left", fontweight="bold")
     return figure
 
 

@@ -16,7 +16,7 @@ import pytest
 from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
 from diagnostics.explore.explorer import write_explorer
-from diagnostics.explore.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,6 +18,7 @@ import pytest
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
+from diagnostics.report.audit_beside import audit_beside, audit_sentence
 from diagnostics.report.report import write_report
 from diagnostics.signal.order_spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.training.network_training import NetworkOptions
@@ -31,12 +33,28 @@ def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def test_first_sentence_says_that_error_free_gears_separate_trivially(folder: Path) -> None:
+def test_the_answer_stands_first_and_says_that_error_free_gears_separate_trivially(folder: Path) -> None:
     text = (folder / "report.html").read_text()
-    first = re.search(r"<p[^>]*>(.*?)</p>", text)
-    assert first is not None
-    assert "They do not show that such damage could be found on a real machine" in first.group(1)
-    assert "no manufacturing errors" in first.group(1)
+    opening = re.search(r'</h1>\s*<section class="answer".*?</section>', text, re.DOTALL)
+    assert opening is not None
+    said = [re.sub(r"<[^>]*>", "", part) for part in re.findall(r"<p>(.*?)</p>", opening.group())]
+    assert [part.split(".")[0] for part in said] == ["From which size", "By what", "How sure"]
+    assert "Pitting is found in nine of ten records from 1\xa0mm² on, the smallest of the set" in said[0]
+    assert "no manufacturing errors, so any damage above the noise is trivial to separate" in said[2]
+    assert "says nothing about a real machine" in said[2]
+    limits = text.split('id="what-limits-the-answer"')[1].split("<h2")[0]
+    assert "They do not show that such damage could be found on a real machine" in limits
+    assert "The audit was not run" in limits
+
+
+def test_an_audit_of_another_set_is_none_of_this_one(dataset: Any, tmp_path: Path) -> None:
+    beside = replace(dataset, path=tmp_path / "set")
+    (tmp_path / "set_audit").mkdir()
+    audit = tmp_path / "set_audit" / "audit.json"
+    audit.write_text(json.dumps({"identity": "another", "verdict": "No trap was found."}))
+    assert audit_beside(beside) is None
+    audit.write_text(json.dumps({"identity": dataset.manifest["identity"], "verdict": "No trap was found."}))
+    assert audit_sentence(beside, audit_beside(beside)) == "No trap was found."
 
 
 def test_meaning_changes_once_gears_have_errors() -> None:
@@ -46,9 +64,24 @@ def test_meaning_changes_once_gears_have_errors() -> None:
 
 def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
     text = (folder / "report.html").read_text()
-    assert set(re.findall(r'(?:src|href)=(".{5}|[^"])', text)) == {'"data:'}
+    assert set(re.findall(r'(?:src|href)=(".{5}|[^"])', re.sub(r'href="#[^"]*"', "", text))) == {'"data:'}
     assert "http" not in re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)
     assert 'name="viewport"' in text
+
+
+def test_every_link_leads_to_a_place_on_the_page(folder: Path) -> None:
+    text = (folder / "report.html").read_text()
+    places = re.findall(r' id="([^"]*)"', text)
+    targets = set(re.findall(r'href="#([^"]*)"', text))
+    assert len(places) == len(set(places))
+    assert {"scores", "term-rms", "term-fm4"} <= targets <= set(places)
+
+
+def test_an_indicator_has_a_human_name_and_its_definition_on_hover(folder: Path) -> None:
+    text = (folder / "report.html").read_text().replace("<wbr>", "")
+    (table,) = (part for part in text.split("<table")[1:] if ">Feature<" in part)
+    assert '<a href="#term-rms">RMS</a> <small>bearing_vertical, rms</small>' in table
+    assert 'id="term-rms" data-hint="sqrt(mean x²); from record"' in text  # a script gives it to the links
 
 
 def test_figures_tables_models_and_metrics_lie_beside_it(dataset: Any, folder: Path) -> None:
@@ -58,8 +91,6 @@ def test_figures_tables_models_and_metrics_lie_beside_it(dataset: Any, folder: P
         "spectrum_h1",
         "scores",
         "permuted",
-        "confusion_indicators",
-        "confusion_rms",
         "stiffness_loss",
     )
     assert {f"figures/{name}.png" for name in figures} <= written

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+HINT_SCRIPT = """
+document.querySelectorAll('a[href^="#"]').forEach(function(link){
+var place=document.getElementById(link.hash.slice(1));
+if(place&&place.dataset.hint)link.title=place.dataset.hint});
+"""
+"""A definition stands once on the page: repeated in every row it would make a page a tenth larger."""
+
 SORT_SCRIPT = """
 document.querySelectorAll("table.sortable").forEach(function(table){
 var body=table.tBodies[0],heads=Array.from(table.tHead.rows[0].cells);

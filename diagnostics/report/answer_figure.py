@@ -1,0 +1,130 @@
+"""The one figure that opens a report: AUC over the size of the damage, and from which size on nine of ten are found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnostics.page.style import WIDTH_IN, styled
+from diagnostics.statistics.detector import Detector
+from diagnostics.training.detectors import CLASSIFIER, INDICATOR, NETWORKS, Detectors
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LOOKS = {
+    INDICATOR: ("indicator", "#1f6f8b", "s"),
+    CLASSIFIER: ("classifier", "#b01e3c", "o"),
+    NETWORKS: ("network", "#e3a21a", "^"),
+}
+"""Name in the legend, colour and marker of each family."""
+
+DASHES = ("-", "--", ":", "-.")
+SIDEWAYS = (0.94, 1.0, 1.06)
+"""Families stand beside each other at one size, so that their limits can be read."""
+
+MOST_NAMES = 4
+
+
+def answer_figure(found: Detectors) -> Figure | None:
+    """Return AUC by state over its damaged area above, sizes found in nine of ten below; None without any detector."""
+    from matplotlib.figure import Figure
+
+    panels = [("On an unseen gearbox", found.alone), ("Beside its own healthy record", found.referenced)]
+    panels = [(title, detectors) for title, detectors in panels if detectors]
+    if not panels:
+        return None
+    with styled():
+        figure = Figure(figsize=(WIDTH_IN, 3.5), layout="constrained")
+        axes = figure.subplots(
+            2, len(panels), squeeze=False, sharex=True, sharey="row", gridspec_kw={"height_ratios": [3.4, 1.0]}
+        )
+        for column, (title, detectors) in enumerate(panels):
+            _draw_areas(axes[0, column], detectors)
+            _draw_sizes(axes[1, column], detectors)
+            _name_states(axes[0, column], detectors)
+            axes[0, column].set_title(title, loc="left", fontweight="bold")
+        _scale(axes[1, 0], [detector for _, detectors in panels for detector in detectors.values()])
+        axes[0, 0].set_ylabel("AUC against\nhealthy [-]")
+        figure.supxlabel("Damaged area [mm²]", fontsize=10)
+        figure.legend(*_legend(panels[0][1]), loc="outside upper center", ncols=3, fontsize=9, handletextpad=0.3)
+    return figure
+
+
+def _draw_areas(axis: Any, detectors: dict[str, Detector]) -> None:
+    axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
+    for family, detector in detectors.items():
+        place = list(LOOKS).index(family)
+        _, colour, marker = LOOKS[family]
+        kinds = list(dict.fromkeys(state.kind for state in detector.states.values()))
+        for number, kind in enumerate(kinds):
+            shown = sorted(
+                (s for s in detector.states.values() if s.kind == kind and math.isfinite(s.auc.value)),
+                key=lambda state: state.area_mm2,
+            )
+            size = SIDEWAYS[place] * np.array([state.area_mm2 for state in shown])
+            dashes = DASHES[number % len(DASHES)]
+            axis.plot(size, [state.auc.value for state in shown], dashes, color=colour, marker=marker, markersize=5)
+            axis.vlines(size, *_limits(shown), color=colour, linewidth=1.4, alpha=0.6)
+    axis.set_ylim(0.0, 1.04)
+    axis.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "", "0.5", "", "1"])
+
+
+def _name_states(axis: Any, detectors: dict[str, Detector]) -> None:
+    """Write the names of the states over their sizes, where they are few enough to stand beside each other."""
+    states = next(iter(detectors.values())).states
+    if len(states) > MOST_NAMES or len(detectors) > len(LOOKS):
+        return
+    for name, state in states.items():
+        axis.text(state.area_mm2, 0.03, name, ha="center", va="bottom", fontsize=9, color="#566573")
+
+
+def _limits(states: Sequence[Any]) -> tuple[list[float], list[float]]:
+    return [state.auc.low for state in states], [state.auc.high for state in states]
+
+
+def _draw_sizes(axis: Any, detectors: dict[str, Detector]) -> None:
+    """Draw from which size on nine of ten are found: a line to the largest, limits as a bar, a cross where none is."""
+    for row, family in enumerate(LOOKS):
+        if family not in detectors or not detectors[family].sizes:
+            continue
+        _, colour, _ = LOOKS[family]
+        for size in detectors[family].sizes.values():
+            found = size.area_mm2
+            if not size.reached:
+                axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=1.8)
+                continue
+            axis.plot([found.value, size.largest_mm2], [row, row], color=colour, linewidth=3.5, solid_capstyle="butt")
+            axis.plot(found.value, row, marker="|", color=colour, markersize=11, markeredgewidth=2.2)
+            high = found.high if math.isfinite(found.high) else size.largest_mm2
+            axis.plot([found.low, high], [row, row], color="#1c2733", linewidth=1.0)
+    axis.set_ylim(len(LOOKS) - 0.4, -0.6)
+    axis.set_yticks([1.0], ["nine of\nten found"])
+    axis.tick_params(axis="y", length=0)
+    axis.grid(visible=False, axis="y")
+
+
+def _scale(axis: Any, detectors: Sequence[Detector]) -> None:
+    """Scale sizes logarithmically, with a few round numbers below them."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    sizes = [state.area_mm2 for detector in detectors for state in detector.states.values() if state.area_mm2 > 0.0]
+    if not sizes:
+        return
+    axis.set_xscale("log")
+    low, high = min(sizes) / 1.3, max(sizes) * 1.3
+    axis.set_xlim(low, high)
+    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,), numticks=99))
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _legend(detectors: dict[str, Detector]) -> tuple[list[Any], list[str]]:
+    from matplotlib.lines import Line2D
+
+    shown = [LOOKS[family] for family in LOOKS if family in detectors]
+    lines = [Line2D([], [], color=colour, marker=marker, markersize=6) for _, colour, marker in shown]
+    return lines, [name for name, _, _ in shown]

@@ -1,0 +1,66 @@
+"""The detectors of a report's answer as a table: AUC, alarms by state, and the size that is found."""
+
+from __future__ import annotations
+
+import math
+
+from diagnostics.page.html import Cell, table
+from diagnostics.page.tables import interval_cell
+from diagnostics.report.indicator_terms import in_a_sentence
+from diagnostics.statistics.detector import Detector, FoundSize
+from diagnostics.training.detectors import Detectors
+
+CAPTION = (
+    "Detectors that give one alarm for all damage. Indicator and classifier are judged on all gearboxes, each fold by "
+    "what was chosen or trained on the others; the network on the test gearboxes. Alarms: share of the records of a "
+    "state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
+    "give an alarm. Limits of 95 % come from resampled gearboxes."
+)
+
+
+def detector_table(found: Detectors) -> str:
+    """Return all detectors, those beside a healthy record below those without; nothing without any."""
+    every = [*found.alone.values(), *found.referenced.values()]
+    if not every:
+        return ""
+    states = list(dict.fromkeys(name for detector in every for name in detector.states))
+    kinds = list(dict.fromkeys(state.kind for detector in every for state in detector.states.values()))
+    head = [
+        *("Detector", "Gearboxes", "AUC, all damage"),
+        *(f"AUC, {name}" for name in states),
+        *(f"Alarms, {name} [%]" for name in states),
+        *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
+    ]
+    return table(head, [_row(detector, states, kinds) for detector in every], caption=CAPTION, sortable=True)
+
+
+def _row(detector: Detector, states: list[str], kinds: list[str]) -> list[Cell]:
+    beside = "beside a healthy record" if detector.referenced else ""
+    small = ", ".join(part for part in (in_a_sentence(detector.basis) if detector.basis else "", beside) if part)
+    none = Cell("–", value=math.nan)
+    return [
+        Cell(detector.title, small),
+        Cell(str(detector.specimens), value=float(detector.specimens)),
+        interval_cell(detector.every),
+        *(interval_cell(detector.states[name].auc) if name in detector.states else none for name in states),
+        *(_alarms(detector, name) for name in states),
+        *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
+    ]
+
+
+def _alarms(detector: Detector, name: str) -> Cell:
+    found = detector.states[name].share if name in detector.states else None
+    if found is None:
+        return Cell("–", value=math.nan)
+    limits = "" if math.isnan(found.low) else f"{100 * found.low:.0f} … {100 * found.high:.0f}"
+    return Cell(f"{100 * found.value:.0f}", limits, 100.0 * found.value)
+
+
+def _size_cell(found: FoundSize | None) -> Cell:
+    if found is None:
+        return Cell("–", value=math.nan)
+    if not found.reached:
+        return Cell("not found", f"up to {found.largest_mm2:.2g}", 1e9)
+    high = f"{found.area_mm2.high:.2g}" if math.isfinite(found.area_mm2.high) else "∞"
+    bound = "≤ " if found.is_bound else ""
+    return Cell(f"{bound}{found.area_mm2.value:.2g}", f"{found.area_mm2.low:.2g} … {high}", found.area_mm2.value)

@@ -1,0 +1,143 @@
+"""The page of a report: the answer first, then what limits it, then everything else in sections that links lead to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.page import html, tables
+from diagnostics.page.provenance import provenance
+from diagnostics.page.wording import counted
+from diagnostics.records.state_classes import ordered_states
+from diagnostics.report.answer_sentences import answer_sentences
+from diagnostics.report.comparison_tables import score_blocks, study_blocks
+from diagnostics.report.detection_tables import detection_blocks
+from diagnostics.report.detector_table import detector_table
+from diagnostics.report.drawing import Drawing
+from diagnostics.report.indicator_tables import definition_html
+from diagnostics.report.indicator_terms import term_cell
+from diagnostics.report.record_tables import confusion_table, wrong_records_table
+from diagnostics.report.sentences import (
+    area_sentence,
+    comparison_sentence,
+    indicator_sentences,
+    scores_sentence,
+    trust_sentence,
+)
+from diagnostics.statistics.separability import Separability
+from diagnostics.training.detectors import Detectors
+from diagnostics.training.realism import is_error_free, meaning_of_scores
+from diagnostics.training.studies import Studies
+from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
+
+ANSWER = "answer"
+CAPTION = (
+    "Above: AUC of healthy against each state over its damaged area, with 95 % limits; 0.5 is chance. Below: from the "
+    "upright stroke on, nine of ten records give an alarm at 5 % false alarms; thin: 95 % limits; a cross: not even "
+    "the largest damage does."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reported:
+    """Everything that the page is made of."""
+
+    dataset: Dataset
+    seed: int
+    matrix: FeatureMatrix
+    training: Training | None
+    studies: Studies | None
+    found: list[Separability]
+    detectors: Detectors
+    audit: str
+    drawing: Drawing
+    explorer: str = ""
+
+
+def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    reported : Reported
+    pictures : mapping of str to (bytes, str)
+        PNG and caption by name, of all figures of the drawing, and of the answer under its own name.
+    """
+    title = f"Diagnostics of {reported.dataset.path.name}"
+    sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if blocks}
+    parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
+    return html.page(title, [html.heading(title, 1), _answer(reported, pictures), html.contents(parts), *parts])
+
+
+def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
+    figure = html.figure_block(*pictures[ANSWER]) if ANSWER in pictures else ""
+    error_free = is_error_free(reported.dataset.config)
+    return html.answer(answer_sentences(reported.detectors, error_free=error_free), figure)
+
+
+def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> dict[str, list[str]]:
+    """Return the blocks of every section by its title; a section without blocks is left out."""
+    drawing, training = reported.drawing, reported.training
+
+    def grid(names: Mapping[str, Any]) -> str:
+        return html.figure_grid([html.figure_block(*pictures[name]) for name in names])
+
+    labels = reported.matrix.labels
+    notes = [*drawing.notes, "Shaft angles come from the once-per-revolution pulses."]
+    notes.append(provenance(reported.dataset, reported.seed))
+    return {
+        "What limits the answer": _limits(reported),
+        "Detectors": [detector_table(reported.detectors)] if reported.detectors.alone else [],
+        "Records": [tables.set_table(labels, ordered_states(labels))],
+        "Scores": [*_scores(training), grid(drawing.scores)],
+        "Records named wrongly": _named(reported),
+        "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
+        "Indicators": [*_indicators(reported.found), grid(drawing.indicators)],
+        "Signals": [grid(drawing.vibration)],
+        "Damage": [grid(drawing.damage)],
+        "Definitions of the indicators": [definition_html()],
+        "Notes": html.notes(notes),
+    }
+
+
+def _limits(reported: Reported) -> list[str]:
+    """Return what scores mean here, how far gearboxes and controls carry, what is hardest, and what the audit says."""
+    trained = reported.training
+    sentences = [meaning_of_scores(reported.dataset.config, scored=trained is not None)]
+    sentences += [trust_sentence(trained)] if trained else []
+    sentences += [*indicator_sentences(reported.found), reported.audit]
+    return [html.paragraph(sentence) for sentence in sentences]
+
+
+def _scores(training: Training | None) -> list[str]:
+    if training is None:
+        return [html.paragraph("No classifier was trained. The notes give the reason.")]
+    return [
+        html.paragraph(scores_sentence(training)),
+        html.paragraph(comparison_sentence(training)),
+        tables.score_table(training),
+        tables.calibration_table(training),
+        *detection_blocks(training),
+        *score_blocks(training),
+    ]
+
+
+def _named(reported: Reported) -> list[str]:
+    """Return confusion matrices and wrongly named records; the explorer shows what the first classifier names."""
+    training, explorer = reported.training, reported.explorer
+    if training is None:
+        return []
+    matrices = [confusion_table(found, "" if place else explorer) for place, found in enumerate(training.judged)]
+    wrong = wrong_records_table(training, reported.matrix, explorer)
+    return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
+
+
+def _indicators(found: list[Separability]) -> list[str]:
+    text = (
+        f"The table has all {counted(len(found), 'feature')} on all specimens. Nothing is trained here, so no "
+        "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
+    )
+    return [html.paragraph(" ".join([*area_sentence(found), text])), tables.separability_html(found, term_cell)]

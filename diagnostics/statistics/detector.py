@@ -1,0 +1,213 @@
+"""One number per record as an alarm for damage: its AUC by state, and the size that it finds in nine of ten records.
+
+Sizes mean something among damages of one kind only, so every kind has its own. An alarm is a score above the quantile
+of healthy records that leaves the false alarms above it; with few healthy records such a quantile does not exist, and
+no size is given. Intervals come from resampled gearboxes, and the threshold is drawn anew in each. Source:
+probability of detection (a90), standard literature of non-destructive testing; see `detectable_size` for the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from diagnostics.records.damage_kind import damage_kinds
+from diagnostics.records.state_classes import HEALTHY, ordered_states
+from diagnostics.statistics.assessment import size_interval
+from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
+
+FALSE_ALARMS, FOUND = 0.05, 0.9
+FEWEST_HEALTHY = 20
+"""Healthy records from which one in twenty can lie above a threshold."""
+
+RESAMPLES = 400
+AREA = "damaged_area_mm2"
+
+
+@dataclass(frozen=True, slots=True)
+class FoundSize:
+    """Damaged area [mm^2] from which nine of ten records give an alarm, of one kind of damage.
+
+    Attributes
+    ----------
+    area_mm2 : Interval
+        Infinite where the largest damage is not found so often.
+    smallest_mm2, largest_mm2 : float
+        Median area of the groups of smallest and largest damage: what is found at the smallest is an upper bound.
+    """
+
+    area_mm2: Interval
+    smallest_mm2: float
+    largest_mm2: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether any size of the set is found."""
+        return bool(np.isfinite(self.area_mm2.value))
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether the smallest damage of the set is found already."""
+        return self.reached and self.area_mm2.value <= self.smallest_mm2 * (1.0 + 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class StateFound:
+    """One state: kind of damage, median area [mm^2], AUC against healthy, and share of its records with an alarm."""
+
+    kind: str
+    area_mm2: float
+    auc: Interval
+    share: Interval | None
+
+
+@dataclass(frozen=True, slots=True)
+class Detector:
+    """A detector as it was judged.
+
+    Attributes
+    ----------
+    title : str
+        What it is, in words.
+    referenced : bool
+        Whether it sees a healthy record of the same gearbox.
+    every : Interval
+        AUC of healthy against all damaged records.
+    states : dict of str to StateFound
+        Every damaged state, in the order of the configuration.
+    sizes : dict of str to FoundSize
+        By kind of damage; empty with too few healthy records.
+    records, specimens, healthy : int
+        On how many records of how many gearboxes it was judged, and how many of them are healthy.
+    basis : str
+        The column that it took most often, or nothing.
+    """
+
+    title: str
+    referenced: bool
+    every: Interval
+    states: dict[str, StateFound]
+    sizes: dict[str, FoundSize]
+    records: int
+    specimens: int
+    healthy: int
+    basis: str = ""
+
+    def numbers(self) -> dict[str, Any]:
+        """Return everything for JSON; undefined and unreached numbers are null."""
+        return {
+            "title": self.title,
+            "basis": self.basis or None,
+            "healthy_reference": self.referenced,
+            "records": self.records,
+            "specimens": self.specimens,
+            "healthy_records": self.healthy,
+            "auc": self.every.numbers(),
+            "states": {
+                name: {
+                    "kind": found.kind,
+                    "damaged_area_mm2": found.area_mm2,
+                    "auc": found.auc.numbers(),
+                    "share_of_alarms": found.share.numbers() if found.share else None,
+                }
+                for name, found in self.states.items()
+            },
+            "area_found_in_nine_of_ten_mm2": {kind: found.area_mm2.numbers() for kind, found in self.sizes.items()},
+        }
+
+
+def judged_detector(
+    title: str,
+    score: np.ndarray,
+    labels: Mapping[str, np.ndarray],
+    seed: int,
+    *,
+    referenced: bool = False,
+    basis: str = "",
+) -> Detector | None:
+    """Judge scores of records that the detector has not learnt from.
+
+    Parameters
+    ----------
+    title : str
+    score : (n,) float64
+        Larger means more damage; without NaN.
+    labels : mapping of str to (n,)
+        Columns `specimen_id`, `state`, `state_id`, `fault`, `damaged_area_mm2`; `through_face` where the set has it.
+    seed : int
+        Of the resamples.
+    referenced, basis
+        As of `Detector`.
+
+    Returns
+    -------
+    Detector or None
+        None where records are all healthy or all damaged.
+    """
+    healthy = labels["fault"] == HEALTHY
+    if healthy.all() or not healthy.any():
+        return None
+    specimen = labels["specimen_id"]
+    weights = bootstrap_weights(specimen, seed, RESAMPLES)
+    threshold = None
+    if healthy.sum() >= FEWEST_HEALTHY:
+        threshold = weighted_quantile(score[healthy], weights[:, healthy], 1.0 - FALSE_ALARMS)
+    damaged = set(labels["state"][~healthy].tolist())
+    kinds = damage_kinds(labels, [state for state in ordered_states(dict(labels)) if state in damaged])
+    states = {
+        state: _state(kind, score, labels, weights, threshold, labels["state"] == state)
+        for kind, members in kinds.items()
+        for state in members
+    }
+    return Detector(
+        title,
+        referenced,
+        _auc(score, ~healthy, weights, specimen),
+        states,
+        _sizes(score, labels, weights, kinds) if threshold is not None else {},
+        int(score.size),
+        int(np.unique(specimen).size),
+        int(healthy.sum()),
+        basis,
+    )
+
+
+def _auc(score: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> Interval:
+    return interval(weighted_auc(score, positive, weights, specimen), int(np.unique(specimen).size))
+
+
+def _state(
+    kind: str,
+    score: np.ndarray,
+    labels: Mapping[str, np.ndarray],
+    weights: np.ndarray,
+    threshold: np.ndarray | None,
+    of_state: np.ndarray,
+) -> StateFound:
+    rows = of_state | (labels["fault"] == HEALTHY)
+    auc = _auc(score[rows], of_state[rows], weights[:, rows], labels["specimen_id"][rows])
+    share = None
+    if threshold is not None:
+        own = weights[:, of_state]
+        with np.errstate(invalid="ignore"):  # a resample without this state
+            alarms = (own * (score[of_state] > threshold[:, None])).sum(axis=1) / own.sum(axis=1)
+        share = interval(alarms, int(np.unique(labels["specimen_id"][of_state]).size))
+    return StateFound(kind, float(np.median(labels[AREA][of_state])), auc, share)
+
+
+def _sizes(
+    score: np.ndarray, labels: Mapping[str, np.ndarray], weights: np.ndarray, kinds: Mapping[str, list[str]]
+) -> dict[str, FoundSize]:
+    healthy, found = labels["fault"] == HEALTHY, {}
+    for kind, members in kinds.items():
+        rows = healthy | np.isin(labels["state"], members)
+        curve = detection_curve(score[rows], healthy[rows], labels[AREA][rows], weights[:, rows], FALSE_ALARMS)
+        if curve is None:
+            continue
+        reached = size_interval(size_at(curve, FOUND))
+        found[kind] = FoundSize(reached, float(curve.size[0]), float(curve.size[-1]))
+    return found

@@ -1,0 +1,79 @@
+"""What judges a gearbox has not seen it: the best of many columns of noise is chance, one that shows damage is not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from diagnostics.attacks.column_attackers import column_auc
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.training.detectors import CLASSIFIER, INDICATOR, dealt, indicator_scores, judged_detectors
+
+GEARBOXES, NOISE_COLUMNS = 24, 400
+STATES = ("healthy", "slight", "severe")
+
+
+def matrix_of(values: np.ndarray, healthy_records: int = 1) -> FeatureMatrix:
+    states = ("healthy",) * (healthy_records - 1) + STATES
+    specimen, place = (part.ravel() for part in np.mgrid[:GEARBOXES, : len(states)])
+    state = np.array(states)[place]
+    labels = {
+        "record_id": np.arange(state.size),
+        "specimen_id": specimen,
+        "state": state,
+        "state_id": np.array([STATES.index(name) for name in state]),
+        "fault": np.where(state == "healthy", "healthy", "pitting"),
+        "damaged_area_mm2": np.array([(0.0, 1.0, 8.0)[STATES.index(name)] for name in state]),
+        "operating_point_id": np.zeros(state.size, int),
+        "repeat": np.where(state == "healthy", place, 0),
+        "class": state,
+    }
+    return FeatureMatrix(values, tuple(f"noise_{k}__x" for k in range(values.shape[1])), labels)
+
+
+def noise(records: int) -> np.ndarray:
+    return np.random.default_rng(4).lognormal(size=(records, NOISE_COLUMNS))
+
+
+def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_choose_it() -> None:
+    matrix = matrix_of(noise(3 * GEARBOXES))
+    damaged = matrix.labels["fault"] != "healthy"
+    within = np.abs(column_auc(matrix.values, damaged) - 0.5).max()
+    found = judged_detectors(matrix, None, seed=0).alone
+    assert within > 0.2  # chosen and judged on the same gearboxes, noise looks like a find
+    # 24 healthy against 48 damaged: the standard error of an AUC of noise is 0.07
+    for family in (INDICATOR, CLASSIFIER):
+        assert abs(found[family].every.value - 0.5) < 3 * 0.07
+
+
+def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
+    values = noise(3 * GEARBOXES)
+    matrix = matrix_of(values)
+    values[:, 7] = np.exp(-np.array([STATES.index(name) for name in matrix.labels["state"]]))
+    found = judged_detectors(matrix, None, seed=0)
+    single = found.alone[INDICATOR]
+    assert single.basis == "noise_7__x"
+    assert single.every.value == 1.0
+    assert found.strongest is single
+    assert not found.referenced  # one healthy record per gearbox: none is left to refer to
+
+
+def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> None:
+    values = noise(4 * GEARBOXES)
+    matrix = matrix_of(values, healthy_records=2)
+    gearbox = np.exp(np.random.default_rng(5).normal(scale=3.0, size=GEARBOXES))[matrix.labels["specimen_id"]]
+    damage = np.array([STATES.index(name) for name in matrix.labels["state"]])
+    values[:, 7] = gearbox * np.exp(damage)
+    found = judged_detectors(matrix, None, seed=0)
+    beside = found.referenced[INDICATOR]
+    assert beside.basis == "noise_7__x"
+    assert beside.every.value == 1.0 > found.alone[INDICATOR].every.value
+
+
+def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None:
+    specimen = np.repeat(np.arange(GEARBOXES), 3)
+    fold = dealt(specimen, seed=0)
+    assert all(np.unique(fold[specimen == box]).size == 1 for box in range(GEARBOXES))
+    values = np.array([[np.nan, 1.0], [2.0, 0.0]] * 6)
+    damaged, places = np.tile([True, False], 6), np.arange(12) // 2 % 3
+    assert set(indicator_scores(values, damaged, places)[1].tolist()) == {1}
+    assert indicator_scores(values[:, :1], damaged, places)[1].size == 0
