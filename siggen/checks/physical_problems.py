@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.shaft_problems import shaft_problems
+from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import (
     DamageModel,
@@ -69,6 +70,7 @@ def physical_problems(parsed: ParsedConfig) -> tuple[Problem, ...]:
     problems += variation_problems(parsed.sections, sound)
     problems += shaft_problems(parsed.sections, sound)
     problems += edge_problems(parsed.sections, sound)
+    problems += tilt_problems(parsed.sections, flanks)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 
