@@ -15,7 +15,8 @@ import numpy as np
 
 from diagnostics.attacks.trial import Attacker, Trial
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval
+from diagnostics.statistics.area_interval import area_interval
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights
 
 DEALS, MOST_FOLDS = 3, 4
 FEWEST_SPECIMENS = 4
@@ -118,8 +119,9 @@ def held_out(
         chosen[found.basis] += 1
     with np.errstate(invalid="ignore", divide="ignore"):
         samples = np.where(total[1] > 0.0, total[0] / total[1], np.nan)
-    count = int(np.unique(specimen).size)
-    return HeldOut(interval(samples, count), chosen.most_common(1)[0][0] if chosen else "", count)
+    smaller = min(np.unique(specimen[positive == side]).size for side in (True, False))
+    best = chosen.most_common(1)[0][0] if chosen else ""
+    return HeldOut(area_interval(samples, smaller), best, int(np.unique(specimen).size))
 
 
 def held_out_value(

@@ -13,7 +13,7 @@ from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.record_groups import column_group
 from diagnostics.audit.reference_pairs import reference_records
-from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.indicators.noise_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 
 METADATA, BYTE, ORDER, NOISE = "metadata", "bytes", "order", "noise"

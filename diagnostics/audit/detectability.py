@@ -19,7 +19,8 @@ from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import reference_records
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.damage_kind import damage_kind
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.statistics.area_interval import area_interval
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
 
 LEVELS, PLAIN = ("rms", "sideband_index_pinion_h1"), ("kurtosis", "fm4_pinion")
 ADDED = ("energy_ratio_pinion", "sideband_ratio_pinion_h1_k3")
@@ -106,11 +107,11 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
     for state in dict.fromkeys(labels["state"][~measured.healthy].tolist()):
         chosen = usable & (measured.healthy | (labels["state"] == state))
         specimen, positive = labels["specimen_id"][chosen], ~measured.healthy[chosen]
-        enough = min(np.unique(specimen[side]).size for side in (positive, ~positive)) >= FEWEST_SPECIMENS
+        smaller = min(np.unique(specimen[side]).size for side in (positive, ~positive))
         count = int(np.unique(specimen).size)
         auc = (
-            interval(state_auc(values[chosen], positive, specimen, seed), count)
-            if enough
+            area_interval(state_auc(values[chosen], positive, specimen, seed), smaller)
+            if smaller >= FEWEST_SPECIMENS
             else Interval(math.nan, math.nan, math.nan)
         )
         rows = labels["state"] == state

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from diagnostics.indicators.noise_levels import NOISE_LEVELS, noise_levels
 from diagnostics.signal.asynchronous_part import asynchronous_part, band_signal
 
 WINDOW_TURNS, AVERAGED_TURNS, FEWEST_TURNS = 40, 44, 16
@@ -26,8 +27,6 @@ FLOORS = {"floor_10_20hz_db": (10.0, 20.0), "floor_40_160hz_db": (40.0, 160.0), 
 TONALITIES = {"tonality_3500_5000hz_db": (3500.0, 5000.0), "tonality_5_8khz_db": (5e3, 8e3)}
 ENVELOPES = {"1_2khz": (1e3, 2e3), "2_4khz": (2e3, 4e3), "4_8khz": (4e3, 8e3)}
 DEPTH_BAND_HZ = (2e3, 8e3)
-NOISE_BANDS = 10
-LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE = 100.0, 0.4
 
 SPECTRAL = (
     *(f"shaft_{k}x_db" for k in (1, 2, 3, 4)),
@@ -39,7 +38,6 @@ CYCLIC = (
     *(f"noise_{what}_{band}" for band in ENVELOPES for what in ("kurtosis", "envelope_cv")),
     *("shaft_depth", "repeated_coherence", "repeated_kurtosis"),
 )
-NOISE_LEVELS = tuple(f"noise_band{k}_db" for k in range(NOISE_BANDS))
 BACKGROUND_LEVELS = (*SPECTRAL, *CYCLIC, *NOISE_LEVELS)
 
 
@@ -124,7 +122,8 @@ def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs
     from scipy import fft
 
     gear_order = teeth[0] / teeth[1]
-    spectrum = fft.rfft(asynchronous_part(turns, gear_order)) / turns.size
+    rest = asynchronous_part(turns, gear_order)
+    spectrum = fft.rfft(rest) / turns.size
     bin_hz = shaft_hz / turns.shape[0]
     found: dict[str, float] = {}
     for name, (low, high) in ENVELOPES.items():
@@ -132,7 +131,7 @@ def cyclic_levels(turns: np.ndarray, shaft_hz: float, teeth: tuple[int, int], fs
         found |= {f"noise_kurtosis_{name}": _kurtosis(wave), f"noise_envelope_cv_{name}": _variation(wave)}
     depths = [_depth(_band(spectrum, *DEPTH_BAND_HZ, bin_hz), turns.shape[0] * order) for order in (1.0, gear_order)]
     found["shaft_depth"] = max(depths) if all(map(math.isfinite, depths)) else math.nan
-    return found | _repeated(turns) | _noise_levels(spectrum, bin_hz, fs_hz)
+    return found | _repeated(turns) | noise_levels(rest, turns.shape[0], bin_hz, fs_hz)
 
 
 def _band(spectrum: np.ndarray, low_hz: float, high_hz: float, bin_hz: float) -> np.ndarray:
@@ -179,17 +178,6 @@ def _repeated(turns: np.ndarray) -> dict[str, float]:
         "repeated_coherence": float((first * second.conj()).sum().real) / size if known else math.nan,
         "repeated_kurtosis": float(np.square(square).mean() / square.mean() ** 2) if known else math.nan,
     }
-
-
-def _noise_levels(spectrum: np.ndarray, bin_hz: float, fs_hz: float) -> dict[str, float]:
-    """Return the median power of the noise per Hz in bands of equal ratio, in dB."""
-    power = np.square(np.abs(spectrum)) / bin_hz
-    edges = (np.geomspace(LOWEST_NOISE_HZ, HIGHEST_NOISE_SHARE * fs_hz, NOISE_BANDS + 1) / bin_hz).astype(int)
-    found = {}
-    for k, (low, high) in enumerate(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True)):
-        level = float(np.median(power[low:high])) if low < high <= power.size else 0.0
-        found[f"noise_band{k}_db"] = 10.0 * math.log10(level) if level > 0.0 else math.nan
-    return found
 
 
 def _floor(windows: np.ndarray, hz: np.ndarray, low: float, high: float) -> float:

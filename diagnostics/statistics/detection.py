@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import (
     RESAMPLES,
     Interval,
     Predictions,
     bootstrap_weights,
-    interval,
     weighted_auc,
 )
 
@@ -61,7 +61,8 @@ def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESA
 
     def judged(chosen: np.ndarray) -> Interval:
         areas = weighted_auc(score[chosen], positive[chosen], weights[:, chosen], found.specimen[chosen])
-        return interval(areas, int(np.unique(found.specimen[chosen]).size))
+        smaller = min(np.unique(found.specimen[chosen & (positive == side)]).size for side in (True, False))
+        return area_interval(areas, smaller)
 
     present = [k for k in range(len(found.classes)) if k != own and (found.truth == k).any()]
     return Detection(

@@ -25,9 +25,9 @@ from siggen.config.inheritance import inherited
 from siggen.config.yaml_source import read_yaml
 
 RUNS, CONFIGS, FIGURE = Path("runs"), Path("configs"), Path("docs/figures/presets_detectability.png")
-LENGTHS = (40, 60, 80, 100, 150)
+LENGTHS = (10, 20, 30, 40, 60, 80, 100, 150)
 """Of spalls through the face [0.01 mm]."""
-FACES = (40, 80, 95)
+FACES = (20, 40, 80, 95)
 STATES = (
     "healthy",
     "healthy_again",

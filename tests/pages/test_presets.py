@@ -21,7 +21,7 @@ from siggen.sets.verification import verify
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PRESETS = ("bench", "bench_parallel", "industrial", "ideal")
-LENGTHS_MM = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5]
+LENGTHS_MM = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5]
 SHARES = [0.2, 0.4, 0.8, 0.95]
 BENDING = ("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm", "waviness")
 THROUGH = "through_100"
