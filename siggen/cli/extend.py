@@ -9,7 +9,7 @@ import typer
 
 
 def extend(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     specimens: Annotated[
         str, typer.Option("--specimens", help="+N for N more gearboxes, or how many in all.", metavar="+N")
     ],

@@ -19,7 +19,10 @@ def generate(
     config: Annotated[
         Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", help="Folder or s3://... of the set: new, empty, or begun before."),
+    ],
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),

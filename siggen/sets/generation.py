@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from siggen.dataset.extensions import earlier_specimens
 from siggen.dataset.folder import is_finished
-from siggen.dataset.storage import LocalFolder
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.sets.interruption import Interruption
@@ -50,7 +50,7 @@ def generate(
     EngineError
         If a simulation raised, or workers kept dying. Committed shards stay.
     """
-    storage = LocalFolder(out)
+    storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
             return unchanged(storage)
