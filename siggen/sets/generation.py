@@ -37,7 +37,8 @@ def generate(
     progress : callable, optional
         Called with (records done, records of the set).
     engine : Engine or str, optional
-        'serial', 'processes' (the default), or an object with `map` and `workers` as `siggen.engines.protocol` has it.
+        'serial', 'processes' (the default), 'dask', 'ray', or an object with `map` and `workers` as
+        `siggen.engines.protocol` has it.
 
     Raises
     ------
