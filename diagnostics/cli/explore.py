@@ -9,7 +9,9 @@ import typer
 
 
 def explore(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help="The page. Default: DIR_explore.html.", show_default=False),
@@ -30,14 +32,14 @@ def explore(
 
     Example: siggen-diagnostics explore data/quickstart --out quickstart.html
     """
+    from diagnostics.base.beside import beside
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.explore.explorer import write_explorer
     from siggen.dataset.reading import open as open_set
     from siggen.errors import UsageError
 
-    folder = directory.resolve()
-    path = out or folder.with_name(f"{folder.name}_explore.html")
+    dataset = open_set(directory)
+    path = out or beside(dataset.path, "_explore.html")
     if path.is_dir():
         raise UsageError(f"--out {path}: received a folder; allowed is the name of a file, such as {path / 'set.html'}")
-    dataset = open_set(directory)
     typer.echo(str(write_explorer(dataset, path, limit=limit, full=full, workers=workers, stage=terminal_stage)))

@@ -20,7 +20,9 @@ from diagnostics.cli.training_options import (
 
 
 def report(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -40,6 +42,7 @@ def report(
 
     Example: siggen-diagnostics report data/quickstart --studies
     """
+    from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -51,7 +54,7 @@ def report(
         check_device(device)
     own = load_indicators(indicator)
     dataset, second = open_sets(directory, test, channel or ())
-    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_report")
+    folder = out or beside(dataset.path, "_report")
     options = NetworkOptions(cnn, device, augment, ablation=studies)
     path = write_report(
         dataset, folder, seed, network=options, other=second, own=own, with_studies=studies, stage=terminal_stage

@@ -9,7 +9,7 @@ import typer
 
 
 def publish(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     to: Annotated[Path | None, typer.Option("--to", help="New or empty folder to write.", metavar="PATH")] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Check all, list what would be written.")] = False,
     facts: Annotated[

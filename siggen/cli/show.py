@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def show(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     record: Annotated[int, typer.Option("--record", min=0, help="Id of the record (column record_id).")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw instead of the table.")] = None,
     channel: Annotated[str | None, typer.Option("--channel", help="Channel to draw; by default the first.")] = None,

@@ -9,7 +9,7 @@ import typer
 
 
 def verify(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     sample: Annotated[int, typer.Option("--sample", min=0, help="Records to simulate again.")] = 4,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:

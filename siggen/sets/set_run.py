@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from itertools import islice
-from pathlib import Path
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from siggen.columns.column import Column
@@ -61,7 +61,7 @@ class Generation:
         Of the whole set.
     """
 
-    path: Path
+    path: PurePath
     rows: int
     failures: tuple[RecordFailure, ...]
     records_made: int = 0
@@ -153,7 +153,7 @@ class SetRun:
             raise InterruptionError(self._how_to_continue()) from None
         sidecars = [self.sidecars[shard.key] for shard in wanted]
         return Generation(
-            path=Path(self.storage.location),
+            path=self.storage.path,
             rows=sum(sidecar.data.rows for sidecar in sidecars),
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
@@ -175,7 +175,7 @@ class SetRun:
         sidecars = [self.sidecars[shard.key] for shard in self.planned]
         manifest = self._conclude(sidecars, taken_over)
         return Generation(
-            path=Path(self.storage.location),
+            path=self.storage.path,
             rows=manifest["rows"],
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
@@ -324,4 +324,4 @@ def unchanged(storage: Storage) -> Generation:
     """Return what a call did that found the set finished."""
     manifest = read_manifest(storage)
     failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
-    return Generation(Path(storage.location), manifest["rows"], failures, was_finished=True)
+    return Generation(storage.path, manifest["rows"], failures, was_finished=True)

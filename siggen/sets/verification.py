@@ -29,7 +29,8 @@ from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.seal import unsealed
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
-from siggen.dataset.storage import LocalFolder, Storage, sha256
+from siggen.dataset.storage import Storage, sha256
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
@@ -110,7 +111,7 @@ def verify(
     DatasetError
         If there is no finished set.
     """
-    storage = LocalFolder(path)
+    storage = storage_at(path)
     if not storage.exists(MANIFEST):
         read_manifest(storage)  # says what is there instead
     try:
@@ -148,11 +149,12 @@ def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
 
 
 def _file_mismatches(storage: Storage, files: Mapping[str, Mapping[str, Any]]) -> Iterator[Mismatch]:
+    sizes = storage.sizes()
     for name, facts in sorted(files.items()):
-        if not storage.exists(name):
+        if name not in sizes:
             yield Mismatch(name, "missing")
-        elif storage.size(name) != facts["bytes"]:
-            yield Mismatch(name, f"{storage.size(name)} bytes instead of {facts['bytes']}")
+        elif sizes[name] != facts["bytes"]:
+            yield Mismatch(name, f"{sizes[name]} bytes instead of {facts['bytes']}")
         elif sha256(storage, name) != facts["sha256"]:
             yield Mismatch(name, "content differs (SHA-256)")
 
