@@ -4,7 +4,7 @@ Explore.chosen = null;
 Explore.facts = (row) => {
   const record = Explore.data.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
-  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}.`;
+  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };
 
 Explore.healthyOf = (row) => (document.getElementById("overlay").checked ? Explore.data.overlay[row] : null);
@@ -46,14 +46,21 @@ Explore.draw = () => {
 
 Explore.begin = () => {
   Explore.listen();
-  Explore.filterRecords();
+  const asked = Explore.address();
   Explore.buildScatter(document.getElementById("scatter"));
   document.getElementById("channel").addEventListener("change", Explore.draw);
   document.getElementById("overlay").addEventListener("change", Explore.draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
   addEventListener("resize", Explore.resize);
-  const damaged = Explore.data.records.findIndex((record) => record.fault !== "healthy");
-  Explore.open(Math.max(damaged, 0));
+  addEventListener("hashchange", () => {
+    const row = Explore.address();
+    const shown = Explore.visible();
+    if (row >= 0) Explore.open(row);
+    else if (shown.length) Explore.open(Number(shown[0].dataset.row));
+  });
+  const shown = Explore.visible().map((line) => Number(line.dataset.row));
+  const damaged = shown.find((row) => Explore.data.records[row].fault !== "healthy");
+  Explore.open(asked >= 0 ? asked : damaged ?? shown[0] ?? 0);
 };
 
 Explore.begin();
