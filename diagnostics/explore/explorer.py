@@ -14,7 +14,7 @@ from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records
 from diagnostics.explore.missing_parts import missing_parts
-from diagnostics.explore.payload import page_payload
+from diagnostics.explore.payload import page_payload, set_source
 from diagnostics.explore.predictions import predicted_labels
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
@@ -28,6 +28,14 @@ SCRIPTS = (
     *("spectra.js", "averages.js", "internals.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
 )
 STYLES = ("vendored/uPlot.min.css", "explorer.css")
+Columns = tuple[tuple[str, str], ...]
+SET_COLUMNS = (
+    *(("record_id", "Record"), ("state", "State"), ("damaged_area_mm2", "Area [mm²]"), ("speed_hz", "Speed [Hz]")),
+    *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),
+)
+SET_FILTERS = (("state", "State"), ("split", "Split"), ("speed_hz", "Speed [Hz]"), ("torque_nm", "Load [N m]"))
+NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"))
+NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
 IN_SCRIPT: dict[str, str | int | None] = {
     "<": "\\u003c",
@@ -103,7 +111,7 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
     said = predicted_labels(table, options.model, options.own) if options.model else {}
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
     rows = chosen_records(specimens, options.limit)
-    payload = page_payload(dataset, table, rows, stage, full=options.full)
+    payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)
     for place, record in enumerate(payload["records"]):
         record.update({name: str(values[rows[place]]) for name, values in said.items()})
     payload["served"] = options.served
@@ -123,9 +131,17 @@ def _facts(dataset: Dataset, payload: dict[str, Any], records: int, options: Exp
         "missing": missing_parts(
             labels, payload["overlay"], bool(payload["damage"]), internals, named=options.model is not None
         ),
-        "named": options.model is not None,
         "served": options.served,
+        "columns": _columns(SET_COLUMNS, NAMED_COLUMNS if options.model else ()),
+        "filters": [*SET_FILTERS, *(NAMED_FILTERS if options.model else ())],
     }
+
+
+def _columns(
+    columns: tuple[tuple[str, str], ...], after_the_state: tuple[tuple[str, str], ...]
+) -> list[tuple[str, str]]:
+    """Return key and title of the columns of the table."""
+    return [*columns[:2], *after_the_state, *columns[2:]]
 
 
 def explorer_page(facts: dict[str, Any], payload: dict[str, Any]) -> str:

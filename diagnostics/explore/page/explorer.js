@@ -4,6 +4,8 @@ Explore.chosen = null;
 Explore.facts = (row) => {
   const record = Explore.data.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
+  const load = record.torque_nm === null ? "" : `, load ${Explore.number(record.torque_nm)}`;
+  if (Explore.data.measured) return `${record.name}, ${record.state}, pinion ${Explore.number(record.speed_hz)} Hz${load}, ${record.teeth_pinion} and ${record.teeth_gear} teeth.`;
   return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };
 
@@ -13,7 +15,11 @@ Explore.showOverlayNote = (row) => {
   const note = document.getElementById("overlay-note");
   const other = Explore.data.overlay[row];
   note.hidden = !document.getElementById("overlay").checked;
-  note.textContent = other === null
+  const measured = Explore.data.measured;
+  const laid = other === null ? null : Explore.data.records[other];
+  note.textContent = measured
+    ? laid === null ? "No other recording is known to be healthy: nothing is laid over." : `Laid over: ${laid.name}, the healthy recording nearest in speed.`
+    : other === null
     ? "This page has no other healthy record of this gearbox at this operating point: nothing is laid over."
     : `Laid over: record ${Explore.data.records[other].record_id}, healthy, same gearbox and operating point.`;
 };
@@ -22,7 +28,7 @@ Explore.open = (row) => {
   Explore.chosen = row;
   const record = Explore.data.records[row];
   const title = document.getElementById("chosen-title");
-  title.replaceChildren(`Record ${record.record_id}: `, Explore.element("bdi", record.state));
+  title.replaceChildren(`${Explore.data.measured ? "Recording" : "Record"} ${record.record_id}: `, Explore.element("bdi", Explore.data.measured ? record.name : record.state));
   document.getElementById("chosen-facts").textContent = Explore.facts(row);
   Explore.markRow();
   Explore.draw();
