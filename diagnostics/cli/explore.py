@@ -166,7 +166,7 @@ def _recordings_page(
         if said.teeth is None:
             raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
         shown = of_files(targets, healthy, two_gears(said.teeth), said.facts(), said.speed_range_hz(), terminal_stage)
-        name = ", ".join(targets[:3])
+        name = ", ".join(Path(target).name for target in targets[:3])
     return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
 
 
