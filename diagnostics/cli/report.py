@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.opened import Open, opened
 from diagnostics.cli.training_options import (
     Augment,
     Channels,
@@ -17,6 +18,8 @@ from diagnostics.cli.training_options import (
     WithNetwork,
     WithStudies,
 )
+
+EXPLORER = "explorer.html"
 
 
 def report(
@@ -36,6 +39,13 @@ def report(
     cnn: WithNetwork = True,
     device: Device = "cpu",
     augment: Augment = True,
+    explore: Annotated[
+        bool,
+        typer.Option(
+            "--explore", help="Also write explorer.html, to which records and counts of the report then lead."
+        ),
+    ] = False,
+    show: Open = False,
     seed: Seed = 0,
 ) -> None:
     """Compute indicators, train classifiers, and write report.html, metrics.json, tables, figures and models.
@@ -57,6 +67,22 @@ def report(
     folder = out or beside(dataset.path, "_report")
     options = NetworkOptions(cnn, device, augment, ablation=studies)
     path = write_report(
-        dataset, folder, seed, network=options, other=second, own=own, with_studies=studies, stage=terminal_stage
+        dataset,
+        folder,
+        seed,
+        network=options,
+        other=second,
+        own=own,
+        with_studies=studies,
+        explorer=EXPLORER if explore else "",
+        stage=terminal_stage,
     )
+    if explore:
+        from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+
+        model = folder / "models"
+        known = model if (model / "model.json").is_file() else None
+        write_explorer(dataset, folder / EXPLORER, ExplorerOptions(model=known, own=own), terminal_stage)
     typer.echo(str(path))
+    if show:
+        opened(path)
