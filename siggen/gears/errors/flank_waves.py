@@ -49,7 +49,7 @@ def missing_m(
     roll, sense = radius / gear.base_radius_m, 1.0 if which == "pinion" else -1.0
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
     # b over ρ: κb per wave on the revolution. Tables of few teeth may begin below the base circle, where no flank is.
-    seen = np.divide(half_width_m, radius, out=np.zeros_like(half_width_m), where=radius > 0.0)
+    seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
     total = np.zeros((gear.teeth, position_m.size))
     for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
         total += amplitude * j0(n * seen) * np.cos(n * (roll + tooth[:, None]) + phase)
