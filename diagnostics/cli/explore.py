@@ -36,7 +36,7 @@ def explore(
         list[str],
         typer.Argument(
             metavar="DIR | MACHINE RECORDING... | RECORDING...",
-            help="Folder or s3://... of a finished set; or the folder that `baseline` wrote, with recordings; or recordings alone.",
+            help="Folder or s3://... of a finished set; the folder that `baseline` wrote, with recordings; recordings.",
             show_default=False,
         ),
     ],
