@@ -36,7 +36,7 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
-BEND = 2e-3
+BEND = 4e-3
 """Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest."""
 
 
