@@ -15,6 +15,7 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
 from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
+from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
 from siggen.dataset.extensions import EXTENSIONS
@@ -317,6 +318,7 @@ def _facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
         "fs_hz": float(config.fs_hz),
         "duration_s": float(config.duration_s),
         "channels": [asdict(channel) for channel in channels(config)],
+        **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
 

@@ -20,6 +20,7 @@ from siggen.dataset.manifest import (
     DAMAGE_FOLDER,
     MANIFEST,
     METADATA_FOLDER,
+    PHYSICS,
     RUN,
     read_manifest,
     simulation_version,
@@ -127,7 +128,7 @@ def verify(
     comparison = "none asked for"
     if sample and mismatches:
         comparison = "none, since files differ"
-    elif sample and (reason := _why_not_again(manifest, sample)):
+    elif sample and (reason := why_not_again(manifest, sample)):
         comparison = reason
     elif sample:
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
@@ -137,7 +138,7 @@ def verify(
     return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked)
 
 
-def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
+def why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
     """Return why no record of a set can be compared with a new simulation, or an empty string."""
     made_by, schema = simulation_version(manifest), manifest.get("schema_version")
     head = f"{HASHES_ALONE}; {counted(min(sample, manifest.get('rows', sample)), 'record')} not simulated again: "
@@ -165,12 +166,13 @@ def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismat
 
 
 def _run(storage: Storage) -> Iterator[Mismatch]:
-    """Check run.json by its own digest; it may be left out when a set is published."""
-    if storage.exists(RUN):
-        try:
-            unsealed(RUN, storage.get(RUN))
-        except VerificationError as error:
-            yield Mismatch(RUN, str(error))
+    """Check run.json and physics.json by their own digests; they may be left out when a set is published."""
+    for name in (RUN, PHYSICS):
+        if storage.exists(name):
+            try:
+                unsealed(name, storage.get(name))
+            except VerificationError as error:
+                yield Mismatch(name, str(error))
 
 
 def _simulate_again(
@@ -178,7 +180,7 @@ def _simulate_again(
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
-        config = _config(storage, dataset.manifest)
+        config = stored_config(storage, dataset.manifest)
     except (ConfigError, DatasetError) as error:
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
@@ -202,8 +204,14 @@ def _simulate_again(
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
-def _config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
-    """Return the set's configuration; its identity must be the one that this version computes, too."""
+def stored_config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
+    """Return the set's configuration; its identity must be the one that this version computes, too.
+
+    Raises
+    ------
+    ConfigError, DatasetError
+        If this version reads it otherwise.
+    """
     from siggen.config import parse, parse_yaml
 
     parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG))
