@@ -51,6 +51,7 @@ def generate(
     """
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
+    from siggen.engines.processes import default_workers
     from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
@@ -60,7 +61,7 @@ def generate(
     loaded = load_config(config, overrides or ())
     for sentence in implausible(loaded):
         typer.echo(f"implausible: {sentence}", err=True)
-    if told := compilation_text():
+    if told := compilation_text(loaded, default_workers() if workers is None else workers):
         typer.echo(told, err=True)
     chosen = None if part is None else part_of(part)
     runner = engine if address is None else engine_of(engine, workers, address)

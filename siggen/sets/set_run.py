@@ -26,10 +26,12 @@ from siggen.dataset.seal import sealed
 from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import Storage
+from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
 from siggen.errors import EXIT_INTERRUPTED, SiggenError
 from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shards
+from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
 
@@ -197,11 +199,21 @@ class SetRun:
         """Simulate and write shards one after the other, from one stream of chunks."""
         work = {shard.key: self._chunks(shard) for shard in missing}
         tasks = (chunk for pieces in work.values() for chunk in pieces)
+        if missing and isinstance(self.engine, ProcessEngine):
+            self._compile(self.engine)
         function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
         with running(self.engine, function, tasks) as results:
             ordered = in_order(results)
             for shard in missing:
                 self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
+
+    def _compile(self, engine: ProcessEngine) -> None:
+        """Compile once for all workers, which would compile the same side by side."""
+        parts = self.physics.to_compile(self.config)
+        if parts:
+            with running(engine, run_part, parts) as compiled:
+                for _ in compiled:
+                    self.interruption.check()
 
     def _chunks(self, shard: ShardPlan) -> list[Chunk]:
         config = self.config
