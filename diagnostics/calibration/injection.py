@@ -120,8 +120,7 @@ def _continued(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
     found = np.interp(time_s, pulses_s, turns)
     first, last = pulses_s[1] - pulses_s[0], pulses_s[-1] - pulses_s[-2]
     found = np.where(time_s < pulses_s[0], (time_s - pulses_s[0]) / first, found)
-    turned: np.ndarray = np.where(time_s > pulses_s[-1], turns[-1] + (time_s - pulses_s[-1]) / last, found)
-    return turned
+    return np.asarray(np.where(time_s > pulses_s[-1], turns[-1] + (time_s - pulses_s[-1]) / last, found))
 
 
 def control_difference(difference: Difference, kind: str, rng: np.random.Generator) -> Difference:
@@ -146,4 +145,4 @@ def _control(signal: np.ndarray, kind: str, rng: np.random.Generator) -> np.ndar
         return np.asarray(rng.standard_normal(signal.size) * float(np.sqrt(np.mean(signal**2))))
     spectrum = np.fft.rfft(signal)
     spectrum[1:-1] *= np.exp(2j * np.pi * rng.random(spectrum.size - 2))
-    return np.fft.irfft(spectrum, signal.size)
+    return np.asarray(np.fft.irfft(spectrum, signal.size))
