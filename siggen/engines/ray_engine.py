@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from typing import Any
 
+from siggen.engines.orphan import end_with
 from siggen.engines.processes import TASK_ATTEMPTS, WINDOW_PER_WORKER
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
@@ -63,7 +64,9 @@ class RayEngine:
         """
         source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
         with self._cluster() as ray:
-            run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(answer)
+            run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(
+                answer if self.address is not None else _child_answer
+            )
             everywhere = ray.put(function)
             while True:
                 while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
@@ -116,6 +119,12 @@ def _own_signals() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def _child_answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+    """Answer on a worker of this machine's cluster: its parent is Ray's own process, which ends with the driver."""
+    end_with(os.getppid())
+    return answer(function, task)
 
 
 def _value(ray: Any, reference: Any, task: object) -> Any:
