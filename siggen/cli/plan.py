@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.working import working
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -38,7 +40,8 @@ def plan(
 
     from siggen.checks.loading import load_config
 
-    summary = plan_summary(load_config(config, overrides or ()))
+    with working("checking the configuration"):
+        summary = plan_summary(load_config(config, overrides or ()))
     if as_json:
         typer.echo(json.dumps(summary, indent=2))
         return

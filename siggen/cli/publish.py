@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def publish(
     folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
@@ -35,7 +37,8 @@ def publish(
 
     if (to is None) != dry_run:
         raise UsageError("publish: received both or neither of --to and --dry-run; allowed: one of the two")
-    made = publication(folder, facts, audit) if to is None else publish_set(folder, to, facts, audit)
+    with working("reading the set", compiles=False):
+        made = publication(folder, facts, audit) if to is None else publish_set(folder, to, facts, audit)
     typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
         typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)

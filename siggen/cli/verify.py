@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def verify(
     folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
@@ -26,7 +28,8 @@ def verify(
     from siggen.sets.verification import HASHES_ALONE, problem_lines
     from siggen.sets.verification import verify as verify_set
 
-    found = verify_set(folder, sample)
+    with working("comparing files with their hashes, and records with a new simulation", compiles=sample > 0):
+        found = verify_set(folder, sample)
     if as_json:
         typer.echo(json.dumps({**asdict(found), "ok": not found.mismatches}, indent=2))
     else:
