@@ -39,12 +39,14 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
     check_picture_file(path)
     try:
         import matplotlib as mpl
+
+        with mpl.rc_context(figure_style()):
+            figure = draw()
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
     try:
-        with mpl.rc_context(figure_style()):
-            figure = draw()
-            path.parent.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with mpl.rc_context(figure_style()):  # letters are set when the file is written
             figure.savefig(path, dpi=dpi)
     except OSError as error:
         raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error

@@ -73,11 +73,12 @@ class Read(HTMLParser):
             self.cells[-1] += text
 
 
-def renamed(dataset: MemoryDataset) -> MemoryDataset:
+def renamed(dataset: MemoryDataset, names: dict[str, str] | None = None) -> MemoryDataset:
+    names = names or NAMES
     place = dataset.table.schema.get_field_index("state")
-    states = [NAMES[state] for state in dataset.table.column("state").to_pylist()]
+    states = [names[state] for state in dataset.table.column("state").to_pylist()]
     dataset.table = dataset.table.set_column(place, "state", pa.array(states))
-    dataset.manifest = {**dataset.manifest, "name": NAMES["healthy"]}
+    dataset.manifest = {**dataset.manifest, "name": names["healthy"]}
     return dataset
 
 
