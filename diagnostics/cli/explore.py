@@ -24,7 +24,6 @@ from diagnostics.cli.recording_options import (
     two_gears,
 )
 from diagnostics.cli.training_options import OwnIndicators
-from siggen.dataset.object_path import object_path
 from siggen.errors import UsageError
 
 MACHINE_FILE = "machine.json"
@@ -104,11 +103,9 @@ def explore(
 
     Example: siggen-diagnostics explore rig january.csv february.csv august.csv
     """
-    first = Path(targets[0])
-    place = first.with_suffix("") if first.is_file() else object_path(first) or first
-    path = out or beside(place, "_explore.html")
-    if path.is_dir():
-        raise UsageError(f"--out {path}: received a folder; allowed is the name of a file, such as {path / 'set.html'}")
+    first, path = Path(targets[0]), out
+    if out and out.is_dir():
+        raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
     if (first / MACHINE_FILE).is_file() or teeth or file_rows(targets[0])[0][0].is_file():
         if given := [
             name for name, said in (("--serve", serve), ("--model", model), ("--indicator", indicator)) if said
@@ -117,27 +114,30 @@ def explore(
         facts = RecordingDescription(
             teeth, speed_range, fs, channel, unit, sensitivity, full_scale, tacho, tacho_pulses
         )
-        typer.echo(str(_recordings_page(targets, healthy or [], facts, path, full)))
+        place = first.with_suffix("") if first.is_file() else first
+        path = _recordings_page(targets, healthy or [], facts, out or beside(place, "_explore.html"), full)
     elif len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
     else:
         if serve and (out or full):
             raise UsageError("--serve writes no file and gives every sample; leave out --out and --full")
-        if _set_page(first, path, (limit, full, workers), model, indicator, (serve, port, show)):
-            return
+        path = _set_page(first, out, (limit, full, workers), model, indicator, (serve, port, show))
+    if path is None:
+        return
+    typer.echo(str(path))
     if show:
         opened(path)
 
 
 def _set_page(
     folder: Path,
-    path: Path,
+    out: Path | None,
     amount: tuple[int, bool, int],
     model: Path | None,
     indicator: list[str] | None,
     serving: tuple[bool, int, bool],
-) -> bool:
-    """Write or serve the page of a set; return whether it was served."""
+) -> Path | None:
+    """Serve the page of a set, or write it and return where."""
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
     from diagnostics.indicators.own_indicator import load_indicators
@@ -148,9 +148,8 @@ def _set_page(
     options = ExplorerOptions(limit=limit, full=full, served=serving[0], workers=workers, model=model, own=own)
     if serving[0]:
         _serve(*explorer_of(dataset, options, terminal_stage), dataset, *serving[1:])
-        return True
-    typer.echo(str(write_explorer(dataset, path, options, terminal_stage)))
-    return False
+        return None
+    return write_explorer(dataset, out or beside(dataset.path, "_explore.html"), options, terminal_stage)
 
 
 def _recordings_page(

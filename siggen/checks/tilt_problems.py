@@ -3,14 +3,15 @@
 Derived: springs k at the distances l from the gear's middle (`tilting_shaft`), a force F in that middle, towards the
 bearings, and no moment give, per axis, the tilt F S_1/(S_0 S_2 - S_1²) with S_j = Σ k l^j. The flanks' tilt is the sum
 over axes and gears, each times the squared share of the line of action along the axis; bounds of the numbers enter gear
-by gear. How far a motion swings about that is known only when it is simulated: it then ends as `outside_model`.
+by gear. Refused is what tilts too far in every gearbox of a set; where only some do, plan says so. How far a motion
+swings about that is known only when it is simulated: it then ends as `outside_model`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,22 +29,49 @@ MEMBERS = ("pinion", "gear")
 
 
 def tilt_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Iterator[Problem]:
-    """Yield the shaft that tilts most where the steady torque alone tilts the flanks too far, at the bounds."""
+    """Yield the shaft that tilts most where the steady torque alone tilts all flanks of a pair too far."""
     if not set(NEEDED) <= sections.keys() or sections["dynamics"].shafts is None:
         return
+    for pair in pairs:
+        tilts = flank_tilts(sections, pair)
+        if tilts.least_rad > tilts.limit_rad:
+            yield _problem(sections["dynamics"], pair, tilts)
+            return
+
+
+class FlankTilts(NamedTuple):
+    """Tilts of a pair's flanks under the largest steady torque, and how far the contact's expansion holds."""
+
+    torque_nm: float
+    limit_rad: float
+    ranges_rad: dict[str, tuple[float, float]]
+    """Least and largest tilt of pinion and gear, with signs."""
+
+    @property
+    def least_rad(self) -> float:
+        """Least size of the sum over both gears."""
+        return _least(self.ranges_rad.values())
+
+    @property
+    def largest_rad(self) -> float:
+        """Largest size of the sum over both gears."""
+        low, high = map(sum, zip(*self.ranges_rad.values(), strict=True))
+        return float(max(-low, high))
+
+
+def flank_tilts(sections: Mapping[str, Any], pair: GearPair) -> FlankTilts:
+    """Return the tilts of a pair under the largest torque of all operating points, over the bounds of the numbers."""
     dynamics, points = sections["dynamics"], sections["operating_points"]
     torque_nm = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
-    for pair in pairs:
-        options = face_options(dynamics, largest_force_n(points, pair))
-        solver = table_solver(pair, stiffness_options(sections["stiffness"]), options, np.zeros(1))
-        limit = largest_tilt_rad(solver)
-        ranges = {which: static_tilts_rad(dynamics, which, pair, torque_nm) for which in MEMBERS}
-        low, high = (sum(ranges[which][end] for which in MEMBERS) for end in (0, 1))
-        if max(-low, high) > limit:
-            worst = max(MEMBERS, key=lambda which: max(-ranges[which][0], ranges[which][1]))
-            others = tuple(ranges[which] for which in MEMBERS if which != worst)
-            yield _problem(dynamics, worst, pair, torque_nm, limit, others[0])
-            return
+    options = face_options(dynamics, largest_force_n(points, pair))
+    solver = table_solver(pair, stiffness_options(sections["stiffness"]), options, np.zeros(1))
+    ranges = {which: static_tilts_rad(dynamics, which, pair, torque_nm) for which in MEMBERS}
+    return FlankTilts(torque_nm, largest_tilt_rad(solver), ranges)
+
+
+def _least(ranges_rad: Iterable[tuple[float, float]]) -> float:
+    low, high = map(sum, zip(*ranges_rad, strict=True))
+    return float(max(low, -high, 0.0))
 
 
 def static_tilts_rad(
@@ -78,25 +106,20 @@ def _tilt_per_n(beam: Beam, bearing_n_per_m: float, seat_n_per_m: float) -> floa
     return first / (zeroth * second - first**2)
 
 
-def _problem(
-    dynamics: Dynamics,
-    which: str,
-    pair: GearPair,
-    torque_nm: float,
-    limit: float,
-    other: tuple[float, float],
-) -> Problem:
-    """Return what is wrong with a shaft, and the least diameter that would do beside the other one as it is."""
+def _problem(dynamics: Dynamics, pair: GearPair, tilts: FlankTilts) -> Problem:
+    """Return what is wrong with the worse shaft, and the least diameter that would do beside the other one as it is."""
+    which, kept = sorted(MEMBERS, key=lambda member: -_least([tilts.ranges_rad[member]]))
+    torque_nm, limit = tilts.torque_nm, tilts.limit_rad
 
     def tilt(diameter_mm: float | None) -> float:
-        low, high = static_tilts_rad(dynamics, which, pair, torque_nm, diameter_mm)
-        return max(-low - other[0], high + other[1])
+        return _least([static_tilts_rad(dynamics, which, pair, torque_nm, diameter_mm), tilts.ranges_rad[kept]])
 
     shaft: Shaft = getattr(dynamics.shafts, which)
     thin, thick = bounds(shaft.diameter_mm)[0], 2e3 * pair.member(which).root_radius_m
     received = (
-        f"{shaft.diameter_mm}, with which the flanks tilt by {1e6 * tilt(None):.3g} urad under {torque_nm:g} N m at "
-        "the bounds of shafts and bearings"
+        f"{shaft.diameter_mm}, with which the flanks tilt by {1e6 * tilt(None):.3g} urad under {torque_nm:g} N m, "
+        f"with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
+        f"dynamics.{which}.bearing_stiffness_x_n_per_m {getattr(dynamics, which).bearing_stiffness_x_n_per_m}"
     )
     allowed = f"allowed: a tilt of at most {1e6 * limit:.3g} urad (4 % of the largest approach)"
     if tilt(thick) > limit:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from siggen.config.oil import oils_of
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -143,6 +142,8 @@ def across_text(config: Config) -> str:
 
 def friction_text(config: Config) -> str:
     """Say whether and how the flanks rub."""
+    from siggen.config.oil import oils_of  # not for those who read: it loads the model of the configuration
+
     return FRICTION[config.dynamics.rubbing].format(oil=" or ".join(oils_of(config.dynamics.friction.oil)))
 
 
