@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench reports reference docs clean
+.PHONY: demo test test-slow lint bench reports pages reference docs clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -40,6 +40,10 @@ bench: $(STAMP)
 
 reports: $(STAMP)
 	$(BIN)/python docs/scripts/report_pages.py
+
+# With 20 gearboxes each, beside quickstart.
+pages: $(STAMP)
+	$(BIN)/python docs/scripts/report_pages.py quickstart bench_20 industrial_20 rig
 
 # The pages that are printed by a script; tests compare them with what it prints.
 reference: $(STAMP)

@@ -58,9 +58,11 @@ def detectability_figure(variants: dict[str, list[Detection]]) -> Figure:
     names = list(dict.fromkeys(name for name, _, _ in lines))
     faults = list(dict.fromkeys(fault for _, fault, _ in lines))
     figure, axes = new_figure(len(names), 1, height_in=0.9 + 1.9 * len(names), sharex=True, sharey=True)
+    named: set[str] = set()
     for name, fault, entries in lines:
         colour, marker = FAULT_COLOURS[faults.index(fault) % len(FAULT_COLOURS)], MARKERS[faults.index(fault) % 5]
-        _draw_ladder(axes[names.index(name), 0], entries, colour, marker, fault if name == names[0] else None)
+        _draw_ladder(axes[names.index(name), 0], entries, colour, marker, None if fault in named else fault)
+        named.add(fault)
     for axis, name in zip(axes[:, 0], names, strict=True):
         _frame(axis, name)
     axes[0, 0].set_xlim(0.0, 1.05 * axes[0, 0].get_xlim()[1])

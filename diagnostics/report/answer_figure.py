@@ -33,7 +33,7 @@ def answer_figure(found: Detectors) -> Figure | None:
     """Return AUC by state over its damaged area above, sizes found in nine of ten below; None without any detector."""
     from matplotlib.figure import Figure
 
-    panels = [("On an unseen gearbox", found.alone), ("Beside its own healthy record", found.referenced)]
+    panels = [("On an unseen gearbox", found.alone), ("With its healthy record", found.referenced)]
     panels = [(title, detectors) for title, detectors in panels if detectors]
     if not panels:
         return None
@@ -112,6 +112,7 @@ def _scale(axis: Any, detectors: Sequence[Detector]) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     sizes = [state.area_mm2 for detector in detectors for state in detector.states.values() if state.area_mm2 > 0.0]
+    sizes += [end for one in detectors for size in one.sizes.values() for end in (size.smallest_mm2, size.largest_mm2)]
     if not sizes:
         return
     axis.set_xscale("log")

@@ -72,15 +72,17 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None) -> str:
             f"the set ({smallest}: {_share(states[smallest])})."
         )
     if size.reached:
-        high = _area(size.area_mm2.high) if math.isfinite(size.area_mm2.high) else "beyond the largest"
-        return (
-            f"{capitalised(kind)} is found in nine of ten records from {_area(size.area_mm2.value)} on "
-            f"({_area(size.area_mm2.low)} to {high})."
-        )
+        return f"{capitalised(kind)} is found in nine of ten records from {_area_limits(size)}."
     return (
         f"{capitalised(kind)} of up to {_area(size.largest_mm2)} is not found in nine of ten records ({largest}: "
         f"{_share(states[largest])})."
     )
+
+
+def _area_limits(size: FoundSize) -> str:
+    """Return the area from which on damage is found, with its limits."""
+    high = _area(size.area_mm2.high) if math.isfinite(size.area_mm2.high) else "beyond the largest"
+    return f"{_area(size.area_mm2.value)} on ({_area(size.area_mm2.low)} to {high})"
 
 
 def _area(area_mm2: float) -> str:
@@ -95,9 +97,8 @@ def _share(state: StateFound) -> str:
 
 def detector_sentence(found: Detectors, best: Detector) -> str:
     """Name the strongest detector and the others beside it, with their AUC."""
-    first = (
-        f"All damage together, the strongest is {_title(best)}: AUC {decimal(best.every.value)} ({limits(best.every)})."
-    )
+    area = f"AUC {decimal(best.every.value)} ({limits(best.every)})"
+    first = f"All damage together, the strongest is the {_title(best)}: {area}."
     others = []
     for family in (INDICATOR, CLASSIFIER, NETWORKS):
         detector = found.alone.get(family)
@@ -133,9 +134,9 @@ def reference_sentence(found: Detectors) -> str:
             "What a healthy record of the same gearbox is worth is not known: the set has one per gearbox (`repeats: "
             "2` gives more)."
         )
-    reached = [f"{kind} from {_area(size.area_mm2.value)} on" for kind, size in beside.sizes.items() if size.reached]
+    reached = [f"{kind} from {_area_limits(size)}" for kind, size in beside.sizes.items() if size.reached]
     sizes = f", nine of ten of {joined(reached)}" if reached else ""
     return (
         f"Beside a healthy record of the same gearbox: AUC {decimal(beside.every.value)} ({limits(beside.every)}) by "
-        f"{beside.title}{sizes}."
+        f"the {beside.title}{sizes}."
     )

@@ -1,4 +1,7 @@
-"""Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [quickstart] [bench]`, `make reports`.
+"""Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [NAME ...]`.
+
+`make reports` makes those of quickstart and of the whole bench. `make pages` makes those of quickstart, bench,
+industrial and a machine of one's own, the last three with 20 gearboxes each: less sure than with all gearboxes.
 
 Sets are looked for in runs/ and made where they are missing; every command is printed before it runs. A page that
 names a place on this machine is refused. Sets, JSON files, tables and models stay in runs/.
@@ -29,6 +32,22 @@ SETS = {
 }
 """Commands that make a set, by its folder in runs/."""
 
+GEARBOXES = 20
+"""Of the smaller sets: four of them test, and 5 % of 20 healthy records is one."""
+
+OWN = "--teeth 25,56 --module 2 --face-width 20 --speed 15,25 --torque 20 --sensors 2"
+SETS |= {
+    f"{preset}_{GEARBOXES}": (
+        f"siggen generate configs/{preset}.yaml --set specimens={GEARBOXES} --workers 2 "
+        f"--out runs/{preset}_{GEARBOXES}",
+    )
+    for preset in ("bench", "industrial")
+}
+SETS["rig"] = (
+    f"siggen init {OWN} --out runs/rig.yaml",
+    f"siggen generate runs/rig.yaml --set specimens={GEARBOXES} --out runs/rig --workers 2",
+)
+
 REPORTS = {
     "quickstart": {
         "quickstart_report": ("report.html", "report runs/quickstart"),
@@ -43,7 +62,17 @@ REPORTS = {
 }
 """By preset: the name of a page, what the program calls it, and the command that writes it."""
 
-NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")}
+SMALLER = {
+    name: {
+        f"{name}_audit": ("audit.html", f"audit runs/{name} --realism"),  # first: the report cites it
+        f"{name}_report": ("report.html", f"report runs/{name}"),
+        f"{name}_indicators": ("indicators.html", f"indicators runs/{name} --leave-out"),
+    }
+    for name in (f"bench_{GEARBOXES}", f"industrial_{GEARBOXES}", "rig")
+}
+"""The same for sets of few gearboxes."""
+
+NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")} | {name: (name,) for name in SMALLER}
 
 
 def run(command: str) -> None:
@@ -80,13 +109,13 @@ def write_page(name: str, page: str, command: str) -> None:
 
 def main(*presets: str) -> None:
     """Write the pages of these presets, or of all."""
-    for preset in presets or tuple(REPORTS):
+    for preset in presets or REPORTS:
         for folder in NEEDED[preset]:
             if not (RUNS / folder).exists():
                 RUNS.mkdir(exist_ok=True)
                 for command in SETS[folder]:
                     run(command)
-        for name, (page, command) in REPORTS[preset].items():
+        for name, (page, command) in (REPORTS | SMALLER)[preset].items():
             write_page(name, page, command)
 
 

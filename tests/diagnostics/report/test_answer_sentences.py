@@ -1,0 +1,52 @@
+"""Three sentences say which damage is found from which size on, by what and how surely, and no more than is known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from diagnostics.report.answer_sentences import answer_sentences
+from diagnostics.statistics.detector import Detector, FoundSize, StateFound
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.detectors import CLASSIFIER, INDICATOR, NETWORKS, Detectors
+
+
+def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
+    share = Interval(0.4, 0.3, 0.5)
+    states = {
+        "slight": StateFound("pitting", 1.0, Interval(0.6, 0.5, 0.7), share),
+        "severe": StateFound("pitting", 8.0, Interval(0.9, 0.8, 1.0), share),
+    }
+    sizes = {"pitting": FoundSize(Interval(found_mm2, 2.0, math.inf), 1.0, 8.0)}
+    area = Interval(auc, auc - 0.1, auc + 0.1)
+    return Detector("logistic regression", False, area, states, sizes, 72, 24, healthy)
+
+
+def said(**found: Detector) -> dict[str, str]:
+    return {question: text.replace("\xa0", " ") for question, text in answer_sentences(Detectors(found, {}))}
+
+
+def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_of_the_largest() -> None:
+    reached = said(**{CLASSIFIER: detector(0.8, 4.0)})["From which size"]
+    assert reached == "Pitting is found in nine of ten records from 4 mm² on (2 mm² to beyond the largest)."
+    never = said(**{CLASSIFIER: detector(0.8, math.inf)})["From which size"]
+    assert never == (
+        "Pitting of up to 8 mm² is not found in nine of ten records (severe: 40 % of records, 30 % to 50 %)."
+    )
+
+
+def test_the_strongest_on_all_gearboxes_is_named_and_a_network_of_few_never_takes_its_place() -> None:
+    network = replace(detector(1.0, 1.0), title="1-D network", specimens=5)
+    indicator = replace(detector(0.9, 4.0), title=INDICATOR, basis="rms__lid")
+    found = said(**{INDICATOR: indicator, CLASSIFIER: detector(0.8, 4.0), NETWORKS: network})
+    assert found["By what"] == (
+        "All damage together, the strongest is the best single indicator (RMS at lid): AUC 0.90 (0.80 to 1.00). "
+        "The logistic regression has 0.80 (0.70 to 0.90). The 1-D network has 1.00 (0.90 to 1.10) on 5 test gearboxes."
+    )
+
+
+def test_few_healthy_records_and_no_detector_at_all_are_said() -> None:
+    few = replace(detector(0.8, 4.0, healthy=7), sizes={})
+    assert "7 healthy records set no threshold" in said(**{CLASSIFIER: few})["From which size"]
+    assert list(said()) == ["No answer"]
+    assert "worth is not known: the set has one per gearbox" in said(**{CLASSIFIER: few})["How sure"]
