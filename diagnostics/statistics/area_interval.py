@@ -4,8 +4,8 @@ Near 1 the bootstrap is too narrow: where every damaged record lies above every 
 resample. So its limits are widened to those of Clopper and Pearson for a proportion among as many independent gearboxes
 as the resamples' variance stands for, and not fewer than there are. Source: Clopper and Pearson 1934, with the
 effective sample size of Korn and Graubard (Survey Methodology 24, 1998, 193-201); its least value, the gearboxes of the
-smaller class, since the variance of an AUC is at most A(1 - A)/min(m, n): Birnbaum and Klose 1957. The combination is
-derived; its coverage is tested.
+smaller class, since the variance of an AUC is at most A(1 - A)/min(m, n): Birnbaum and Klose 1957. No AUC gets a higher
+lower limit than 1 itself would, which is 0.025^(1/n). The combination is derived; its coverage is tested.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ def area_interval(samples: np.ndarray, specimens: int) -> Interval:
     if not math.isfinite(found.value) or specimens < 2:
         return found
     low, high = clopper_pearson(found.value, effective_size(found.value, samples[1:], specimens))
+    highest_low, lowest_high = clopper_pearson(1.0, specimens)[0], clopper_pearson(0.0, specimens)[1]
+    low, high = min(low, highest_low), max(high, lowest_high)
     return Interval(found.value, float(np.fmin(low, found.low)), float(np.fmax(high, found.high)))
 
 

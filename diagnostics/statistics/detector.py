@@ -16,6 +16,7 @@ import numpy as np
 
 from diagnostics.records.damage_kind import damage_kinds
 from diagnostics.records.state_classes import HEALTHY, ordered_states
+from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
@@ -177,7 +178,8 @@ def judged_detector(
 
 
 def _auc(score: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> Interval:
-    return interval(weighted_auc(score, positive, weights, specimen), int(np.unique(specimen).size))
+    smaller = min(np.unique(specimen[positive == side]).size for side in (True, False))
+    return area_interval(weighted_auc(score, positive, weights, specimen), smaller)
 
 
 def _state(

@@ -1,9 +1,9 @@
-"""The figure and tables of docs/understand/presets.md: `python docs/scripts/detectability.py [GEARBOXES] [WORKERS]`.
+"""Figure and tables of presets.md: `python docs/scripts/detectability.py [GEARBOXES] [WORKERS] [SET ...]`.
 
 Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
 Markdown: the strongest attacker by state, alone and beside the gearbox's own healthy record; what the older probe of
 four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
-on two cores.
+on two cores. SET is one of bench, parallel, edges; without any, all are made.
 
 * `detect_bench`, `detect_parallel`: presets bench and bench_parallel with the states of STATES and of SAME;
 * `detect_edges`: bench with spalls of 1 mm over SHARES of the face, both edges turned together by SKEWS_MM.
@@ -148,7 +148,7 @@ def realism_table(folder: str) -> list[str]:
 
 def draw(found: dict[str, dict[str, dict[str, Entry]]]) -> None:
     """Draw the AUC over share of the face and length, one row of axes per preset."""
-    figure = Figure(figsize=(10.0, 6.6), layout="constrained")
+    figure = Figure(figsize=(10.0, 3.3 * len(found)), layout="constrained")
     axes = figure.subplots(len(found), 2, sharey=True, squeeze=False)
     for row, (name, ways) in zip(axes, found.items(), strict=True):
         shares = {f"face_{share}": float(share) for share in FACES} | {"through_100": 100.0}
@@ -167,25 +167,34 @@ def draw(found: dict[str, dict[str, dict[str, Entry]]]) -> None:
             axis.axhline(0.5, color="0.6", linewidth=0.8)
             axis.set(xlabel=what, title=f"{name}: {what.partition(' [')[0]}", ylim=(0.35, 1.02))
         row[0].set_ylabel("AUC against healthy records [-]")
-        row[0].set_xlim(35.0, 103.0)
-    axes[1, 0].legend(handles=axes[0, 0].lines[: len(SEEN)], loc="center left", fontsize=8)
+        row[0].set_xlim(15.0, 103.0)
+    figure.legend(handles=axes[0, 0].lines[: len(SEEN)], loc="outside lower center", ncols=len(SEEN), fontsize=8)
     figure.savefig(FIGURE, dpi=110)
 
 
-def main(gearboxes: int, workers: int) -> None:
+def main(gearboxes: int, workers: int, chosen: list[str]) -> None:
     """Make sets, audits, figure and tables."""
     RUNS.mkdir(exist_ok=True)
     found = {
-        name: audited(folder, preset(name, gearboxes, chosen), workers)
-        for name, folder, chosen in (("bench", "bench", STATES), ("bench_parallel", "parallel", SAME))
+        name: audited(folder, preset(name, gearboxes, states), workers)
+        for name, folder, states in (("bench", "bench", STATES), ("bench_parallel", "parallel", SAME))
+        if folder in chosen
     }
     for name, ways in found.items():
         print(f"\n{name}\n", *ladder_table(ways), sep="\n")
-    draw(found)
-    print("\nhealthy records of bench\n", *realism_table("bench"), sep="\n")
-    print("\nspalls of 1 mm by share and skew\n", *edge_table(audited("edges", edges(gearboxes), workers)), sep="\n")
+    if found:
+        draw(found)
+    if "bench" in chosen:
+        print("\nhealthy records of bench\n", *realism_table("bench"), sep="\n")
+    if "edges" in chosen:
+        table = edge_table(audited("edges", edges(gearboxes), workers))
+        print("\nspalls of 1 mm by share and skew\n", *table, sep="\n")
 
 
 if __name__ == "__main__":
-    given = [int(value) for value in sys.argv[1:]]
-    main(given[0] if given else 24, given[1] if len(given) > 1 else 2)
+    numbers = [int(value) for value in sys.argv[1:3]]
+    main(
+        numbers[0] if numbers else 24,
+        numbers[1] if len(numbers) > 1 else 2,
+        sys.argv[3:] or ["bench", "parallel", "edges"],
+    )

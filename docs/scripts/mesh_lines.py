@@ -38,13 +38,14 @@ def shafts(diameter: Any, span: Any) -> Changes:
     return {f"{SHAFTS}.{which}.{name}": value for which in BOTH for name, value in sizes.items()}
 
 
-BEARINGS = {f"dynamics.{which}.bearing_stiffness_{axis}_n_per_m": uniform(2e8, 5e8) for which in BOTH for axis in "xy"}
+STIFF = {"kind": "loguniform", "low": 2e8, "high": 5e8}
+BEARINGS = {f"dynamics.{which}.bearing_stiffness_{axis}_n_per_m": STIFF for which in BOTH for axis in "xy"}
 CHANGES: dict[str, Changes] = {
     "bench as it is": {},
     "contact of slices, rigid shafts": {"dynamics.mesh.contact": "slices", SHAFTS: None},
     "rigid shafts": {SHAFTS: None},
-    "shafts of 40 mm instead of 30 and 35": shafts(40, uniform(110, 140)),
-    "span 70 to 100 mm instead of 110 to 140": shafts(30, uniform(70, 100)),
+    "shafts of 40 mm in place of 30 and 35 mm": shafts(40, uniform(110, 140)),
+    "span 70 to 100 mm in place of 110 to 140 mm, both 30 mm": shafts(30, uniform(70, 100)),
     "bearings of 2 to 5e8 N/m, both of a shaft": BEARINGS,
     "no helix": {"manufacture.helix": "off"},
     "no misalignment": {"manufacture.lead_misalignment_um": 0},

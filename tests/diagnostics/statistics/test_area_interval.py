@@ -34,6 +34,11 @@ def test_all_won_gives_the_exact_binomial_bound() -> None:
     assert clopper_pearson(0.0, 24) == (0.0, pytest.approx(1.0 - 0.025 ** (1 / 24)))
 
 
+def test_an_area_just_below_one_is_not_known_better_than_one() -> None:
+    nearly = np.r_[0.998, np.random.default_rng(0).uniform(0.996, 1.0, 50)]
+    assert area_interval(nearly, 24).low == area_interval(np.ones(51), 24).low
+
+
 def test_limits_are_those_of_clopper_and_pearson_for_whole_numbers() -> None:
     # 0.9 of 10: standard tables give 0.5550 and 0.9975
     assert clopper_pearson(0.9, 10) == (pytest.approx(0.5550, abs=1e-4), pytest.approx(0.9975, abs=1e-4))
