@@ -34,7 +34,7 @@ from siggen.errors import UsageError
 
 GRID_STEPS = 1024
 LEAST_LINE_SHARE = 0.3
-"""Of a group's energy above the floor; below, the path is not fitted to it."""
+"""Of a group's energy above the floor; below, it is no line that has a level."""
 FEWEST_GROUPS = 2
 SPEED_MARGIN = 0.01
 SLOW_TURNS = 5
@@ -168,20 +168,21 @@ class _Seen:
 def _seen(name: str, blocks: HealthyBlocks, groups: tuple[LineGroup, ...], teeth: tuple[int, int]) -> _Seen:
     records = tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
     points_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, CEPSTRUM_POINTS)
-    hz, energy, floors = [], [], []
+    hz, energy, floors, visible = [], [], [], []
     for record in records:
         level, share = group_levels(record, groups)
         hz.append([group.centre * record.speed_hz for group in groups])
-        energy.append(np.where(share > LEAST_LINE_SHARE, 10.0 * np.log10(np.maximum(level, 1e-30)), np.nan))
+        energy.append(10.0 * np.log10(np.maximum(level, 1e-30)))
+        visible.append(share > LEAST_LINE_SHARE)
         density = np.interp(points_hz, np.arange(record.floor.size) * record.bin_hz, record.floor / record.bin_hz)
         floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
-    lines = ChannelLines(np.array(hz), np.array(energy), np.array(floors))
+    lines = ChannelLines(np.array(hz), np.array(energy), np.array(visible), np.array(floors))
     _check_lines(name, blocks, lines)
     return _Seen(name, records, lines)
 
 
 def _check_lines(name: str, blocks: HealthyBlocks, lines: ChannelLines) -> None:
-    known = np.isfinite(lines.energy_db[:, ::3]).sum(axis=1)
+    known = lines.is_line[:, ::3].sum(axis=1)
     for block, count in zip(blocks.blocks, known.tolist(), strict=True):
         if count < FEWEST_GROUPS:
             raise UsageError(
@@ -209,10 +210,10 @@ def _channel(
     gear_order = teeth[0] / teeth[1]
     return ChannelFit(
         seen.name,
-        tuple(jackknife(column) for column in seen.lines.energy_db.T),
+        tuple(jackknife(column) for column in np.where(seen.lines.is_line, seen.lines.energy_db, np.nan).T),
         seen.lines,
         noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
-        own_lines(seen.records, gear_order),
+        own_lines(seen.records, teeth),
         sensor_fit(blocks.blocks, seen.name),
         found,
     )

@@ -15,7 +15,7 @@ import numpy as np
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 
 FLOOR_BINS, LINE_BINS, MASK_BINS = 41, 2, 2.2
-MESH_LINES = 12
+MOST_MESH_LINES = 60
 PINION_SIDEBANDS = (-4, -3, -2, -1, 1, 2, 3, 4)
 GEAR_SIDEBANDS = (-5, -4, -2, -1, 1, 2, 4, 5)
 HIGHEST_SHARE = 0.45
@@ -121,7 +121,7 @@ class LineGroup:
 def line_groups(teeth: tuple[int, int], top_order: float) -> tuple[LineGroup, ...]:
     """Return the groups below an order: of every mesh harmonic the line, pinion sidebands and gear sidebands."""
     found = []
-    for h in range(1, MESH_LINES + 1):
+    for h in range(1, MOST_MESH_LINES + 1):
         mesh = float(h * teeth[0])
         if mesh + max(PINION_SIDEBANDS) + 1.0 > top_order:
             break

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from diagnostics.calibration.order_record import LINE_BINS, OrderRecord
 
-OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 100, 1.6
-SHAFT_ORDERS = (1.0, 2.0, 3.0, 4.0)
-SHAFT_SHARE = 0.75
-"""Of the energy of a shaft's line that must stand over the floor."""
+OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 300, 1.6
+OF_THE_MESH = 5.5
+"""Orders beside a mesh line within which lines of the shafts are its sidebands, which the simulation has."""
+ON_SHAFT_BINS = 0.15
 LEAST_SPREAD = 1.25
 """Ratio in which a line's amplitude is drawn at least."""
 
@@ -33,9 +33,9 @@ class OwnLine:
     spread: float
 
 
-def own_lines(records: Sequence[OrderRecord], gear_order: float) -> tuple[OwnLine, ...]:
+def own_lines(records: Sequence[OrderRecord], teeth: tuple[int, int]) -> tuple[OwnLine, ...]:
     """Return the lines that a channel shows beside the mesh, the strongest first."""
-    peaks = [_peaks(record) for record in records]
+    peaks = [_peaks(record, teeth[0]) for record in records]
     needed = max(1, math.ceil(0.5 * len(records)))
     found, taken = [], [np.zeros(len(one), dtype=bool) for one in peaks]
     for by_order in (True, False):
@@ -43,22 +43,31 @@ def own_lines(records: Sequence[OrderRecord], gear_order: float) -> tuple[OwnLin
             for k in range(len(rows)):
                 if not taken[start][k]:
                     found += _matched(peaks, taken, (start, k), by_order, needed, records)
-    low = (step * order for step in (1.0, gear_order) for order in SHAFT_ORDERS)
-    found += [line for order in low if (line := _shaft_line(records, order)) is not None]
+    found = [_on_shaft(line, records[0].revolutions, teeth[0] / teeth[1]) for line in found]
     return tuple(sorted(found, key=lambda line: -line.amplitude)[:MOST_LINES])
 
 
-def _peaks(record: OrderRecord) -> np.ndarray:
-    """Return order, frequency and mean square of the lines between those of the shafts, (lines, 3)."""
+def _peaks(record: OrderRecord, teeth: int) -> np.ndarray:
+    """Return order, frequency and mean square of the lines that are not of the mesh, (lines, 3)."""
     from scipy.ndimage import maximum_filter1d
 
-    top = (record.power == maximum_filter1d(record.power, 2 * LINE_BINS + 1)) & record.free
+    orders = np.arange(record.power.size) / record.revolutions
+    beside = np.abs(orders - np.maximum(np.round(orders / teeth), 1.0) * teeth) > OF_THE_MESH
+    top = (record.power == maximum_filter1d(record.power, 2 * LINE_BINS + 1)) & (record.free | beside)
+    top[: 2 * LINE_BINS] = False
     places = np.flatnonzero(top & (record.power > OVER_FLOOR * record.floor * math.log(2.0)))
     places = places[record.power[places] > OVER_FLOOR * record.floor[places]]
-    order = places / record.revolutions
+    places = places[(places > LINE_BINS) & (places + LINE_BINS < record.power.size)]
+    order = (places + _beside(record.power, places)) / record.revolutions
     energy = np.array([record.line(one)[0] for one in order.tolist()])
     known = np.isfinite(energy)
     return np.stack([order[known], order[known] * record.speed_hz, energy[known]], axis=1).reshape(-1, 3)
+
+
+def _beside(power: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return how far beside its bin each line lies, from a parabola through three logarithms: 0.02 bins off at most."""
+    low, middle, high = (np.log(np.maximum(power[places + k], 1e-300)) for k in (-1, 0, 1))
+    return np.asarray(np.clip(0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-12), -0.5, 0.5))
 
 
 def _matched(
@@ -87,10 +96,13 @@ def _matched(
     return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2])]
 
 
-def _shaft_line(records: Sequence[OrderRecord], order: float) -> OwnLine | None:
-    found = [record.line(order) for record in records]
-    energy = np.array([line for line, share in found if math.isfinite(line) and share > SHAFT_SHARE])
-    return _line(order, 0.0, energy) if energy.size >= math.ceil(0.5 * len(records)) else None
+def _on_shaft(line: OwnLine, revolutions: int, gear_order: float) -> OwnLine:
+    """Return a line whose order is a shaft's within what is seen as exactly that: averages shall hold it."""
+    for step in (1.0, gear_order):
+        nearest = round(line.order / step) * step
+        if line.order and nearest and abs(line.order - nearest) * revolutions < ON_SHAFT_BINS:
+            return replace(line, order=nearest)
+    return line
 
 
 def _line(order: float, frequency_hz: float, energy: np.ndarray) -> OwnLine:

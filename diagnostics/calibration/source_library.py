@@ -81,16 +81,23 @@ def source_library(
 def library_configuration(rig: Path, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
     """Return a configuration of healthy gearboxes whose bearing forces are kept, without background and paths."""
     return {
+        **at_recordings(rig, operating_point, fs_hz),
+        "background": None,
+        "housing": None,
+        "sensors": [{"name": "bearing", "place": "pinion_bearing", "bits": None, "range_m_s2": 1e6}],
+        "internals": {"quantities": list(FORCES)},
+    }
+
+
+def at_recordings(rig: Path, operating_point: dict[str, Any], fs_hz: float) -> dict[str, Any]:
+    """Return a configuration of healthy gearboxes of a rig at the speed, torque and rate of recordings."""
+    return {
         "extends": str(rig.resolve()) if rig.is_file() else str(rig),
         "name": "sources",
         "fs_hz": fs_hz,
         "repeats": 1,
         "states": [{"name": "healthy"}],
         "operating_points": [operating_point],
-        "background": None,
-        "housing": None,
-        "sensors": [{"name": "bearing", "place": "pinion_bearing", "bits": None, "range_m_s2": 1e6}],
-        "internals": {"quantities": list(FORCES)},
     }
 
 

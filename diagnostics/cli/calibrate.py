@@ -50,6 +50,17 @@ def calibrate(
         int, typer.Option(min=2, max=500, help="Gearboxes simulated for their bearing forces, about 1 s each.")
     ] = 24,
     paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24,
+    held_out: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--held-out",
+            metavar="FILE[:ROW,ROW]",
+            help="Healthy recordings that the page judges by, not used for the fit. May be given several times.",
+        ),
+    ] = None,
+    compared: Annotated[
+        int, typer.Option(min=0, max=200, help="Gearboxes of rig and result on the page, about 1 s each; 0: no page.")
+    ] = 8,
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0,
 ) -> None:
     """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.
@@ -60,14 +71,18 @@ def calibrate(
     Example: siggen-diagnostics calibrate rig.yaml may.csv june.csv july.csv --fs 25600 --speed-range 14,26 -o mine.yaml
     """
     import siggen
+    from diagnostics.base.extras import require_packages
     from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.channel_names import rig_channels
+    from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
     from diagnostics.calibration.healthy_blocks import healthy_blocks
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.recordings.measured_recording import RecordingFacts
 
+    if compared:
+        require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
     config, teeth = rig_teeth(rig)
     said = dict(named_column(entry) for entry in channel or ())
@@ -91,3 +106,7 @@ def calibrate(
     for text in NOT_IDENTIFIED:
         typer.echo(f"not identified: {text}", err=True)
     typer.echo(str(out))
+    if compared:
+        others = [source for entry in held_out or () for source in file_rows(entry)]
+        with terminal_stage("records to compare", 2 * compared) as advance:
+            typer.echo(str(calibration_page(found, out, others, facts, span, (compared, seed), advance)))

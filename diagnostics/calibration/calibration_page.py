@@ -1,0 +1,180 @@
+"""The page of a calibration: recordings beside the rig and beside the calibrated configuration, and what was fitted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED
+from diagnostics.calibration.calibration import Calibration
+from diagnostics.calibration.jackknife import Fitted
+from diagnostics.calibration.likeness import LEVELS, RANGE, Likeness, Sample, band_edges_hz
+from diagnostics.page import html
+from diagnostics.page.html import Cell
+from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.wording import decimal, percent
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PAGE = "calibration.html"
+MOST_FEATURES = 12
+SPECTRA = "Spectra of {}: recordings (lines), and 90 % of the gearboxes before (grey) and after calibration (blue)."
+PATHS = (
+    "Transfer paths to {}: the family that gearboxes draw from. Where it is wide, path and source are not told apart."
+)
+
+
+def write_calibration_page(
+    found: Calibration, real: Sample, before: Likeness, after: Likeness, folder: Path, held_out: int
+) -> Path:
+    """Write the page into a folder; return it."""
+    with styled():
+        figures = [
+            html.figure_block(png_bytes(figure), caption.format(channel.name))
+            for number, channel in enumerate(found.channels)
+            for figure, caption in (
+                (_spectra(found, real, before, after, number), SPECTRA),
+                (_paths(found, number), PATHS),
+            )
+        ]
+    parts = [
+        html.heading(f"Calibration of {found.rig.stem}", 1),
+        *html.summary(_sentences(before, after, held_out)),
+        _likeness_table(found, before, after),
+        html.figure_grid(figures),
+        html.heading("What gives the set away"),
+        *_feature_parts(before, after),
+        html.heading("Lines, floors, modulation and tails"),
+        _level_table(real, before, after),
+        html.heading("What was fitted"),
+        _fitted_table(found),
+        html.heading("What recordings do not tell"),
+        *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in NOT_IDENTIFIED),
+    ]
+    path = folder / PAGE
+    path.write_text(html.page(f"Calibration of {found.rig.stem}", parts), encoding="utf-8")
+    return path
+
+
+def _sentences(before: Likeness, after: Likeness, held_out: int) -> list[str]:
+    judged = (
+        f"Judged on {held_out} recordings that were held out."
+        if held_out
+        else "Judged on the recordings that it was fitted to, since none was held out (`--held-out`): too kind."
+    )
+    first = (
+        f"The spectrum of the calibrated gearboxes lies {decimal(float(after.distance_db.mean()))} dB from the "
+        f"recordings, that of the rig {decimal(float(before.distance_db.mean()))} dB (rms over twelfths of an octave)."
+    )
+    wide = (
+        f"{percent(after.inside)} of the recordings' values lie within 90 % of the calibrated gearboxes, "
+        f"{percent(before.inside)} within those of the rig. A set that is wide enough holds them; width is no merit."
+    )
+    return [first, judged, wide, "Whether a detector gains by it is another question: see the control in the docs."]
+
+
+def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> str:
+    rows = [
+        [Cell(channel.name), _number(before.distance_db[k]), _number(after.distance_db[k])]
+        for k, channel in enumerate(found.channels)
+    ]
+    return html.table(("Channel", "Before [dB]", "After [dB]"), rows, caption="Distance of median spectra.")
+
+
+def _feature_parts(before: Likeness, after: Likeness) -> list[str]:
+    if before.features is None or after.features is None:
+        return [html.paragraph("Recordings are shorter than a second, or sampled below 9.6 kHz: not judged.")]
+    earlier = {gap.name: gap for gap in before.features.gaps}
+    rows = [
+        [Cell(gap.name), *(_number(v) for v in (earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic))]
+        for gap in after.features.gaps[:MOST_FEATURES]
+    ]
+    told = (
+        f"{after.features.telling} of {len(after.features.gaps)} features without a level reach an AUC of 0.9 alone "
+        f"between the calibrated gearboxes and the recordings; {before.features.telling} do for the rig. "
+        f"{percent(after.features.inside)} of the calibrated values lie inside 95 % of the recordings', "
+        f"{percent(before.features.inside)} of the rig's."
+    )
+    head = ("Feature", "AUC before", "AUC after", "Recordings", "Calibrated")
+    return [html.paragraph(told), html.table(head, rows, caption="The most telling after calibration.", sortable=True)]
+
+
+def _level_table(real: Sample, before: Likeness, after: Likeness) -> str:
+    rows = []
+    for k, name in enumerate(LEVELS):
+        columns = [sample.levels[:, :, k] for sample in (real, before.sample, after.sample)]
+        if np.isfinite(columns[0]).any():
+            rows.append([Cell(name.replace("_", " ")), *(_spread(values) for values in columns)])
+    head = ("Quantity", "Recordings", "Before", "After")
+    return html.table(
+        head, rows, caption="Median [5 %, 95 %] over records and channels; dB re the strongest mesh line."
+    )
+
+
+def _fitted_table(found: Calibration) -> str:
+    rows = []
+    for channel in found.channels:
+        noise = channel.noise
+        facts: dict[str, Fitted] = {
+            "noise in all [dB re 1 (m/s²)²]": noise.level_db,
+            "modulation once per pinion turn": noise.pinion_depth,
+            "modulation once per gear turn": noise.gear_depth,
+            "random level, standard deviation": noise.level_std,
+        }
+        facts |= {
+            f"{group.name} [dB re 1 (m/s²)²]": level
+            for group, level in zip(found.library.groups, channel.levels, strict=True)
+            if np.isfinite(level.value) and group.name.startswith("mesh")
+        }
+        rows += [
+            [Cell(channel.name), Cell(name), _number(v.value), _number(v.low), _number(v.high)]
+            for name, v in facts.items()
+        ]
+    caption = "Fitted numbers with limits of 90 % from leaving recordings out."
+    return html.table(("Channel", "Quantity", "Value", "Low", "High"), rows, caption=caption, tall=True)
+
+
+def _spectra(found: Calibration, real: Sample, before: Likeness, after: Likeness, channel: int) -> Figure:
+    edges = band_edges_hz(found.blocks.fs_hz)
+    middle = np.sqrt(edges[:-1] * edges[1:])
+    figure, axes = new_figure(height_in=3.0)
+    axis = axes[0, 0]
+    for sample, colour in ((before.sample, HEALTHY_COLOUR), (after.sample, GEAR_COLOUR)):
+        low, high = np.quantile(sample.bands_db[:, channel], RANGE, axis=0)
+        axis.fill_between(middle, low, high, color=colour, alpha=0.3, linewidth=0)
+        axis.plot(middle, np.median(sample.bands_db[:, channel], axis=0), color=colour)
+    for row in real.bands_db[:, channel]:
+        axis.plot(middle, row, color=FAULT_COLOURS[2], linewidth=0.7)
+    return _labelled(figure, axis, "density [dB re 1 (m/s²)²/Hz]")
+
+
+def _paths(found: Calibration, channel: int) -> Figure:
+    figure, axes = new_figure(height_in=3.0)
+    axis = axes[0, 0]
+    for draw in found.channels[channel].paths:
+        axis.plot(found.grid_hz[1:], 20.0 * np.log10(np.abs(draw.accelerance[1:])), color=GEAR_COLOUR, alpha=0.4)
+    axis.set_xlim(50.0, 0.45 * found.blocks.fs_hz)
+    return _labelled(figure, axis, "accelerance [dB re 1 m/s²/N]")
+
+
+def _labelled(figure: Figure, axis: object, text: str) -> Figure:
+    axis.set_xscale("log")  # type: ignore[attr-defined]
+    axis.xaxis.set_major_formatter("{x:g}")  # type: ignore[attr-defined]
+    axis.set_xlabel("frequency [Hz]")  # type: ignore[attr-defined]
+    axis.set_ylabel(text)  # type: ignore[attr-defined]
+    return figure
+
+
+def _spread(values: np.ndarray) -> Cell:
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return Cell("-")
+    low, middle, high = np.quantile(known, [RANGE[0], 0.5, RANGE[1]])
+    return Cell(f"{middle:.3g} [{low:.3g}, {high:.3g}]", value=float(middle))
+
+
+def _number(value: float) -> Cell:
+    return Cell(f"{value:.3g}" if np.isfinite(value) else "-", value=float(value))
