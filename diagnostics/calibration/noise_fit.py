@@ -20,6 +20,7 @@ SHAFT_LINES_POWER = 0.5 * (1.0 + 1.0 / 2.0 + 1.0 / 3.0)
 """Of lines of depths d, d/√2, d/√3: kurtosis 3 (1 + d² times this) (derived)."""
 NEIGHBOURS = (0.31, 0.37, 0.43, 1.29, 1.37, 1.43, 1.71)
 """Orders beside those of shafts: what they show is the error of the estimate."""
+OVER_FLOOR, REACH = 10.0, 4
 LEAST_SPREAD_DB = 1.0
 
 
@@ -54,7 +55,8 @@ def noise_fit(records: Sequence[OrderRecord], blocks: Sequence[Block], channel: 
     knots = np.geomspace(LOWEST_HZ, 0.5 * fs_hz, int(KNOTS_PER_OCTAVE * math.log2(0.5 * fs_hz / LOWEST_HZ)))
     densities = np.array([_at_knots(record, knots) for record in records])
     levels = np.array([10.0 * math.log10(float(record.floor.sum())) for record in records])
-    cyclic = np.array([_modulation(block, channel, gear_order) for block in blocks])
+    pairs = zip(blocks, records, strict=True)
+    cyclic = np.array([_modulation(block, record, channel, gear_order) for block, record in pairs])
     spread = 1.65 * float(levels.std(ddof=1)) * math.sqrt(1.0 + 1.0 / levels.size) if levels.size > 1 else 0.0
     return NoiseFit(
         knots,
@@ -70,15 +72,20 @@ def _at_knots(record: OrderRecord, knots: np.ndarray) -> np.ndarray:
     return np.asarray(np.exp(np.interp(np.log(knots), np.log(hz), np.log(record.density[1:]))))
 
 
-def _modulation(block: Block, channel: str, gear_order: float) -> tuple[float, float, float]:
-    """Return depth of pinion and gear, and s of the random level, of what both averages leave."""
+def _modulation(block: Block, record: OrderRecord, channel: str, gear_order: float) -> tuple[float, float, float]:
+    """Return depth of pinion and gear, and s of the random level, of what averages and lines leave.
+
+    Lines a shaft order apart beat, which would pass for modulated noise.
+    """
     from scipy import fft
 
     turns = turns_of(block.channels[channel], block.fs_hz, block.pulses_s)
     rest = asynchronous_part(turns - turns.mean(), gear_order)
     bin_hz = block.speed_hz / turns.shape[0]
     low, high = (int(share * block.fs_hz / bin_hz) for share in MODULATION_BAND)
-    power = np.square(np.abs(band_signal(fft.rfft(rest), low, high)))
+    spectrum = fft.rfft(rest)[: record.power.size]
+    spectrum[_near_lines(record)[: spectrum.size]] = 0.0
+    power = np.square(np.abs(band_signal(spectrum, low, high)))
     if not power.any():
         return 0.0, 0.0, 0.0
     error = np.median([_depth(power, turns.shape[0] * order) for order in NEIGHBOURS])
@@ -88,6 +95,14 @@ def _modulation(block: Block, channel: str, gear_order: float) -> tuple[float, f
     kurtosis = 1.5 * float(np.square(power).mean() / power.mean() ** 2)
     of_shafts = 3.0 * (1.0 + SHAFT_LINES_POWER * (pinion**2 + gear**2))
     return pinion, gear, math.sqrt(max(math.log(kurtosis / of_shafts), 0.0))
+
+
+def _near_lines(record: OrderRecord) -> np.ndarray:
+    """Return which bins (bins,) lie within REACH of one that stands out of the floor."""
+    from scipy.ndimage import binary_dilation
+
+    out = record.power > OVER_FLOOR * record.floor
+    return np.asarray(binary_dilation(out, iterations=REACH))
 
 
 def _depth(power: np.ndarray, cycles: float) -> float:
