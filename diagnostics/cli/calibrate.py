@@ -61,6 +61,17 @@ def calibrate(
     compared: Annotated[
         int, typer.Option(min=0, max=200, help="Gearboxes of rig and result on the page, about 1 s each; 0: no page.")
     ] = 8,
+    inject: Annotated[
+        Path | None,
+        typer.Option(
+            "--inject",
+            metavar="FOLDER",
+            help="Also write the recordings plus the simulated difference damaged less healthy, as a table.",
+        ),
+    ] = None,
+    per_recording: Annotated[
+        int, typer.Option("--per-recording", min=1, max=100, help="Gearboxes whose damage is injected into each.")
+    ] = 2,
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0,
 ) -> None:
     """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.
@@ -78,6 +89,7 @@ def calibrate(
     from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
     from diagnostics.calibration.healthy_blocks import healthy_blocks
+    from diagnostics.calibration.injected_set import write_injected
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.recordings.measured_recording import RecordingFacts
 
@@ -106,6 +118,9 @@ def calibrate(
     for text in NOT_IDENTIFIED:
         typer.echo(f"not identified: {text}", err=True)
     typer.echo(str(out))
+    if inject is not None:
+        with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
+            typer.echo(str(write_injected(blocks, out, per_recording, inject, seed, advance)))
     if compared:
         others = [source for entry in held_out or () for source in file_rows(entry)]
         with terminal_stage("records to compare", 2 * compared) as advance:

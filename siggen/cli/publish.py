@@ -19,6 +19,10 @@ def publish(
     audit: Annotated[
         Path | None, typer.Option("--audit", help="Folder of the audit to quote. Default: DIR_audit, if it is there.")
     ] = None,
+    with_recordings: Annotated[
+        bool,
+        typer.Option("--with-recordings", help="Publish a set whose paths and lines were fitted to your recordings."),
+    ] = False,
 ) -> None:
     """Make a folder for the Hugging Face hub, Zenodo and a DOI; the set itself is not touched, nothing is uploaded.
 
@@ -35,7 +39,8 @@ def publish(
 
     if (to is None) != dry_run:
         raise UsageError("publish: received both or neither of --to and --dry-run; allowed: one of the two")
-    made = publication(folder, facts, audit) if to is None else publish_set(folder, to, facts, audit)
+    said = {"with_recordings": with_recordings}
+    made = publication(folder, facts, audit, **said) if to is None else publish_set(folder, to, facts, audit, **said)
     typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
         typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)

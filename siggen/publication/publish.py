@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
+from siggen.config.path import MeasuredPath
 from siggen.dataset.card import TAGS
 from siggen.dataset.manifest import CARD, MANIFEST
 from siggen.dataset.reading import Dataset
@@ -29,6 +30,8 @@ from siggen.publication.published_card import published_card
 if TYPE_CHECKING:
     from siggen.config import Config
 
+INJECTED = "injected.json"
+"""In a folder of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 CROISSANT, DATACITE, PREVIEWS = "croissant.json", "datacite.json", "previews"
 
 
@@ -54,7 +57,9 @@ class Publication:
     audit: Path | None
 
 
-def publication(path: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
+def publication(
+    path: Path | str, facts_file: Path | None, audit: Path | None = None, *, with_recordings: bool = False
+) -> Publication:
     """Return what `publish` would write, after all checks but those of the target.
 
     Parameters
@@ -65,6 +70,8 @@ def publication(path: Path | str, facts_file: Path | None, audit: Path | None = 
         The authors' YAML file.
     audit : Path or None
         The file `audit.json`, or its folder; default: `DIR_audit` beside the set, if it is there.
+    with_recordings : bool
+        Whether numbers that come from recordings (a family of paths, a table of lines) may be published.
 
     Raises
     ------
@@ -73,17 +80,36 @@ def publication(path: Path | str, facts_file: Path | None, audit: Path | None = 
     DatasetError
         If the set is not finished, or its configuration is not one of this version.
     """
+    if (Path(path) / INJECTED).exists():
+        raise UsageError(f"{path}: holds your recordings with injected damage; it is no set that siggen publishes")
     dataset = open_set(path)
     facts = _facts(Path(path), facts_file)
     found = _audit_file(Path(path), audit)
     config = _config(dataset)
+    _check_recordings(path, config, with_recordings=with_recordings)
     files = dataset.manifest["files"]
     copied = tuple(name for name in files if name not in (CARD, CROISSANT, DATACITE) and not name.startswith(PREVIEWS))
     size = sum(int(files[name]["bytes"]) for name in copied)
     return Publication(_texts(dataset, config, facts, found, size), copied, size, found)
 
 
-def publish(path: Path | str, to: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
+def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool) -> None:
+    """Refuse a set whose configuration holds what was fitted to recordings, unless its owner says so."""
+    fitted = [s.name for s in config.sensors if s.lines or (isinstance(s.path, MeasuredPath) and s.path.files)]
+    if fitted and not with_recordings:
+        raise UsageError(
+            f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; --with-recordings publishes them"
+        )
+
+
+def publish(
+    path: Path | str,
+    to: Path | str,
+    facts_file: Path | None,
+    audit: Path | None = None,
+    *,
+    with_recordings: bool = False,
+) -> Publication:
     """Write a folder that is ready to be uploaded; it is a set that `siggen.open` and `siggen verify` read.
 
     Parameters
@@ -96,7 +122,7 @@ def publish(path: Path | str, to: Path | str, facts_file: Path | None, audit: Pa
     UsageError, ConfigError, DatasetError
         As of `publication`, or if the target is not empty.
     """
-    made = publication(path, facts_file, audit)
+    made = publication(path, facts_file, audit, with_recordings=with_recordings)
     source, target = LocalFolder(path), LocalFolder(to)
     if target.path.resolve() == source.path.resolve() or target.names():
         raise UsageError(f"{to} is not empty; name a new or empty folder (nothing is deleted)")

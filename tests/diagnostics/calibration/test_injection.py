@@ -1,0 +1,133 @@
+"""Injection: at the simulation's own course the difference is added as it is; rows say where they come from."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.calibration.injected_set import write_injected
+from diagnostics.calibration.injection import (
+    SHUFFLED,
+    WHITE,
+    Difference,
+    control_difference,
+    injected,
+    simulated_differences,
+)
+
+SPEED_HZ, FS_HZ = 34.0, 25_600.0
+SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 1.5, "face_share": 1.0}
+CONFIGURATION: dict[str, Any] = {
+    "extends": "quickstart",
+    "name": "injected",
+    "specimens": 2,
+    "duration_s": 0.6,
+    "background": None,
+    "operating_points": [{"speed_hz": SPEED_HZ, "torque_nm": 40.0}],
+    "states": [{"name": "healthy"}, {"name": "severe", "damage": SPALL}],
+}
+QUIET = {"variation": {}, "housing": {"settle_s": 0.6}}
+
+
+@pytest.fixture(scope="module")
+def mine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("injection") / "mine.yaml"
+    file.write_text(json.dumps(CONFIGURATION))
+    return file
+
+
+@pytest.fixture(scope="module")
+def simulated(mine: Path) -> tuple[Block, Difference]:
+    """Return a noise-free healthy record as a recording, and the difference of its own gearbox."""
+    pulses = np.arange(0.0, 0.6, 1.0 / SPEED_HZ)
+    rng = np.random.default_rng(0)
+    channels = {name: rng.standard_normal(round(0.6 * FS_HZ)) for name in ("lid_vertical", "side_horizontal")}
+    block = Block("run", channels, FS_HZ, pulses)
+    return block, next(simulated_differences(mine, block, 0))
+
+
+def test_the_difference_is_that_of_one_gearbox_at_one_course(simulated: tuple[Block, Difference]) -> None:
+    """It lies under the damaged tooth alone: once per turn, and nothing before the damage is in mesh."""
+    _, difference = simulated
+    signal = difference.channels["lid_vertical"]
+    turns = difference.pulses_s.size - 1
+    samples = np.interp(np.arange(turns * 64) / 64, np.arange(turns + 1), difference.pulses_s) * FS_HZ
+    power = np.add.reduceat(np.square(signal), samples.astype(int))[: turns * 64].reshape(turns, 64)
+    # with start angle, speed and errors in common, half of the turn holds nearly all; without, all of it would
+    share = np.sort(power.mean(axis=0))[::-1].cumsum() / power.mean(axis=0).sum()
+    assert share[31] > 0.8
+    assert difference.labels["state"] == "severe"
+
+
+def test_at_the_simulations_own_course_the_recording_plus_difference_is_exact(
+    simulated: tuple[Block, Difference],
+) -> None:
+    block, difference = simulated
+    own = Block(
+        "own", {k: v[: block.channels[k].size] for k, v in difference.channels.items()}, FS_HZ, difference.pulses_s
+    )
+    twice = injected(own, difference, 0)
+    # half a turn at either end is extrapolated; between, the resampling errs by 1e-3 of the highest band at most
+    inside = slice(int(difference.pulses_s[0] * FS_HZ) + 40, int(difference.pulses_s[-1] * FS_HZ) - 1200)
+    for name, signal in own.channels.items():
+        error = (twice[name][: signal.size] - 2.0 * signal)[inside]
+        assert np.sqrt(np.mean(error**2)) < 0.02 * signal.std()
+
+
+def test_a_faster_recording_gets_the_difference_at_its_own_angle(simulated: tuple[Block, Difference]) -> None:
+    block, difference = simulated
+    silent = {name: np.zeros(signal.size) for name, signal in block.channels.items()}
+    faster = Block("fast", silent, FS_HZ, np.arange(0.0, 0.5, 1.0 / (1.05 * SPEED_HZ)))
+    found = injected(faster, difference, 0)["lid_vertical"]
+    turns = [np.sqrt(np.mean(found[int(a * FS_HZ) : int(b * FS_HZ)] ** 2)) for a, b in pairwise(faster.pulses_s[:9])]
+    own = difference.pulses_s
+    expected = [
+        np.sqrt(np.mean(difference.channels["lid_vertical"][int(a * FS_HZ) : int(b * FS_HZ)] ** 2))
+        for a, b in pairwise(own[:9])
+    ]
+    assert turns == pytest.approx(expected, rel=0.03)
+
+
+def test_controls_keep_the_energy_and_the_shuffled_one_every_line(simulated: tuple[Block, Difference]) -> None:
+    _, difference = simulated
+    rng = np.random.default_rng(1)
+    for kind in (SHUFFLED, WHITE):
+        control = control_difference(difference, kind, rng)
+        for name, signal in difference.channels.items():
+            # white noise of 15,000 samples: 1 % of its energy
+            assert np.mean(control.channels[name] ** 2) == pytest.approx(np.mean(signal**2), rel=0.05)
+    shuffled = control_difference(difference, SHUFFLED, rng).channels["lid_vertical"]
+    power = np.abs(np.fft.rfft(difference.channels["lid_vertical"]))
+    np.testing.assert_allclose(np.abs(np.fft.rfft(shuffled))[1:-1], power[1:-1], rtol=1e-6, atol=1e-9 * power.max())
+
+
+def test_every_row_says_what_it_was_made_of(mine: Path, simulated: tuple[Block, Difference], tmp_path: Path) -> None:
+    block, _ = simulated
+    blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ, 1)
+    table = pq.read_table(write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None))
+    rows = table.select(["recording", "origin", "state", "specimen_id", "difference_db"]).to_pylist()
+    assert [row["origin"] for row in rows] == ["recorded", "injected"]
+    assert rows[1]["recording"] == "run"
+    assert rows[1]["state"] == "severe"
+    assert np.isfinite(rows[1]["difference_db"])
+    recorded = np.asarray(table["accel_lid_vertical_m_s2"][0].values)
+    np.testing.assert_allclose(recorded, block.channels["lid_vertical"], rtol=1e-6)
+    assert json.loads((tmp_path / "set" / "injected.json").read_text())["recordings"] == ["run"]
+
+
+def test_publishing_injected_recordings_is_refused(
+    mine: Path, simulated: tuple[Block, Difference], tmp_path: Path
+) -> None:
+    from siggen.errors import UsageError
+    from siggen.publication.publish import publication
+
+    (tmp_path / "injected.json").write_text("{}")
+    with pytest.raises(UsageError, match="your recordings"):
+        publication(tmp_path, None)
