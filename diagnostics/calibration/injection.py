@@ -145,4 +145,4 @@ def _control(signal: np.ndarray, kind: str, rng: np.random.Generator) -> np.ndar
         return np.asarray(rng.standard_normal(signal.size) * float(np.sqrt(np.mean(signal**2))))
     spectrum = np.fft.rfft(signal)
     spectrum[1:-1] *= np.exp(2j * np.pi * rng.random(spectrum.size - 2))
-    return np.fft.irfft(spectrum, signal.size)
+    return np.asarray(np.fft.irfft(spectrum, signal.size))

@@ -20,6 +20,7 @@ from diagnostics.cli.recording_options import (
     file_rows,
     named_column,
     two_gears,
+    two_numbers,
 )
 from diagnostics.cli.training_options import OwnIndicators
 from siggen.errors import UsageError
@@ -50,9 +51,9 @@ def indicators(
         typer.Option(min=0.001, max=0.5, help="Rate of false alarms: share of healthy records above the threshold."),
     ] = 0.05,
     speed_range: Annotated[
-        tuple[float, float] | None,
+        str | None,
         typer.Option(
-            metavar="LOW HIGH",
+            metavar="LOW,HIGH",
             help="Take shaft angles from the mesh lines, not the tacho; search this range of pinion speed [Hz].",
             show_default=False,
         ),
@@ -85,8 +86,9 @@ def indicators(
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
 
-    Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14 26
+    Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
+    span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
         from diagnostics.recordings.measured_recording import RecordingFacts
 
@@ -95,7 +97,7 @@ def indicators(
             raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
         columns = dict(named_column(said) for said in channel or ())
         facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
-        _of_recordings(targets, teeth, facts, speed_range, out)
+        _of_recordings(targets, teeth, facts, span, out)
         return
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
@@ -114,13 +116,13 @@ def indicators(
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
-    if speed_range is not None:
-        check_speed_range(speed_range)
+    if span is not None:
+        check_speed_range(span)
     own = load_indicators(indicator)
     dataset = open_set(directory)
     check_states(dataset)
     chosen_states(dataset, state or ())
-    settings = IndicatorSettings(speed_range_hz=speed_range)
+    settings = IndicatorSettings(speed_range_hz=span)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         everything = record_table(dataset, settings, own, workers=workers, advance=advance)
     table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)

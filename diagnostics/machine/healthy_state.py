@@ -11,6 +11,7 @@ import numpy as np
 from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.machine import Machine
+from diagnostics.machine.mesh_lines import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
@@ -65,6 +66,7 @@ def healthy_state(
     rows, speeds = [], []
     for recording in read:
         pieces, pulses = pieces_of(recording, fs_hz, teeth, speed_range_hz, duration_s)
+        check_mesh_lines(recording, pulses, teeth)
         rows.append(pieces)
         speeds.append(pulses.speed_hz)
         advance()

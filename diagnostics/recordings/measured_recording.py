@@ -120,15 +120,15 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
     """Return column by channel: as said, else the channel's own name, else the name this package gives its columns."""
     unknown = sorted(set(said) - set(names))
     if unknown:
-        raise UsageError(f"{path}: the model knows no channel {', '.join(unknown)}; it was made for {', '.join(names)}")
+        raise UsageError(f"{path}: no channel {', '.join(unknown)} is wanted; wanted are {', '.join(names)}")
     chosen = {name: _column(found, name, said.get(name)) for name in names}
     missing = [said.get(name, name) for name, column in chosen.items() if not column]
     if missing:
         example = " ".join(f"--channel {name}=COLUMN" for name in names)
         raise UsageError(
-            f"{path}: no column {', '.join(missing)}; the model was made for the channels {', '.join(names)}, the file "
-            f"holds {', '.join(list(found.values)[:20])}. Say which is which: {example}; without the same sensors and "
-            "directions, train a model on the channels that you have."
+            f"{path}: no column {', '.join(missing)}; wanted are the channels {', '.join(names)}, the file holds "
+            f"{', '.join(list(found.values)[:20])}. Say which is which: {example}. They have to be the same sensors in "
+            "the same directions."
         )
     if len(set(chosen.values())) < len(chosen):
         raise UsageError(f"{path}: one column was named for several channels ({chosen}); each needs its own sensor")

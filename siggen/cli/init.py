@@ -43,6 +43,7 @@ def init(
     Example: siggen init --teeth 25,56 --module 2 --face-width 20 --speed 15,25 --torque 20 --out rig.yaml
     """
     from siggen.checks.loading import load_config
+    from siggen.checks.plausibility import implausible
     from siggen.config import inherited, parse_yaml
     from siggen.errors import UsageError
     from siggen.rig.rig import Rig, checked_rig
@@ -66,9 +67,11 @@ def init(
         )
     )
     text = rig_text(rig, name or _name(out), base)
-    load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
+    config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text, encoding="utf-8")
+    for sentence in implausible(config):
+        typer.echo(f"implausible: {sentence}", err=True)
     typer.echo(f"next: siggen plan {out}; siggen generate {out} --set specimens=1 --out FOLDER", err=True)
     typer.echo(str(out))
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import ceil, cos, pi, radians, sqrt
 from typing import NamedTuple
 
+from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS
 from siggen.rig.rig import Pair, Rig
 
 STEEL_DENSITY_KG_M3 = 7850.0
@@ -87,8 +88,8 @@ def rig_numbers(rig: Rig) -> RigNumbers:
 
 
 def sampling_rate_hz(rig: Rig) -> float:
-    """Return the least of 25.6, 51.2, ... kHz that carries ten mesh harmonics below 0.4 of it [Hz]."""
-    needed = 10.0 * rig.teeth[0] * rig.speed_hz[1] * 1.02 / 0.4
+    """Return the least of 25.6, 51.2, ... kHz that carries ten mesh harmonics with their sidebands [Hz]."""
+    needed = SAMPLES_PER_PERIOD * (10.0 * rig.teeth[0] + SIDEBANDS) * rig.speed_hz[1] * 1.02
     rate = 25_600.0
     while rate < needed:
         rate *= 2.0

@@ -155,7 +155,7 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
     error = capsys.readouterr().err
     assert "not one of 6 records can be used" in error
     assert "they have to last 0.24 s" in error
-    assert run(monkeypatch, "indicators", "x", "--speed-range", "40", "30") == 2
+    assert run(monkeypatch, "indicators", "x", "--speed-range", "40,30") == 2
     assert "speed range" in capsys.readouterr().err
 
 

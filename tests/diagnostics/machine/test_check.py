@@ -109,3 +109,16 @@ def test_a_damaged_folder_is_named(machine: Path, tmp_path: Path) -> None:
     (folder / "references.parquet").write_bytes(table)
     with pytest.raises(SiggenError, match="is damaged"):
         run("check", folder, write_recording(tmp_path / "new.npz", seed=1))
+
+
+def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> None:
+    """With a tacho nothing else would notice: every order would be that of something else."""
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(3)]
+    for seed, file in enumerate(files):
+        held = dict(np.load(file))
+        held["pulse"] = np.where((held["t"] * 25.0) % 1.0 < 0.1, 5.0, 0.0)
+        rng = np.random.default_rng(seed)
+        np.savez(file, **{k: v if k in {"t", "pulse"} else rng.standard_normal(v.size) for k, v in held.items()})
+    facts = ["--fs", FS_HZ, "--teeth", "20,31", "--tacho", "pulse", "--channel", "lid=lid", "--out", tmp_path / "rig"]
+    with pytest.raises(SiggenError, match="no mesh line of 20 teeth"):
+        run("baseline", *files, *facts)

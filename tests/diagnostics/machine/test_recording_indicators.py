@@ -41,7 +41,7 @@ def test_closed_forms_of_a_modulated_line(recording: Path) -> None:
 
 
 def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_path: Path) -> None:
-    facts = ["--fs", "8000", "--teeth", "20,31", "--speed-range", "20", "30", "--out", str(tmp_path / "found")]
+    facts = ["--fs", "8000", "--teeth", "20,31", "--speed-range", "20,30", "--out", str(tmp_path / "found")]
     result = CliRunner().invoke(app, ["indicators", str(recording), *facts], catch_exceptions=False)
     assert result.exit_code == 0
     assert "mesh 500.0" in result.output

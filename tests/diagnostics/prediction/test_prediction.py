@@ -113,7 +113,7 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
         (("--fs", "12800", "--speed-range", "20,50"), "teeth unknown"),
         (("--fs", "12800", "--teeth", "18,47"), "neither tacho nor speed"),
         (("--teeth", "18,47", "--speed-range", "20,50"), "sampling rate"),
-        (options("--channel", "casing=x"), "the model knows no channel casing"),
+        (options("--channel", "casing=x"), "no channel casing is wanted"),
         (options("--reference", "run.npz"), "without the healthy-referenced variant"),
     ],
 )
