@@ -210,7 +210,7 @@ def _channel(
     gear_order = teeth[0] / teeth[1]
     return ChannelFit(
         seen.name,
-        tuple(jackknife(column) for column in np.where(seen.lines.is_line, seen.lines.energy_db, np.nan).T),
+        tuple(jackknife(column) for column in np.where(seen.lines.is_line.all(axis=0), seen.lines.energy_db, np.nan).T),
         seen.lines,
         noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
         own_lines(seen.records, teeth),

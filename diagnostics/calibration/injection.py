@@ -120,7 +120,7 @@ def _continued(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
     found = np.interp(time_s, pulses_s, turns)
     first, last = pulses_s[1] - pulses_s[0], pulses_s[-1] - pulses_s[-2]
     found = np.where(time_s < pulses_s[0], (time_s - pulses_s[0]) / first, found)
-    return np.where(time_s > pulses_s[-1], turns[-1] + (time_s - pulses_s[-1]) / last, found)
+    return np.asarray(np.where(time_s > pulses_s[-1], turns[-1] + (time_s - pulses_s[-1]) / last, found))
 
 
 def control_difference(difference: Difference, kind: str, rng: np.random.Generator) -> Difference:

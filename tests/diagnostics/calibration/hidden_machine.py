@@ -22,12 +22,18 @@ HIDDEN: dict[str, Any] = {
 }
 
 
+def tacho_waveform(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
+    """Return pulses of 3 ms that rise over four samples about their time, as behind the filter of a recorder."""
+    nearest = pulses_s[np.abs(time_s[:, None] - pulses_s).argmin(axis=1)]
+    since = time_s - nearest
+    return np.asarray(5.0 * np.clip(0.5 + since * FS_HZ / 4.0, 0.0, 1.0) * (since < 0.003))
+
+
 def write_recording(record: Any, file: Path) -> Path:
     """Write channels and a tacho's waveform as text."""
     signals = {f"ch{k + 1}": signal for k, signal in enumerate(record.channels.values())}
     time_s = np.arange(next(iter(signals.values())).size) / FS_HZ
-    since = time_s - record.tacho_s[np.clip(np.searchsorted(record.tacho_s, time_s) - 1, 0, None)]
-    signals["tacho"] = np.where((since >= 0.0) & (since < 0.003), 5.0, 0.0)
+    signals["tacho"] = tacho_waveform(time_s, record.tacho_s)
     np.savetxt(
         file, np.stack(list(signals.values()), axis=1), delimiter=",", header=",".join(signals), comments="", fmt="%.7g"
     )
