@@ -34,7 +34,7 @@ from diagnostics.calibration.injection import (
 from diagnostics.recordings.measured_recording import RecordingFacts
 
 KINDS = (PHYSICS, SHUFFLED, WHITE)
-GEARBOXES = 4
+GEARBOXES = 2
 CHANNELS = ("sensor_1_vertical", "sensor_2_horizontal")
 
 

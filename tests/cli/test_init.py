@@ -15,6 +15,7 @@ from siggen.errors import UsageError
 RIGS = {
     "25/56": ["--teeth", "25,56", "--module", "2", "--face-width", "20", "--speed", "15,25", "--torque", "20"],
     "fine": ["--teeth", "19,19", "--module", "0.8", "--face-width", "8", "--speed", "50", "--torque", "1"],
+    "at the band": ["--teeth", "20,40", "--module", "0.8", "--face-width", "8", "--speed", "50", "--torque", "1"],
     "large": ["--teeth", "21,83", "--module", "8", "--face-width", "100", "--speed", "10,25", "--torque", "1000,3000"],
     "28/28": ["--teeth", "28,28", "--module", "3.175", "--face-width", "6.35", "--speed", "23", "--torque", "160"],
 }
@@ -59,3 +60,10 @@ def test_a_file_that_exists_is_never_written(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is there already"):
         run(*RIGS["25/56"], "--out", str(tmp_path / "rig.yaml"))
     assert (tmp_path / "rig.yaml").read_text() == "mine"
+
+
+def test_what_is_implausible_is_said_at_once(tmp_path: Path) -> None:
+    slip = ["--teeth", "25,56", "--module", "2", "--face-width", "20", "--speed", "15,25", "--torque", "2000"]
+    result = CliRunner().invoke(app, ["init", *slip, "--out", str(tmp_path / "rig.yaml")])
+    assert result.exit_code == 0, result.output
+    assert "implausible: " in result.output
