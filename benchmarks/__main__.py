@@ -16,7 +16,20 @@ from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
 TOPICS = (
-    *("startup", "stiffness", "integration", "precision", "record", "sensing", "background", "storage", "loader"),
+    *(
+        "startup",
+        "cold",
+        "presets",
+        "memory",
+        "stiffness",
+        "integration",
+        "precision",
+        "record",
+        "sensing",
+        "background",
+        "storage",
+        "loader",
+    ),
     *("indicators", "audit", "workers", "quickstart", "contact", "faults", "house"),
 )
 

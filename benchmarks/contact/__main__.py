@@ -150,6 +150,33 @@ def face_table() -> Iterator[str]:
             )
 
 
+def delivered_table() -> Iterator[str]:
+    """Lines of what the table leaves in the forces and in the delivered acceleration of records of bench."""
+    from benchmarks.contact.delivered_error import delivered_errors
+
+    yield "| gears | state | gearbox | tilt, mean / largest [µrad] | force rms | force largest | acceleration |"
+    yield "|---|---|---|---|---|---|---|"
+    for e in delivered_errors():
+        yield (
+            f"| {e.shafts} | {e.state} | {e.gearbox} | {1e6 * e.tilt_mean_rad:.0f} / {1e6 * e.tilt_largest_rad:.0f} "
+            f"| {e.force_rms:.1e} | {e.force_largest:.1e} | {e.acceleration:.1e} |"
+        )
+
+
+def time_table() -> Iterator[str]:
+    """Lines of CPU time of the time loop by law of contact."""
+    from benchmarks.contact.loop_time import loop_times
+
+    yield "| integrator | law | CPU per second of signal | over slices | over parallel, across the face |"
+    yield "|---|---|---|---|---|"
+    for integrator, spent in loop_times():
+        slices, parallel, _ = spent.values()
+        for law, seconds in spent.items():
+            yield (
+                f"| {integrator} | {law} | {1e3 * seconds:.0f} ms | {seconds / slices:.2f} | {seconds / parallel:.2f} |"
+            )
+
+
 def _seconds(run: Callable[[], object]) -> float:
     start = time.process_time()
     run()
@@ -171,6 +198,8 @@ TABLES = {
     "loop": loop_table,
     "tilt": tilt_table,
     "table": face_table,
+    "delivered": delivered_table,
+    "time": time_table,
     "notch": notch_table,
     "two_edges": two_edge_table,
     "notch_fit": fit_notch,
@@ -182,7 +211,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.contact", description=__doc__)
     parser.add_argument("what", nargs="*", default=["edge", "losses", "cost"], choices=list(TABLES))
     for what in parser.parse_args().what:
-        print(f"\n{what}\n", *TABLES[what](), sep="\n")
+        print(f"\n{what}\n")
+        for line in TABLES[what]():
+            print(line, flush=True)
 
 
 if __name__ == "__main__":

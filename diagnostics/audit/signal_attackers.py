@@ -1,7 +1,8 @@
 """Attackers that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
 
 All of them start from the lines of the pinion's averaged revolution in the one table of the set, without shaft and mesh
-orders. Nothing of a record's level is used alone; with a reference the change is measured against the reference's size.
+orders. Nothing of a record's level is used alone, but by the network, which is that of `train`; with a reference the
+change is measured against the reference's size.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ from collections.abc import Callable
 import numpy as np
 
 from diagnostics.attacks.band_columns import Bank, band_bank, kurtogram_maximum
-from diagnostics.attacks.circular_network import circular_network
 from diagnostics.attacks.column_attackers import all_columns, best_column
 from diagnostics.attacks.convolution_features import convolution_features, revolution
 from diagnostics.attacks.residual_lines import line_array, residual_lines, whitened
 from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.network_attacker import network_attacker
 from diagnostics.audit.reference_pairs import reference_records
 
 NETWORK = "circular network"
@@ -54,11 +55,10 @@ def _attackers(
     values, names = over_channels(bank)
     advance()
     waves = level_waves(residual, reference)
-    usable = np.isfinite(waves).all(axis=(1, 2))
     features = convolution_features(waves)
     advance()
-    damaged, specimen = ~measured.healthy, measured.labels["specimen_id"]
-    network = circular_network(NETWORK + suffix, waves, damaged, specimen, usable, seed)
+    places = reference_records(measured) if reference is not None else None
+    network = network_attacker(NETWORK + suffix, measured, places, seed)
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),

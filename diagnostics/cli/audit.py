@@ -19,7 +19,9 @@ class Speed(StrEnum):
 
 
 def audit(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     strict: Annotated[bool, typer.Option("--strict", help="End with exit code 4 if a trap was found.")] = False,
     realism: Annotated[
         bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
@@ -63,6 +65,7 @@ def audit(
     from diagnostics.audit.audit_report import audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.audit.card_section import card_section
+    from diagnostics.base.beside import beside
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
@@ -71,7 +74,7 @@ def audit(
 
     own = load_indicators(indicator)
     dataset = open_set(directory)
-    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_audit")
+    folder = out or beside(dataset.path, "_audit")
     found = audit_set(
         dataset,
         seed,

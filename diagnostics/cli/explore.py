@@ -7,13 +7,57 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.base.beside import beside
+from diagnostics.cli.opened import Open, opened
+from diagnostics.cli.recording_options import (
+    Channel,
+    FullScale,
+    Rate,
+    RecordingDescription,
+    Sensitivity,
+    SpeedRange,
+    Tacho,
+    TachoPulses,
+    Teeth,
+    Unit,
+    file_rows,
+    two_gears,
+)
+from diagnostics.cli.training_options import OwnIndicators
+from siggen.errors import UsageError
+
+MACHINE_FILE = "machine.json"
+"""What the folder of a machine holds; its reader is slow to import."""
+
 
 def explore(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    targets: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="DIR | MACHINE RECORDING... | RECORDING...",
+            help="Folder or s3://... of a finished set; the folder that `baseline` wrote, with recordings; recordings.",
+            show_default=False,
+        ),
+    ],
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help="The page. Default: DIR_explore.html.", show_default=False),
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="FILE",
+            help="The page. Default: the first target's name and _explore.html.",
+            show_default=False,
+        ),
     ] = None,
+    model: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MODEL",
+            help="Folder of `train` or `report`: shows what its logistic regression names every record.",
+            show_default=False,
+        ),
+    ] = None,
+    indicator: OwnIndicators = None,
     limit: Annotated[
         int, typer.Option(min=1, help="Most records on the page; whole gearboxes beyond it are left out.")
     ] = 100,
@@ -21,23 +65,127 @@ def explore(
         bool,
         typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
     ] = False,
+    serve: Annotated[
+        bool,
+        typer.Option(
+            "--serve",
+            help="Serve the page to this machine alone (127.0.0.1), with every sample of the record you look at, until "
+            "Ctrl+C. Writes no file.",
+        ),
+    ] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0,
+    show: Open = False,
     workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    healthy: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="A healthy recording to lay others over. May be given several times."),
+    ] = None,
+    teeth: Teeth = None,
+    speed_range: SpeedRange = None,
+    fs: Rate = None,
+    channel: Channel = None,
+    unit: Unit = "m/s2",
+    sensitivity: Sensitivity = None,
+    full_scale: FullScale = None,
+    tacho: Tacho = None,
+    tacho_pulses: TachoPulses = 1,
 ) -> None:
-    """Write one HTML page to look at the records of a set; it opens from disk, without server or network.
+    """Write one HTML page to look at the records of a set, or at recordings; it opens from disk, without a network.
 
     A table to filter and sort; for the chosen record its signal, order and envelope spectra, averages by tooth and
     damaged flanks, laid over the healthy record of the same gearbox; indicators, and a scatter of any two.
 
     Example: siggen-diagnostics explore data/quickstart --out quickstart.html
-    """
-    from diagnostics.cli.progress import terminal_stage
-    from diagnostics.explore.explorer import write_explorer
-    from siggen.dataset.reading import open as open_set
-    from siggen.errors import UsageError
 
-    folder = directory.resolve()
-    path = out or folder.with_name(f"{folder.name}_explore.html")
-    if path.is_dir():
-        raise UsageError(f"--out {path}: received a folder; allowed is the name of a file, such as {path / 'set.html'}")
-    dataset = open_set(directory)
-    typer.echo(str(write_explorer(dataset, path, limit=limit, full=full, workers=workers, stage=terminal_stage)))
+    Options from --healthy on describe recordings without a machine.
+
+    Example: siggen-diagnostics explore data/quickstart --model data/quickstart_report --serve --open
+
+    Example: siggen-diagnostics explore rig january.csv february.csv august.csv
+    """
+    first, path = Path(targets[0]), out
+    if out and out.is_dir():
+        raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
+    if (first / MACHINE_FILE).is_file() or teeth or file_rows(targets[0])[0][0].is_file():
+        if given := [
+            name for name, said in (("--serve", serve), ("--model", model), ("--indicator", indicator)) if said
+        ]:
+            raise UsageError(f"{', '.join(given)}: for sets only; leave them out for recordings")
+        facts = RecordingDescription(
+            teeth, speed_range, fs, channel, unit, sensitivity, full_scale, tacho, tacho_pulses
+        )
+        place = first.with_suffix("") if first.is_file() else first
+        path = _recordings_page(targets, healthy or [], facts, out or beside(place, "_explore.html"), full)
+    elif len(targets) > 1:
+        raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
+    else:
+        if serve and (out or full):
+            raise UsageError("--serve writes no file and gives every sample; leave out --out and --full")
+        path = _set_page(first, out, (limit, full, workers), model, indicator, (serve, port, show))
+    if path is None:
+        return
+    typer.echo(str(path))
+    if show:
+        opened(path)
+
+
+def _set_page(
+    folder: Path,
+    out: Path | None,
+    amount: tuple[int, bool, int],
+    model: Path | None,
+    indicator: list[str] | None,
+    serving: tuple[bool, int, bool],
+) -> Path | None:
+    """Serve the page of a set, or write it and return where."""
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
+    from diagnostics.indicators.own_indicator import load_indicators
+    from siggen.dataset.reading import open as open_set
+
+    own, dataset = load_indicators(indicator), open_set(folder)
+    limit, full, workers = amount
+    options = ExplorerOptions(limit=limit, full=full, served=serving[0], workers=workers, model=model, own=own)
+    if serving[0]:
+        _serve(*explorer_of(dataset, options, terminal_stage), dataset, *serving[1:])
+        return None
+    return write_explorer(dataset, out or beside(dataset.path, "_explore.html"), options, terminal_stage)
+
+
+def _recordings_page(
+    targets: list[str], healthy: list[str], said: RecordingDescription, path: Path, full: bool
+) -> Path:
+    """Write the page of recordings, of a machine or of files that the user describes."""
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.cli.shown_recordings import of_files, of_machine
+    from diagnostics.explore.measured_page import write_recordings_page
+
+    folder = Path(targets[0])
+    if folder.is_dir():
+        shown = of_machine(folder, [*targets[1:], *healthy], terminal_stage)
+        name = folder.resolve().name
+    else:
+        if said.teeth is None:
+            raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
+        shown = of_files(targets, healthy, two_gears(said.teeth), said.facts(), said.speed_range_hz(), terminal_stage)
+        name = ", ".join(Path(target).name for target in targets[:3])
+    return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
+
+
+def _serve(page: str, records: object, dataset: object, port: int, show: bool) -> None:
+    """Serve until Ctrl+C."""
+    from diagnostics.explore.server import page_server
+
+    try:
+        server = page_server(page, dataset, records, port)  # type: ignore[arg-type]
+    except OSError as error:
+        raise UsageError(f"--port {port}: {error.strerror}; allowed: a free port, or 0 for any") from error
+    address = f"http://{server.server_address[0]!s}:{server.server_port}/"
+    typer.echo(f"{address} (this machine alone; Ctrl+C ends it)")
+    if show:
+        opened(address)
+    with server:
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            typer.echo("ended", err=True)

@@ -11,7 +11,9 @@ from diagnostics.cli.training_options import OwnIndicators
 
 
 def features(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="FILE", help="Table to write, .parquet or .csv.", show_default=False)
     ],

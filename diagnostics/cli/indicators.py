@@ -102,6 +102,7 @@ def indicators(
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
     directory = Path(targets[0])
+    from diagnostics.base.beside import beside
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -126,7 +127,7 @@ def indicators(
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         everything = record_table(dataset, settings, own, workers=workers, advance=advance)
     table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)
-    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_indicators")
+    folder = out or beside(dataset.path, "_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
     typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))
 

@@ -66,6 +66,7 @@ def predict(
     Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
+    from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 
@@ -86,7 +87,8 @@ def predict(
         for path, number in file_rows(said)
     )
     low_high = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
-    found = predict_recording(loaded, recording, pair, low_high, references)
+    with terminal_stage("prediction", 1):
+        found = predict_recording(loaded, recording, pair, low_high, references)
     for label, text in prediction_rows(found):
         typer.echo(f"{label + ':':21} {text}")
     typer.echo(MEANING)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from diagnostics.recordings.measured_recording import RecordingFacts
 
 ROWS = re.compile(r"\d+(,\d+)*")
 
@@ -35,6 +38,32 @@ Tacho = Annotated[
     str | None, typer.Option("--tacho", metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
 ]
 TachoPulses = Annotated[int, typer.Option("--tacho-pulses", min=1, help="Tacho pulses per pinion revolution.")]
+
+
+class RecordingDescription(NamedTuple):
+    """What the options above say of recordings."""
+
+    teeth: str | None
+    speed_range: str | None
+    fs: float | None
+    channel: list[str] | None
+    unit: str
+    sensitivity: float | None
+    full_scale: float | None
+    tacho: str | None
+    tacho_pulses: int
+
+    def facts(self) -> RecordingFacts:
+        """Return how the files are read."""
+        from diagnostics.recordings.measured_recording import RecordingFacts
+
+        columns = dict(named_column(said) for said in self.channel or ())
+        voltage = self.unit, self.sensitivity, self.full_scale
+        return RecordingFacts(self.fs, columns, *voltage, self.tacho, self.tacho_pulses)
+
+    def speed_range_hz(self) -> tuple[float, float] | None:
+        """Return where the speed of the pinion is searched."""
+        return two_numbers(self.speed_range, "--speed-range", "14,26") if self.speed_range else None
 
 
 def file_rows(said: str) -> list[tuple[Path, int | None]]:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from diagnostics.cli.opened import Open, opened
 from diagnostics.cli.training_options import (
     Augment,
     Channels,
@@ -18,9 +19,13 @@ from diagnostics.cli.training_options import (
     WithStudies,
 )
 
+EXPLORER = "explorer.html"
+
 
 def report(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -34,12 +39,20 @@ def report(
     cnn: WithNetwork = True,
     device: Device = "cpu",
     augment: Augment = True,
+    explore: Annotated[
+        bool,
+        typer.Option(
+            "--explore", help="Also write explorer.html, to which records and counts of the report then lead."
+        ),
+    ] = False,
+    show: Open = False,
     seed: Seed = 0,
 ) -> None:
     """Compute indicators, train classifiers, and write report.html, metrics.json, tables, figures and models.
 
     Example: siggen-diagnostics report data/quickstart --studies
     """
+    from diagnostics.base.beside import beside
     from diagnostics.base.extras import missing_packages
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -51,9 +64,25 @@ def report(
         check_device(device)
     own = load_indicators(indicator)
     dataset, second = open_sets(directory, test, channel or ())
-    folder = out or directory.resolve().with_name(f"{directory.resolve().name}_report")
+    folder = out or beside(dataset.path, "_report")
     options = NetworkOptions(cnn, device, augment, ablation=studies)
     path = write_report(
-        dataset, folder, seed, network=options, other=second, own=own, with_studies=studies, stage=terminal_stage
+        dataset,
+        folder,
+        seed,
+        network=options,
+        other=second,
+        own=own,
+        with_studies=studies,
+        explorer=EXPLORER if explore else "",
+        stage=terminal_stage,
     )
+    if explore:
+        from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+
+        model = folder / "models"
+        known = model if (model / "model.json").is_file() else None
+        write_explorer(dataset, folder / EXPLORER, ExplorerOptions(model=known, own=own), terminal_stage)
     typer.echo(str(path))
+    if show:
+        opened(path)

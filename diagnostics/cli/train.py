@@ -21,7 +21,9 @@ from diagnostics.cli.training_options import (
 
 
 def train(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a finished set.", show_default=False)],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+    ],
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="DIR2", help="Folder for the models.", show_default=False)
     ],

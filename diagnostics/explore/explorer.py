@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,9 @@ from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records
 from diagnostics.explore.missing_parts import missing_parts
-from diagnostics.explore.payload import page_payload
+from diagnostics.explore.payload import page_payload, set_source
+from diagnostics.explore.predictions import predicted_labels
+from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
@@ -24,6 +28,14 @@ SCRIPTS = (
     *("spectra.js", "averages.js", "internals.js", "flank.js", "indicators.js", "records.js", "explorer.js"),
 )
 STYLES = ("vendored/uPlot.min.css", "explorer.css")
+Columns = tuple[tuple[str, str], ...]
+SET_COLUMNS = (
+    *(("record_id", "Record"), ("state", "State"), ("damaged_area_mm2", "Area [mm²]"), ("speed_hz", "Speed [Hz]")),
+    *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),
+)
+SET_FILTERS = (("state", "State"), ("split", "Split"), ("speed_hz", "Speed [Hz]"), ("torque_nm", "Load [N m]"))
+NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"))
+NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
 IN_SCRIPT: dict[str, str | int | None] = {
     "<": "\\u003c",
@@ -34,14 +46,36 @@ IN_SCRIPT: dict[str, str | int | None] = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class ExplorerOptions:
+    """What goes on the page.
+
+    Attributes
+    ----------
+    limit : int
+        Most records; whole gearboxes are left out beyond it.
+    full : bool
+        Whether all samples are kept, as far as 30 MB allow.
+    served : bool
+        Whether a server adds the samples that the page leaves out.
+    workers : int
+        Processes that take indicators.
+    model : Path, optional
+        Folder of a model that names every record.
+    own : sequence of OwnIndicator
+        The user's indicators.
+    """
+
+    limit: int = LIMIT
+    full: bool = False
+    served: bool = False
+    workers: int = 1
+    model: Path | None = None
+    own: Sequence[OwnIndicator] = ()
+
+
 def write_explorer(
-    dataset: Dataset,
-    path: Path,
-    *,
-    limit: int = LIMIT,
-    full: bool = False,
-    workers: int = 1,
-    stage: Stage = silent_stage,
+    dataset: Dataset, path: Path, options: ExplorerOptions | None = None, stage: Stage = silent_stage
 ) -> Path:
     """Write the page of a set and return its path.
 
@@ -51,12 +85,7 @@ def write_explorer(
         What `siggen.open` returned.
     path : Path
         The HTML file.
-    limit : int
-        Most records; whole gearboxes are left out beyond it.
-    full : bool
-        Whether all samples are kept, as far as 30 MB allow.
-    workers : int
-        Processes that take indicators.
+    options : ExplorerOptions, optional
     stage : Stage, optional
         Told of the progress.
 
@@ -65,21 +94,32 @@ def write_explorer(
     DatasetError
         If the set holds no records.
     UsageError
-        If Jinja2 is not installed.
+        If Jinja2 is not installed, or the model is none of this set's channels.
     """
-    require_packages("the page to explore a set", "jinja2")
-    labels = dataset.labels(columns=["record_id", "specimen_id"])
-    with stage("indicators", labels.num_rows) as advance:
-        table = record_table(dataset, workers=workers, advance=advance)
-    specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
-    rows = chosen_records(specimens, limit)
-    payload = page_payload(dataset, table, rows, stage, full=full)
+    page, _ = explorer_of(dataset, options or ExplorerOptions(), stage)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(explorer_page(_facts(dataset, payload, labels.num_rows), payload), encoding="utf-8")
+    path.write_text(page, encoding="utf-8")
     return path
 
 
-def _facts(dataset: Dataset, payload: dict[str, Any], records: int) -> dict[str, Any]:
+def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tuple[str, np.ndarray]:
+    """Return the page of a set and the numbers of its records; parameters and errors as of `write_explorer`."""
+    require_packages("the page to explore a set", "jinja2")
+    labels = dataset.labels(columns=["record_id", "specimen_id"])
+    with stage("indicators", labels.num_rows) as advance:
+        table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
+    said = predicted_labels(table, options.model, options.own) if options.model else {}
+    specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
+    rows = chosen_records(specimens, options.limit)
+    payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)
+    for place, record in enumerate(payload["records"]):
+        record.update({name: str(values[rows[place]]) for name, values in said.items()})
+    payload["served"] = options.served
+    page = explorer_page(_facts(dataset, payload, labels.num_rows, options), payload)
+    return page, np.asarray(labels.column("record_id"))[rows]
+
+
+def _facts(dataset: Dataset, payload: dict[str, Any], records: int, options: ExplorerOptions) -> dict[str, Any]:
     """Return what the template says in words."""
     labels = {name: np.asarray([row[name] for row in payload["records"]]) for name in ("fault", "specimen_id")}
     internals = bool(payload["quantities"])
@@ -88,8 +128,20 @@ def _facts(dataset: Dataset, payload: dict[str, Any], records: int) -> dict[str,
         "identity": str(dataset.manifest.get("identity", ""))[:12],
         "records": records,
         "healthy": int(np.count_nonzero(labels["fault"] == HEALTHY)),
-        "missing": missing_parts(labels, payload["overlay"], bool(payload["damage"]), internals),
+        "missing": missing_parts(
+            labels, payload["overlay"], bool(payload["damage"]), internals, named=options.model is not None
+        ),
+        "served": options.served,
+        "columns": _columns(SET_COLUMNS, NAMED_COLUMNS if options.model else ()),
+        "filters": [*SET_FILTERS, *(NAMED_FILTERS if options.model else ())],
     }
+
+
+def _columns(
+    columns: tuple[tuple[str, str], ...], after_the_state: tuple[tuple[str, str], ...]
+) -> list[tuple[str, str]]:
+    """Return key and title of the columns of the table."""
+    return [*columns[:2], *after_the_state, *columns[2:]]
 
 
 def explorer_page(facts: dict[str, Any], payload: dict[str, Any]) -> str:

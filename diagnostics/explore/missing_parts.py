@@ -11,7 +11,12 @@ from diagnostics.records.state_classes import HEALTHY
 
 
 def missing_parts(
-    labels: Mapping[str, np.ndarray], overlaid: Sequence[int | None], damaged_flanks: bool, internals: bool
+    labels: Mapping[str, np.ndarray],
+    overlaid: Sequence[int | None],
+    damaged_flanks: bool,
+    internals: bool,
+    *,
+    named: bool,
 ) -> list[str]:
     """Return sentences on what is missing; none for a set that has everything."""
     healthy = labels["fault"] == HEALTHY
@@ -35,5 +40,10 @@ def missing_parts(
         found.append(
             "Neither transmission error nor mesh force in the set: quantities that no sensor sees are not there to "
             "show. “internals” in the configuration stores them."
+        )
+    if not named:
+        found.append(
+            "No model: the page does not say what a classifier names each record. `--model` takes the folder of train "
+            "or report."
         )
     return found

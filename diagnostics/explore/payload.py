@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,15 +12,16 @@ import pyarrow.compute as pc
 
 from diagnostics.base.progress import Stage
 from diagnostics.explore.chosen_records import overlaid_records
-from diagnostics.explore.detail import page_detail
+from diagnostics.explore.detail import Detail, page_detail
 from diagnostics.explore.flank_outlines import flank_size, outlines
 from diagnostics.explore.internal_waves import internal_waves, shown_internals
 from diagnostics.explore.order_axis import highest_order, order_axis
 from diagnostics.explore.packed import packed_floats
 from diagnostics.explore.record_views import PageAxes, record_views
 from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
-from diagnostics.records.recording import recordings
+from diagnostics.records.recording import Recording, recordings
 from siggen.dataset.reading import Dataset
 
 SHOWN = (
@@ -28,8 +31,50 @@ SHOWN = (
 GEARS = ("pinion", "gear")
 
 
-def page_payload(dataset: Dataset, table: RecordTable, rows: np.ndarray, stage: Stage, *, full: bool) -> dict[str, Any]:
-    """Return labels, indicators and packed signals of the chosen rows.
+@dataclass(frozen=True, slots=True)
+class PageSource:
+    """What a page is made of, whether of a set or of recordings.
+
+    Attributes
+    ----------
+    labels : dict of str to (n,)
+        Those of `SHOWN` that are known, and others for the table.
+    overlay : list of int or None
+        Row of the healthy record that each is laid over.
+    records : callable
+        Yields the records in any order; `record_id` in their labels says which.
+    channels : tuple of str
+    fs_hz, duration_s : float
+    indicators : list of dict
+        Name, channel, title, definition and packed values of each.
+    damage : dict of str to list
+        Outlines by record; empty where unknown.
+    flanks : list of dict
+        Size of the flanks of each record's gears, None where unknown.
+    quantities : list of dict
+        What the source stores of what no sensor sees.
+    internals : callable
+        Returns these by record, for a detail and the stretches that are kept whole.
+    measured : bool
+        Whether these are recordings of one machine.
+    """
+
+    labels: dict[str, np.ndarray]
+    overlay: list[int | None]
+    records: Callable[[], Iterable[Recording]]
+    channels: tuple[str, ...]
+    fs_hz: float
+    duration_s: float
+    indicators: list[dict[str, Any]]
+    damage: dict[str, list[dict[str, Any]]]
+    flanks: list[dict[str, Any]]
+    quantities: list[dict[str, str]]
+    internals: Callable[[Detail, list[tuple[int, int]]], list[dict[str, Any]]]
+    measured: bool = False
+
+
+def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSource:
+    """Return the chosen rows of a set.
 
     Parameters
     ----------
@@ -38,30 +83,54 @@ def page_payload(dataset: Dataset, table: RecordTable, rows: np.ndarray, stage: 
         Indicators of the whole set.
     rows : (n,) int64
         Rows of the table that the page shows.
+    """
+    labels = chosen_labels(dataset, rows)
+    return PageSource(
+        labels=labels,
+        overlay=overlaid_records(labels),
+        records=lambda: recordings(dataset),
+        channels=tuple(channel.name for channel in dataset.channels),
+        fs_hz=dataset.fs_hz,
+        duration_s=dataset.duration_s,
+        indicators=_indicators(table, rows),
+        damage=_damage(dataset, labels["record_id"]),
+        flanks=[_flanks(dataset, labels, k) for k in range(rows.size)],
+        quantities=shown_internals(dataset),
+        internals=lambda detail, fine: internal_waves(dataset, labels["record_id"], detail, fine),
+    )
+
+
+def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, Any]:
+    """Return labels, indicators and packed signals.
+
+    Parameters
+    ----------
+    source : PageSource
     stage : Stage
         Told of every record.
     full : bool
         Whether all samples are wanted.
     """
-    labels = chosen_labels(dataset, rows)
-    axes = _axes(dataset, labels, full=full)
-    signals = _signals(dataset, labels, axes, stage)
+    labels = source.labels
+    axes = _axes(source, full=full)
+    signals = _signals(source, axes, stage)
     fine = [next(iter(found["channels"].values()))["wave"]["fine"] for found in signals]
     return {
-        "fs_hz": dataset.fs_hz,
-        "samples": round(dataset.fs_hz * dataset.duration_s),
-        "channels": [channel.name for channel in dataset.channels],
+        "fs_hz": source.fs_hz,
+        "samples": round(source.fs_hz * source.duration_s),
+        "channels": list(source.channels),
         "order_step": axes.orders.step,
         "envelope_step": axes.envelope_orders.step,
         "steps_per_tooth": axes.detail.steps_per_tooth,
-        "records": [{name: _plain(values[k]) for name, values in labels.items()} for k in range(rows.size)],
-        "overlay": overlaid_records(labels),
-        "damage": _damage(dataset, labels["record_id"]),
-        "flanks": [_flanks(dataset, labels, k) for k in range(rows.size)],
-        "indicators": _indicators(table, rows),
+        "records": [{name: _plain(values[k]) for name, values in labels.items()} for k in range(len(signals))],
+        "overlay": source.overlay,
+        "damage": source.damage,
+        "flanks": source.flanks,
+        "indicators": source.indicators,
         "signals": signals,
-        "quantities": shown_internals(dataset),
-        "internals": internal_waves(dataset, labels["record_id"], axes.detail, fine),
+        "quantities": source.quantities,
+        "internals": source.internals(axes.detail, fine),
+        "measured": source.measured,
     }
 
 
@@ -77,13 +146,13 @@ def _plain(value: Any) -> Any:
     return plain if not isinstance(plain, float) or np.isfinite(plain) else None
 
 
-def _axes(dataset: Dataset, labels: dict[str, np.ndarray], *, full: bool) -> PageAxes:
-    samples, teeth = round(dataset.fs_hz * dataset.duration_s), labels["teeth_pinion"]
+def _axes(source: PageSource, *, full: bool) -> PageAxes:
+    labels = source.labels
+    samples, teeth = round(source.fs_hz * source.duration_s), labels["teeth_pinion"]
     both = int((teeth + labels["teeth_gear"]).max())
-    series = len(dataset.channels) + len(shown_internals(dataset))
-    detail = page_detail(teeth.size * series, samples, both, full=full)
-    revolutions = int(labels["speed_hz"].max() * dataset.duration_s)
-    last = max(highest_order(int(z), dataset.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
+    detail = page_detail(teeth.size * (len(source.channels) + len(source.quantities)), samples, both, full=full)
+    revolutions = int(labels["speed_hz"].max() * source.duration_s)
+    last = max(highest_order(int(z), source.fs_hz, float(labels["speed_hz"].min())) for z in np.unique(teeth))
     return PageAxes(
         detail,
         order_axis(last, revolutions, detail.order_points),
@@ -108,25 +177,30 @@ def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[s
 
 
 def _indicators(table: RecordTable, rows: np.ndarray) -> list[dict[str, Any]]:
-    """Return name, title, definition and packed values of every indicator that is defined for some record."""
-    titles, definitions = indicator_titles(table.settings), indicator_definitions(table.settings)
     names = table.names()
-    values = table.values(names)[rows]
+    return packed_indicators(names, table.values(names)[rows], table.settings, table.own)
+
+
+def packed_indicators(
+    names: Sequence[str], values: np.ndarray, settings: IndicatorSettings, own: Collection[str] = ()
+) -> list[dict[str, Any]]:
+    """Return name, title, definition and packed values (records, names) of every indicator that some record defines."""
+    titles, definitions = indicator_titles(settings), indicator_definitions(settings)
     found = []
     for name, column in zip(names, values.T, strict=True):
-        base, _, channel = name.rpartition("__") if name not in table.own else (name, "", "")
+        base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():
             facts = {"title": titles.get(base, name), "definition": definitions.get(base, "your own indicator")}
             found.append({"name": name, "channel": channel, **facts, "data": packed_floats(column)})
     return found
 
 
-def _signals(dataset: Dataset, labels: dict[str, np.ndarray], axes: PageAxes, stage: Stage) -> list[dict[str, Any]]:
-    place = {int(record): k for k, record in enumerate(labels["record_id"])}
-    starts = labels.get("start_angle_rad")
+def _signals(source: PageSource, axes: PageAxes, stage: Stage) -> list[dict[str, Any]]:
+    place = {int(record): k for k, record in enumerate(source.labels["record_id"])}
+    starts = source.labels.get("start_angle_rad")
     found: list[dict[str, Any]] = [{} for _ in place]
     with stage("signals and spectra", len(place)) as advance:
-        for record in recordings(dataset):
+        for record in source.records():
             row = place.get(int(record.labels["record_id"]))
             if row is not None:
                 found[row] = record_views(record, axes, None if starts is None else float(starts[row]))

@@ -31,7 +31,7 @@ class WindowSettings:
     hop_revolutions : int
         Step between the windows of a record that is judged; training starts windows anywhere.
     teeth : int
-        Teeth of the pinion, the same in the whole set.
+        Teeth of the pinion; the most of a set whose pinions differ, so that every one has steps enough per tooth.
     samples_per_tooth : int
         Angle steps per mesh period.
     most_revolutions : int
@@ -94,9 +94,9 @@ def order_records(
     Raises
     ------
     DatasetError
-        If a record holds fewer revolutions than a window, or pinions of the set differ in their number of teeth.
+        If a record holds fewer revolutions than a window.
     """
-    settings = settings or WindowSettings(teeth=_pinion_teeth(dataset))
+    settings = settings or WindowSettings(teeth=_most_teeth(dataset))
     signals, numbers = [], []
     for record in recordings(dataset):
         signals.append(_order_signal(record, settings))
@@ -107,14 +107,8 @@ def order_records(
     return OrderRecords(tuple(signals), np.array(numbers), names, settings)
 
 
-def _pinion_teeth(dataset: Dataset) -> int:
-    teeth = sorted(set(dataset.labels(columns=["teeth_pinion"]).column("teeth_pinion").to_pylist()))
-    if len(teeth) > 1:
-        raise DatasetError(
-            f"{dataset.path}: pinions with {teeth} teeth; the network takes windows of one number of teeth only. "
-            "Leave it out (--no-cnn)."
-        )
-    return int(teeth[0])
+def _most_teeth(dataset: Dataset) -> int:
+    return int(max(dataset.labels(columns=["teeth_pinion"]).column("teeth_pinion").to_pylist()))
 
 
 def _order_signal(record: Recording, settings: WindowSettings) -> np.ndarray:

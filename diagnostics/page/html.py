@@ -24,6 +24,7 @@ WIDE = 9
 WIDER = 14
 """Columns beyond which it also needs limits on lines of their own."""
 
+TURNS = re.compile("[\u202a-\u202e\u2066-\u2069]")
 PLAIN_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 NUMBERED = (("Figure", "<figcaption>"), ("Table", '<p class="caption">'))
 
@@ -61,7 +62,7 @@ def page(title: str, parts: Sequence[str]) -> str:
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
+        f"<title>{without_turns(escape(title))}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
         + f"\n</main><script>{HINT_SCRIPT}{SORT_SCRIPT}</script></body></html>\n"
     )
@@ -97,7 +98,7 @@ def contents(parts: Sequence[str]) -> str:
 
 def link(text: str, target: str, hint: str = "") -> str:
     """Return a link; its definition or target is shown on hover."""
-    title = f' title="{escape(hint, quote=True)}"' if hint else ""
+    title = f' title="{attribute(hint)}"' if hint else ""
     return f'<a href="{escape(target, quote=True)}"{title}>{inline(text)}</a>'
 
 
@@ -133,9 +134,19 @@ def notes(texts: Sequence[str]) -> list[str]:
     ]
 
 
+def without_turns(text: str) -> str:
+    """Return text with a visible word for every character that would turn the direction of what stands behind it."""
+    return TURNS.sub(lambda found: f"[U+{ord(found.group()):04X}]", text)
+
+
+def attribute(text: str) -> str:
+    """Return text for the value of an attribute."""
+    return without_turns(escape(text, quote=True))
+
+
 def inline(text: str) -> str:
     """Return text for the page: `code` between backticks, long names broken between their parts."""
-    found = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+    found = re.sub(r"`([^`]+)`", r"<code>\1</code>", without_turns(escape(text)))
     return re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found)
 
 
@@ -144,7 +155,7 @@ def figure_block(png: bytes, caption: str) -> str:
     source = base64.b64encode(png).decode("ascii")
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))  # of the header of a PNG
     return (
-        f'<figure><img alt="{escape(caption, quote=True)}" width="{width}" height="{height}" '
+        f'<figure><img alt="{attribute(caption)}" width="{width}" height="{height}" '
         f'src="data:image/png;base64,{source}"><figcaption>{inline(caption)}</figcaption></figure>'
     )
 
@@ -189,7 +200,7 @@ def table(
     body = "".join(f"<tr>{''.join(_cell(cell, place) for place, cell in enumerate(row))}</tr>" for row in rows)
     return (
         (f'<p class="caption">{inline(caption)}</p>' if caption else "")
-        + f'<div class="{box}" tabindex="0" role="region" aria-label="{escape(caption or "table", quote=True)}">'
+        + f'<div class="{box}" tabindex="0" role="region" aria-label="{attribute(caption or "table")}">'
         + f'<table class="{" ".join(name for name, wanted in flags.items() if wanted)}">'
         + (f"<thead><tr>{titles}</tr></thead>" if any(head) else "")
         + f"<tbody>{body}</tbody></table></div>"
@@ -208,7 +219,7 @@ def _cell(cell: Cell, place: int) -> str:
     tag, scope = ("td", "") if place else ("th", ' scope="row"')
     small = f" <small>{inline(minus(cell.small))}</small>" if cell.small else ""
     text = link(minus(cell.text), cell.link, cell.hint) if cell.link else inline(minus(cell.text))
-    name = f' id="{escape(cell.name, quote=True)}" data-hint="{escape(cell.hint, quote=True)}"' if cell.name else ""
+    name = f' id="{escape(cell.name, quote=True)}" data-hint="{attribute(cell.hint)}"' if cell.name else ""
     return f"<{tag}{scope}{name}{_sorted_by(cell)}{_shaded(cell.shade)}>{text}{small}</{tag}>"
 
 

@@ -28,6 +28,7 @@ FAULT_COLOURS = ("#e3a21a", "#d9622b", "#b01e3c", "#6a1b6e", "#2c1e55")
 PINION_COLOUR, GEAR_COLOUR = "#b01e3c", "#1f6f8b"
 SETTINGS = {
     "font.size": 10,
+    "text.parse_math": False,  # a dollar sign in a name begins no formula
     "axes.titlesize": 10,
     "axes.labelsize": 10,
     "axes.spines.top": False,

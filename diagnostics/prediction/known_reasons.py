@@ -10,6 +10,8 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.release.model_facts import ModelFacts
 
+SHOWN_PAIRS = 5
+
 
 def known_reasons(
     facts: ModelFacts,
@@ -21,7 +23,8 @@ def known_reasons(
     """Return what is known of the recording and was never trained."""
     found = []
     if teeth not in facts.teeth:
-        known = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
+        known = ", ".join(f"{a}/{b}" for a, b in facts.teeth[:SHOWN_PAIRS])
+        known += f" and {more} more pairs" if (more := len(facts.teeth) - SHOWN_PAIRS) > 0 else ""
         found.append(f"the gears have {teeth[0]}/{teeth[1]} teeth, training covers {known} only")
     found += _rate_reasons(facts, recording)
     low, high = facts.speed_range_hz

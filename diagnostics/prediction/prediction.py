@@ -300,8 +300,10 @@ def _network_vote(
     from diagnostics.prediction.network_vote import network_probabilities
 
     facts = model.network[1]
-    if facts.windows.teeth != teeth[0]:
-        return (), (f"the network takes pinions with {facts.windows.teeth} teeth only: left out",)
+    trained = {facts.windows.teeth, *(pinion for pinion, _ in model.facts.teeth)}
+    if teeth[0] not in trained:
+        known = ", ".join(str(count) for count in sorted(trained))
+        return (), (f"the network takes pinions with {known} teeth only: left out",)
     if pulses.times_s.size <= facts.windows.revolutions:
         return (), (f"the network takes windows of {facts.windows.revolutions} revolutions: left out",)
     found = network_probabilities(*model.network, recording, pulses)

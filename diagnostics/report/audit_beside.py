@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from diagnostics.audit.audit import ALONE
+from diagnostics.base.beside import beside
 from diagnostics.page.wording import decimal, joined
 from siggen.dataset.reading import Dataset
 
 
 def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
     """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
-    path = dataset.path.resolve().with_name(f"{dataset.path.resolve().name}_audit") / "audit.json"
+    path = beside(dataset.path, "_audit") / "audit.json"
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

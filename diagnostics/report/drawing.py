@@ -108,8 +108,9 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
         import siggen
 
         # provided lazily by the package, computed from the configuration; a set can be read without its physics
-        curves = siggen.mesh_stiffness_curves(dataset.path / "config.yaml")
-        meaning = siggen.mesh_stiffness_meaning(dataset.path / "config.yaml")
+        config = siggen.load_config(dataset.config)
+        curves = siggen.mesh_stiffness_curves(config)
+        meaning = siggen.mesh_stiffness_meaning(config)
         figure = stiffness_figures.stiffness_figure(curves, colours)
     except Exception as error:
         drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")

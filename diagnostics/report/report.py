@@ -54,6 +54,7 @@ def write_report(
     other: Any = None,
     own: Sequence[OwnIndicator] = (),
     with_studies: bool = False,
+    explorer: str = "",
     stage: Stage = silent_stage,
 ) -> Path:
     """Compute everything and write `report.html`, `metrics.json`, tables, figures and models; return the page's path.
@@ -74,6 +75,8 @@ def write_report(
         The user's indicators.
     with_studies : bool
         Whether to run what takes minutes: splits and learning curve.
+    explorer : str
+        Name of the page to explore beside the report, to which records and counts then lead.
     stage : Stage
         Told of every step.
 
@@ -111,7 +114,7 @@ def write_report(
     }
     metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing)
+    reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, explorer)
     pictures = _write_pictures(folder, {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()})
     path = folder / "report.html"
     path.write_text(report_page(reported, pictures), encoding="utf-8")

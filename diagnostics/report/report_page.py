@@ -91,7 +91,7 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
     return {
         "What limits the answer": _limits(reported),
         "Detectors": [detector_table(reported.detectors)] if reported.detectors.alone else [],
-        "Records": [tables.set_table(labels, ordered_states(labels))],
+        "Records": [*_explore(reported.explorer), tables.set_table(labels, ordered_states(labels))],
         "Scores": [*_scores(training), grid(drawing.scores)],
         "Records named wrongly": _named(reported),
         "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
@@ -101,6 +101,15 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Definitions of the indicators": [definition_html()],
         "Notes": html.notes(notes),
     }
+
+
+def _explore(explorer: str) -> list[str]:
+    """Return the link to the page on which records are looked at, or how to have it."""
+    if not explorer:
+        return [
+            html.paragraph("`siggen-diagnostics report DIR --explore` adds a page on which every record can be seen.")
+        ]
+    return [f"<p>{html.link('Look at the records: signals, spectra, flanks and indicators', explorer)}</p>"]
 
 
 def _limits(reported: Reported) -> list[str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from diagnostics.explore.explorer import write_explorer  # noqa: E402
+from diagnostics.explore.explorer import ExplorerOptions, write_explorer  # noqa: E402
 from tests.diagnostics.conftest import memory_dataset  # noqa: E402
 
 GEARBOXES = 33
@@ -24,7 +24,7 @@ def main() -> None:
     dataset = memory_dataset(("train",) * GEARBOXES, duration_s=DURATION_S)
     with tempfile.TemporaryDirectory() as folder:
         for full in (False, True):
-            path = write_explorer(dataset, Path(folder) / "page.html", full=full)
+            path = write_explorer(dataset, Path(folder) / "page.html", ExplorerOptions(full=full))
             print(f"| {'`--full`' if full else 'as it comes'} | {path.stat().st_size / 1e6:.1f} MB |")
 
 

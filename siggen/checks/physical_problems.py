@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from siggen.checks.edge_problems import edge_problems
 from siggen.checks.pair_problems import pair_problems
 from siggen.checks.shaft_problems import shaft_problems
+from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.config import (
     DamageModel,
@@ -77,6 +78,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     problems += variation_problems(sections, sound)
     problems += shaft_problems(sections, sound)
     problems += edge_problems(sections, sound)
+    problems += tilt_problems(sections, flanks)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from siggen.checks.tilt_problems import NEEDED, flank_tilts
 from siggen.config import Config
+from siggen.specimen.gears import gear_pair
 
 
 def shaft_notes(config: Config) -> tuple[str, ...]:
@@ -15,6 +17,13 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
             "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
             "the largest approach (100 to 200 urad for 20 mm) is outside_model"
         )
+        tilts = flank_tilts({name: getattr(config, name) for name in NEEDED}, gear_pair(config.gears))
+        if tilts.largest_rad > tilts.limit_rad:
+            notes.append(
+                f"at the bounds of shafts and bearings {tilts.torque_nm:.3g} N m tilt the flanks by "
+                f"{1e6 * tilts.largest_rad:.3g} urad, the model holds to {1e6 * tilts.limit_rad:.3g}: such gearboxes "
+                "end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
+            )
     uneven = config.manufacture is not None and not config.manufacture.even_face
     if uneven and mesh.contact != "face":
         notes.append(

@@ -7,13 +7,19 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.working import working
+
 
 def errors(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")
+    ] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture of pitch and profiles to draw as well.")] = None,
+    show: Open = False,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[
         str | None, typer.Option("--state", help="Which state, where states have gears of their own.")
@@ -27,17 +33,18 @@ def errors(
     Deviations are positive where material is missing. Example: siggen errors set.yaml --out e.csv --png e.png
     """
     from siggen.checks.loading import load_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
-    from siggen.views.picture_file import check_picture_file
+    from siggen.dataset.table_file import write_table_file
     from siggen.views.tooth_deviations import deviation_table, gear_charts
 
-    check_table_file(out)
-    if png is not None:
-        check_picture_file(png)
-    charts = gear_charts(load_config(config, overrides or ()), specimen, state)
-    write_table_file(deviation_table(charts), out)
+    png = picture_place(png, show, "errors")
+    check_wanted(out, png, "errors")
+    with working("drawing the errors of the teeth"):
+        charts = gear_charts(load_config(config, overrides or ()), specimen, state)
+    if out is not None:
+        write_table_file(deviation_table(charts), out)
+        typer.echo(str(out))
     if png is not None:
         from siggen.views.error_figure import save_error_figure
 
         save_error_figure(charts, png)
-    typer.echo(str(out))
+        drawn(png, show)

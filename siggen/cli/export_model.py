@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def export_model(
     source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
@@ -26,6 +28,7 @@ def export_model(
     from siggen.views.exported_model import check_model_file, exported_model, write_model
 
     check_model_file(out)
-    config = chosen_config(source, record, overrides or ())
-    write_model(exported_model(config, record), out)
+    with working("simulating the record"):
+        model = exported_model(chosen_config(source, record, overrides or ()), record)
+    write_model(model, out)
     typer.echo(str(out))

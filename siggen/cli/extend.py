@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.engine_options import Address, EngineName
+
 
 def extend(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     specimens: Annotated[
         str, typer.Option("--specimens", help="+N for N more gearboxes, or how many in all.", metavar="+N")
     ],
@@ -17,6 +19,8 @@ def extend(
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
     ] = None,
+    engine: EngineName = None,
+    address: Address = None,
 ) -> None:
     """Add gearboxes to a finished set; the same command continues an interrupted extension.
 
@@ -29,11 +33,13 @@ def extend(
     Example: siggen extend sets/quickstart --specimens +100
     """
     from siggen.cli.generate import progress_shown, report
+    from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.extension import extend as extend_set
 
+    runner = engine if address is None else engine_of(engine, workers, address)
     with progress_shown() as show:
-        generation = extend_set(folder, specimens, workers, show)
+        generation = extend_set(folder, specimens, workers if runner is engine else None, show, engine=runner)
     report(generation)
     typer.echo(str(generation.path))
     if generation.failures:

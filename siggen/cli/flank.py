@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.working import working
+
 if TYPE_CHECKING:
     from pyarrow import Table
 
@@ -15,8 +18,11 @@ def flank(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")
+    ] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
+    show: Open = False,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[str | None, typer.Option("--state", help="Only this state; by default all with damage.")] = None,
     overrides: Annotated[
@@ -28,25 +34,26 @@ def flank(
     Example: siggen flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
     """
     from siggen.checks.loading import load_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.dataset.table_file import write_table_file
     from siggen.errors import UsageError
     from siggen.views.flank_views import flank_damage_table, flank_views
-    from siggen.views.picture_file import check_picture_file
 
-    check_table_file(out)
-    usable = load_config(config, overrides or ())
-    table = flank_damage_table(usable, specimen, state)
-    if png is not None:
-        check_picture_file(png)
-        views = flank_views(usable, specimen, state)
-        if not views:
-            raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png")
-    write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
+    png = picture_place(png, show, "flank")
+    check_wanted(out, png, "flank")
+    with working("drawing damage"):
+        usable = load_config(config, overrides or ())
+        table = flank_damage_table(usable, specimen, state)
+        views = flank_views(usable, specimen, state) if png is not None else []
+    if png is not None and not views:
+        raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
+    if out is not None:
+        write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
+        typer.echo(str(out))
     if png is not None:
         from siggen.views.flank_figure import save_flank_figure
 
         save_flank_figure(views, png)
-    typer.echo(str(out))
+        drawn(png, show)
 
 
 def _without_lists(table: Table) -> Table:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.engine_options import Address, EngineName
+
 if TYPE_CHECKING:
     from siggen.sets.set_run import Generation
 
@@ -19,15 +21,16 @@ def generate(
     config: Annotated[
         Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", help="Folder or s3://... of the set: new, empty, or begun before."),
+    ],
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
     ] = None,
-    engine: Annotated[
-        str | None,
-        typer.Option("--engine", help="Who runs the work: serial, processes (the default) or dask.", metavar="NAME"),
-    ] = None,
+    engine: EngineName = None,
+    address: Address = None,
     part: Annotated[
         str | None,
         typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
@@ -48,6 +51,8 @@ def generate(
     """
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
+    from siggen.engines.processes import default_workers
+    from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
@@ -56,14 +61,16 @@ def generate(
     loaded = load_config(config, overrides or ())
     for sentence in implausible(loaded):
         typer.echo(f"implausible: {sentence}", err=True)
-    if told := compilation_text():
+    if told := compilation_text(loaded, default_workers() if workers is None else workers):
         typer.echo(told, err=True)
     chosen = None if part is None else part_of(part)
+    runner = engine if address is None else engine_of(engine, workers, address)
+    count = workers if runner is engine else None
     with progress_shown() as show:
         if chosen is None:
-            generation = generate_set(loaded, out, workers, show, engine=engine)
+            generation = generate_set(loaded, out, count, show, engine=runner)
         else:
-            generation = generate_part(loaded, out, chosen, workers, show, engine=engine)
+            generation = generate_part(loaded, out, chosen, count, show, engine=runner)
     report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}")
     typer.echo(str(generation.path))
     if generation.failures:

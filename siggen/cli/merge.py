@@ -12,7 +12,10 @@ def merge(
     parts: Annotated[
         list[Path], typer.Argument(help="Folders that `siggen generate --part i/N` wrote.", metavar="PART...")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Folder of the set: new, empty, or begun by the same command.")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", help="Folder or s3://... of the set: new, empty, or begun before."),
+    ],
 ) -> None:
     """Put the parts of a set together, every file as if it had been generated at once; the parts are only read.
 

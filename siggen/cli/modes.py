@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.working import working
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -19,6 +22,7 @@ def modes(
     ],
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    show: Open = False,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as dynamics.model=casing.")
@@ -35,7 +39,9 @@ def modes(
         check_table_file(out)
     from siggen.views.natural_modes import specimen_modes
 
-    found = specimen_modes(load_config(config, overrides or ()), specimen)
+    png = picture_place(png, show, "modes")
+    with working("computing natural modes"):
+        found = specimen_modes(load_config(config, overrides or ()), specimen)
     from rich.console import Console
 
     Console().print(_printed(found))
@@ -46,7 +52,7 @@ def modes(
         from siggen.views.modes_figure import save_modes_figure
 
         save_modes_figure(found, png)
-        typer.echo(str(png))
+        drawn(png, show)
 
 
 def _printed(found: SpecimenModes) -> Table:

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.working import working
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -19,6 +22,7 @@ def path(
     ],
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    show: Open = False,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as housing.modal_mass_kg=30.")
@@ -38,7 +42,9 @@ def path(
         check_table_file(out)
     from siggen.views.path_curves import path_curves
 
-    found = path_curves(load_config(config, overrides or ()), specimen)
+    png = picture_place(png, show, "path")
+    with working("computing transfer paths"):
+        found = path_curves(load_config(config, overrides or ()), specimen)
     from rich.console import Console
 
     Console().print(_printed(found))
@@ -49,7 +55,7 @@ def path(
         from siggen.views.path_figure import save_path_figure
 
         save_path_figure(found, png)
-        typer.echo(str(png))
+        drawn(png, show)
 
 
 def _printed(found: PathCurves) -> Table:

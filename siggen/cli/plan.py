@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.working import working
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -38,7 +40,8 @@ def plan(
 
     from siggen.checks.loading import load_config
 
-    summary = plan_summary(load_config(config, overrides or ()))
+    with working("checking the configuration"):
+        summary = plan_summary(load_config(config, overrides or ()))
     if as_json:
         typer.echo(json.dumps(summary, indent=2))
         return
@@ -171,7 +174,7 @@ def _overview(summary: dict[str, Any]) -> Table:
     rows = {
         "identity": summary["identity"],
         "gearboxes": f"{summary['specimens']:,}  ({_per_split(summary['specimens_of_split'])})",
-        **_pair_row(summary["pairs"]),
+        **_pair_row(summary),
         "records": f"{summary['records']:,} of {summary['duration_s']:g} s at {summary['fs_hz']:g} Hz",
         "channels": ", ".join(summary["channels"]),
         "hours of signal": f"{summary['signal_hours']:.3g}",
@@ -190,9 +193,13 @@ def _overview(summary: dict[str, Any]) -> Table:
     return table
 
 
-def _pair_row(pairs: list[str]) -> dict[str, str]:
-    shown = "; ".join(pairs[:3])
-    return {"gear pairs": f"{len(pairs)}: {shown}{' ...' if len(pairs) > 3 else ''}"} if pairs else {}
+def _pair_row(summary: dict[str, Any]) -> dict[str, str]:
+    """Return how many gear pairs a set has, and the first; nothing for a set of one pair."""
+    pairs: list[str] = summary["pairs"]
+    if not pairs:
+        return {}
+    met = f", of which its gearboxes have {summary['specimens']}" if summary["specimens"] < len(pairs) else ""
+    return {"gear pairs": f"{len(pairs)}{met}: {'; '.join(pairs[:3])}{'; ...' if len(pairs) > 3 else ''}"}
 
 
 def _megabytes(count: int) -> str:

@@ -7,12 +7,18 @@ from typing import Annotated, Literal
 
 import typer
 
+from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.working import working
+
 
 def pressure(
     source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
     record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
-    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet, a row per position and slice.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, a row per position and slice.")
+    ] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    show: Open = False,
     gear: Annotated[
         Literal["pinion", "gear"] | None, typer.Option("--gear", help="Whose flank; by default the damaged gear's.")
     ] = None,
@@ -36,18 +42,21 @@ def pressure(
     Example: siggen pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
     """
     from siggen.cli.record_choice import chosen_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.dataset.table_file import write_table_file
     from siggen.views.face_pressure import face_pressure, pressure_table
-    from siggen.views.picture_file import check_picture_file
     from siggen.views.pressure_figure import chosen_positions, largest_text, save_pressure_figure
 
-    check_table_file(out)
-    if png is not None:
-        check_picture_file(png)
-    found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
+    png = picture_place(png, show, "pressure")
+    check_wanted(out, png, "pressure")
+    with working("simulating the record and solving the pressure across the face"):
+        found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
     positions = chosen_positions(found, roll or ())
-    write_table_file(pressure_table(found), out)
+    if out is not None:
+        write_table_file(pressure_table(found), out)
     if png is not None:
         save_pressure_figure(found, positions, png)
     typer.echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
-    typer.echo(str(out))
+    if out is not None:
+        typer.echo(str(out))
+    if png is not None:
+        drawn(png, show)

@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def publish(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     to: Annotated[Path | None, typer.Option("--to", help="New or empty folder to write.", metavar="PATH")] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Check all, list what would be written.")] = False,
     facts: Annotated[
@@ -39,8 +41,9 @@ def publish(
 
     if (to is None) != dry_run:
         raise UsageError("publish: received both or neither of --to and --dry-run; allowed: one of the two")
-    said = {"with_recordings": with_recordings}
-    made = publication(folder, facts, audit, **said) if to is None else publish_set(folder, to, facts, audit, **said)
+    own = {"with_recordings": with_recordings}
+    with working("reading the set", compiles=False):
+        made = publication(folder, facts, audit, **own) if to is None else publish_set(folder, to, facts, audit, **own)
     typer.echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
         typer.echo(f"{name}: {len(content)} bytes, made for publication", err=True)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.picture_option import Open, drawn, picture_place
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -16,9 +18,10 @@ if TYPE_CHECKING:
 
 
 def show(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     record: Annotated[int, typer.Option("--record", min=0, help="Id of the record (column record_id).")],
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw instead of the table.")] = None,
+    open_it: Open = False,
     channel: Annotated[str | None, typer.Option("--channel", help="Channel to draw; by default the first.")] = None,
 ) -> None:
     """Show the labels and damage of one record, or draw its waveform and its spectrum around the mesh harmonics.
@@ -29,11 +32,11 @@ def show(
 
     dataset = open_set(folder)
     found = dataset.record(record)
-    if png is not None:
+    if (png := picture_place(png, open_it, "show")) is not None:
         from siggen.views.record_figure import save_record_figure
 
         save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
-        typer.echo(str(png))
+        drawn(png, open_it)
         return
     from rich.console import Console
 

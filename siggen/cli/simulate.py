@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def simulate(
     source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
@@ -27,8 +29,10 @@ def simulate(
     from siggen.dataset.table_file import check_table_file, write_table_file
 
     check_table_file(out)
-    config = chosen_config(source, record, overrides or ())
-    from siggen.record.internals import internals_table
+    with working("simulating the record"):
+        config = chosen_config(source, record, overrides or ())
+        from siggen.record.internals import internals_table
 
-    write_table_file(internals_table(config, record, internals=internals), out)
+        table = internals_table(config, record, internals=internals)
+    write_table_file(table, out)
     typer.echo(str(out))

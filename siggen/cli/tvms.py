@@ -7,13 +7,17 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.working import working
+
 
 def tvms(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Table to write: .csv or .parquet.")],
+    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
+    show: Open = False,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     pitches: Annotated[
         int | None,
@@ -56,7 +60,7 @@ def tvms(
     Example: siggen tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
     """
     from siggen.checks.loading import load_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
+    from siggen.dataset.table_file import write_table_file
     from siggen.specimen.gears import model_notes
     from siggen.views.stiffness_curves import (
         curve_table,
@@ -64,23 +68,25 @@ def tvms(
         stiffness_curves,
         stiffness_meaning,
     )
-    from siggen.views.stiffness_figure import check_picture_file, save_stiffness_figure
+    from siggen.views.stiffness_figure import save_stiffness_figure
     from siggen.views.table_error import table_error_text
 
-    check_table_file(out)
-    if png is not None:
-        check_picture_file(png)
-    usable = load_config(config, overrides or ())
-    torque = static_torque_nm(usable, specimen) if torque_nm is None else torque_nm
-    curves, meaning = (
-        stiffness_curves(usable, specimen, pitches=pitches, torque_nm=torque),
-        stiffness_meaning(usable, torque),
-    )
-    write_table_file(curve_table(curves, parts=parts, potential_energy=potential_energy), out)
+    png = picture_place(png, show, "tvms")
+    check_wanted(out, png, "tvms")
+    with working("computing the mesh stiffness of every state"):
+        usable = load_config(config, overrides or ())
+        torque = static_torque_nm(usable, specimen) if torque_nm is None else torque_nm
+        curves = stiffness_curves(usable, specimen, pitches=pitches, torque_nm=torque)
+        meaning = stiffness_meaning(usable, torque)
+    if out is not None:
+        write_table_file(curve_table(curves, parts=parts, potential_energy=potential_energy), out)
     if png is not None:
         save_stiffness_figure(curves, png, parts=parts, potential_energy=potential_energy, title=meaning)
     typer.echo(meaning, err=True)
     typer.echo(table_error_text(usable, specimen), err=True)
     for note in model_notes(usable):
         typer.echo(f"note: {note}", err=True)
-    typer.echo(str(out))
+    if out is not None:
+        typer.echo(str(out))
+    if png is not None:
+        drawn(png, show)

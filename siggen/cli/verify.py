@@ -7,28 +7,51 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.working import working
+
 
 def verify(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished set.", metavar="DIR")],
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     sample: Annotated[int, typer.Option("--sample", min=0, help="Records to simulate again.")] = 4,
+    physics: Annotated[
+        int,
+        typer.Option(
+            "--physics",
+            min=0,
+            metavar="K",
+            help="Integrate K records, spread over all states, again with Runge-Kutta at high resolution, and report "
+            "the error by state. Costs about ten times the records.",
+        ),
+    ] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
     """Compare every file with its hash in the manifest, and some records with a new simulation.
 
-    Exit codes: 0 all as promised, 2 no finished set, 4 something differs.
+    With --physics the numerical error is measured and kept in physics.json beside the set; no other file changes.
 
-    Example: siggen verify sets/quickstart --sample 10
+    Exit codes: 0 all as promised, 2 no finished set, 4 something differs or an error is above the set's tolerance.
+
+    Example: siggen verify sets/quickstart --sample 10 --physics 8
     """
     import json
     from dataclasses import asdict
 
+    from siggen.cli.generate import progress_shown
     from siggen.errors import EXIT_MISMATCH, counted
+    from siggen.sets.precision import measure_precision, precision_lines
     from siggen.sets.verification import HASHES_ALONE, problem_lines
     from siggen.sets.verification import verify as verify_set
 
-    found = verify_set(folder, sample)
+    with working("comparing files with their hashes, and records with a new simulation", compiles=sample > 0):
+        found = verify_set(folder, sample)
+    precision = None
+    if physics and not found.mismatches:
+        with progress_shown() as show:
+            precision = measure_precision(folder, physics, show)
+    ok = not found.mismatches and (precision is None or precision.within)
     if as_json:
-        typer.echo(json.dumps({**asdict(found), "ok": not found.mismatches}, indent=2))
+        measured = {} if precision is None else {"physics": asdict(precision)}
+        typer.echo(json.dumps({**asdict(found), **measured, "ok": ok}, indent=2))
     else:
         typer.echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
         again = f"{counted(len(found.records), 'record')} simulated again, compared "
@@ -39,5 +62,9 @@ def verify(
         for line in problem_lines(found.mismatches):
             typer.echo(line, err=True)
         typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")
-    if found.mismatches:
+        for line in precision_lines(precision) if precision is not None else ():
+            typer.echo(line)
+        if physics and precision is None:
+            typer.echo("no record integrated again, since files differ", err=True)
+    if not ok:
         raise typer.Exit(EXIT_MISMATCH)

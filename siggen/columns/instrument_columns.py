@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.column import Column
-from siggen.config.path import MeasuredPath
 
 if TYPE_CHECKING:
     from siggen.config import Config, Sensor
@@ -33,7 +32,7 @@ def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
             ),
         ),
         "number": (
-            isinstance(sensor.path, MeasuredPath) and sensor.path.files,
+            getattr(sensor.path, "files", None) or None,
             Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0"),
         ),
         "pink": (

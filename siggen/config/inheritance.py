@@ -76,7 +76,7 @@ def _extended(name: object, folder: Path, source: str) -> Path:
 
 
 def _anchored(value: Any, folder: Path) -> Any:
-    """Return a value in which files of data, under the keys `file` and `files`, stand by their full path."""
+    """Return a value in which files of data, named by `file` and `files`, do not depend on their YAML file's folder."""
     match value:
         case Mapping():
             return {

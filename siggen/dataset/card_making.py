@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from siggen.config.oil import oils_of
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -104,7 +103,23 @@ def _dynamics_text(config: Config) -> str:
     return (
         f"A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and {mesh}. "
         f"{across_text(config)}{friction_text(config)} {drive_text(config)} Bearing accelerations are low-pass "
-        "filtered before they are sampled."
+        f"filtered before they are sampled. {integration_text(config)}"
+    )
+
+
+def stated_tolerance(config: Config) -> float | None:
+    """Return the error of the delivered acceleration (relative rms) that a set states, or None if it states none."""
+    return config.dynamics.integration_tolerance if config.dynamics.method == "exponential" else None
+
+
+def integration_text(config: Config) -> str:
+    """Say how time is stepped, and which error is stated for it."""
+    tolerance, head = stated_tolerance(config), f"Time is stepped by `{config.dynamics.method}`"
+    if tolerance is None:
+        return f"{head}, {counted(config.dynamics.steps_per_sample, 'step')} per sample; no error is stated for it."
+    return (
+        f"{head}, with steps for a relative rms error of {tolerance:g} in the delivered acceleration, the same for all "
+        "states of a gearbox; `siggen verify --physics` measures it."
     )
 
 
@@ -127,6 +142,8 @@ def across_text(config: Config) -> str:
 
 def friction_text(config: Config) -> str:
     """Say whether and how the flanks rub."""
+    from siggen.config.oil import oils_of  # not for those who read: it loads the model of the configuration
+
     return FRICTION[config.dynamics.rubbing].format(oil=" or ".join(oils_of(config.dynamics.friction.oil)))
 
 

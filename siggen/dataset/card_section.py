@@ -7,7 +7,8 @@ from pathlib import Path
 
 from siggen.dataset.manifest import CARD, MANIFEST, read_manifest
 from siggen.dataset.seal import sealed
-from siggen.dataset.storage import LocalFolder, sha256
+from siggen.dataset.storage import sha256
+from siggen.dataset.storage_at import storage_at
 from siggen.errors import VerificationError
 
 BEGIN = "<!-- measured section: begin -->"
@@ -36,7 +37,7 @@ def write_card_section(path: Path | str, section: str) -> None:
     VerificationError
         If the card is not the one that the manifest promises: sealing it would hide a change.
     """
-    storage = LocalFolder(path)
+    storage = storage_at(path)
     read_manifest(storage)  # a folder without a set must not be created by the lock
     with storage.writing():
         manifest = read_manifest(storage)

@@ -48,8 +48,8 @@ def _has_every_file(storage: Storage) -> bool:
     except VerificationError:
         return False
     check_schema(storage, manifest)
-    files = manifest["files"]
-    return all(storage.exists(name) and storage.size(name) == facts["bytes"] for name, facts in files.items())
+    sizes = storage.sizes()
+    return all(sizes.get(name) == facts["bytes"] for name, facts in manifest["files"].items())
 
 
 def _refuse_strangers(storage: Storage) -> None:

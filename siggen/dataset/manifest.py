@@ -18,6 +18,8 @@ MANIFEST = "manifest.json"
 CONFIG = "config.yaml"
 CARD = "README.md"
 RUN = "run.json"
+PHYSICS = "physics.json"
+"""What `siggen verify --physics` found last; beside the set, in no manifest."""
 METADATA_FOLDER = "metadata"
 DAMAGE_FOLDER = "damage"
 SPLITS = ("train", "validation", "test")

@@ -50,9 +50,10 @@ class Promises:
         DatasetError
             Naming the first file of another size.
         """
+        sizes = self._storage.sizes()
         for name, facts in self._files.items():
-            if self._storage.exists(name) and (size := self._storage.size(name)) != facts["bytes"]:
-                raise self._broken(name, f"it has {size} bytes instead of {facts['bytes']}")
+            if name in sizes and sizes[name] != facts["bytes"]:
+                raise self._broken(name, f"it has {sizes[name]} bytes instead of {facts['bytes']}")
 
     def content(self, name: str) -> bytes:
         """Return a small file whole.

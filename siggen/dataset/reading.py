@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
 from siggen.dataset.promises import Promises
 from siggen.dataset.sidecar import in_ranges
-from siggen.dataset.storage import LocalFolder, Storage
+from siggen.dataset.storage import Storage
+from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 
 
@@ -39,6 +40,7 @@ class Dataset:
     Attributes
     ----------
     path : Path
+        For a set in an object store a path that is none of this machine: s3://bucket/set.
     manifest : dict
         Content of manifest.json: identity, counts, failures, shards, environments, hashes.
     config : dict
@@ -61,7 +63,7 @@ class Dataset:
 
     def __init__(self, storage: Storage) -> None:
         self._storage = storage
-        self.path = Path(storage.location)
+        self.path: PurePath = storage.path
         self.manifest: dict[str, Any] = read_manifest(storage)
         self._promises = Promises(storage, self.manifest)
         self._promises.check_sizes()
@@ -287,12 +289,12 @@ def _as_list(columns: Sequence[str] | None) -> list[str] | None:
     return None if columns is None else list(columns)
 
 
-def open(path: Path | str) -> Dataset:
-    """Open a finished set for reading.
+def open(path: PurePath | str) -> Dataset:
+    """Open a finished set for reading, in a folder or at s3://bucket/set.
 
     Raises
     ------
     DatasetError
         If the folder is not a finished set; for an interrupted one the message says how to finish it.
     """
-    return Dataset(LocalFolder(path))
+    return Dataset(storage_at(path))

@@ -6,9 +6,10 @@ import errno
 import hashlib
 import os
 import secrets
+import shutil
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import BinaryIO, Protocol
 
 from siggen.errors import DatasetError
@@ -23,6 +24,10 @@ UNWRITABLE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES
 
 class Storage(Protocol):
     """Objects by name ('data/train-00000.parquet'); an object is there as a whole or not at all."""
+
+    @property
+    def path(self) -> PurePath:
+        """Where the objects are; a Path of this machine, or one that is none of it (`ObjectPath`)."""
 
     @property
     def location(self) -> str:
@@ -46,6 +51,9 @@ class Storage(Protocol):
     def exists(self, name: str) -> bool:
         """Tell whether the object is there."""
 
+    def sizes(self, folder: str = "") -> dict[str, int]:
+        """Return name -> bytes of all objects below a folder, by name, without leftovers."""
+
     def names(self, folder: str = "") -> list[str]:
         """Return the sorted names of all objects below a folder, without leftovers."""
 
@@ -68,6 +76,12 @@ def file_sha256(file: BinaryIO) -> str:
     while piece := file.read(READ_BYTES):
         digest.update(piece)
     return digest.hexdigest()
+
+
+def copy_object(source: Storage, name: str, target: Storage) -> None:
+    """Copy an object into another storage, under the same name."""
+    with source.open(name) as file, target.draft(name) as draft, draft.open("wb") as copy:
+        shutil.copyfileobj(file, copy, READ_BYTES)
 
 
 class LocalFolder:
@@ -128,8 +142,14 @@ class LocalFolder:
 
     def names(self, folder: str = "") -> list[str]:
         """Return the sorted POSIX names of all files below a folder, without leftovers."""
-        files = (path for path in self._file(folder).rglob("*") if not path.is_dir())
-        return sorted(path.relative_to(self.path).as_posix() for path in files if path.suffix != LEFTOVER_SUFFIX)
+        return list(self.sizes(folder))
+
+    def sizes(self, folder: str = "") -> dict[str, int]:
+        """Return POSIX name -> bytes of all files below a folder, by name, without leftovers."""
+        files = (path for path in self._file(folder).rglob("*") if not path.is_dir() and path.suffix != LEFTOVER_SUFFIX)
+        # not followed: a link that leads nowhere is a stranger, too
+        found = {path.relative_to(self.path).as_posix(): path.stat().st_size if path.exists() else 0 for path in files}
+        return {name: found[name] for name in sorted(found)}
 
     def delete_leftovers(self) -> list[str]:
         """Delete half-written files; call it only while holding `writing()`."""

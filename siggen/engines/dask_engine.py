@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
+from siggen.engines.orphan import end_with
 from siggen.engines.processes import WINDOW_PER_WORKER
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
@@ -55,6 +57,7 @@ class DaskEngine:
         from distributed import wait
 
         source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
+        call = answer if self.address is not None else partial(_child_answer, os.getpid())
         with self._client() as client:
             while True:
                 while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
@@ -62,7 +65,7 @@ class DaskEngine:
                         task = next(source)
                     except StopIteration:
                         break
-                    opened[client.submit(answer, function, task, pure=False)] = (taken, task)
+                    opened[client.submit(call, function, task, pure=False)] = (taken, task)
                     taken += 1
                 if not opened:
                     return
@@ -84,6 +87,12 @@ class DaskEngine:
             Client(cluster) as client,
         ):
             yield client
+
+
+def _child_answer(parent: int, function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+    """Answer on a worker that this machine's cluster started as a child of its driver, and ends with it."""
+    end_with(parent)
+    return answer(function, task)
 
 
 def _value(future: Any, task: object) -> Any:

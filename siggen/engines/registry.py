@@ -8,6 +8,7 @@ from contextlib import closing, contextmanager
 from siggen.engines.dask_engine import DaskEngine
 from siggen.engines.processes import ProcessEngine, default_workers
 from siggen.engines.protocol import Engine, Result, Results, Task
+from siggen.engines.ray_engine import RayEngine
 from siggen.engines.serial import SerialEngine
 from siggen.errors import UsageError
 
@@ -15,11 +16,15 @@ ENGINES: dict[str, Callable[[int], Engine]] = {
     "serial": lambda _: SerialEngine(),
     "processes": ProcessEngine,
     "dask": DaskEngine,
+    "ray": RayEngine,
 }
 """Name -> number of workers -> engine. Results do not depend on which one is chosen."""
 
+ADDRESSED: dict[str, Callable[[int, str | None], Engine]] = {"dask": DaskEngine, "ray": RayEngine}
+"""Those that can use a cluster which is there already, by its address."""
 
-def engine_of(engine: Engine | str | None, workers: int | None) -> Engine:
+
+def engine_of(engine: Engine | str | None, workers: int | None, address: str | None = None) -> Engine:
     """Return an engine by its name, or the object that was given.
 
     Parameters
@@ -28,12 +33,22 @@ def engine_of(engine: Engine | str | None, workers: int | None) -> Engine:
         An object is returned as it is. None: 'serial' for no workers, else 'processes'.
     workers : int or None
         For an engine by name, by default one per core; 'serial' has one whatever is asked for.
+    address : str, optional
+        Of a cluster that is there already, for an engine of a cluster by its name.
 
     Raises
     ------
     UsageError
-        If there is no engine of that name, an object is no engine, or it comes with a number of workers of its own.
+        If there is no engine of that name, an object is no engine, it comes with a number of workers of its own, or
+        an address with an engine that has none.
     """
+    if address is not None:
+        if not isinstance(engine, str) or engine not in ADDRESSED:
+            raise UsageError(
+                f"received the address {address} and the engine {engine or 'processes'}; allowed: an address with the "
+                f"engines {' and '.join(ADDRESSED)}"
+            )
+        return ADDRESSED[engine](default_workers() if workers is None else workers, address)
     if engine is None:
         # one worker is a process too: its libraries run one thread, as everywhere, and threads change how sums round
         engine = "serial" if workers == 0 else "processes"

@@ -10,6 +10,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
+from siggen.engines.orphan import end_with
+
 READY, DONE, RAISED = "ready", "done", "raised"
 
 ONE_THREAD = dict.fromkeys(
@@ -51,7 +53,7 @@ class Worker:
         self.connection, theirs = context.Pipe()
         self.task: int | None = None
         self.ready = False
-        self._process = context.Process(target=_work, args=(theirs, function), daemon=True)
+        self._process = context.Process(target=_work, args=(theirs, function, os.getpid()), daemon=True)
         with _environment(ONE_THREAD), _blocked(PARENTS_SIGNALS):
             self._process.start()
         # the process must hold the only other end, or its death would not close the pipe
@@ -76,8 +78,9 @@ class Worker:
         return self._process.exitcode
 
 
-def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
+def _work(connection: Connection, function: Callable[[Any], Any], parent: int) -> None:
     """Run tasks until the parent closes the pipe or dies."""
+    end_with(parent)
     _settle_down()
     with contextlib.suppress(EOFError, OSError):
         connection.send((READY, None))

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness, at, draw
 from siggen.planning.gearbox import gearbox_config
-from siggen.planning.plan import split_of
 from siggen.seeding import Stage, named_uniforms
 
 
@@ -15,7 +14,6 @@ class Specimen:
     """A gearbox: sections of the configuration with every distribution replaced by a value."""
 
     specimen_id: int
-    split: str
     gears: Gears
     stiffness: Stiffness
     dynamics: Dynamics
@@ -41,7 +39,6 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
     sensor = named_uniforms(config.seed, Stage.SENSOR, specimen_id)
     return Specimen(
         specimen_id,
-        split_of(config, specimen_id),
         gears=draw(own.gears, gears, "gears"),
         stiffness=draw(own.stiffness, gears, "stiffness"),
         dynamics=draw(own.dynamics, supports, "dynamics"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +17,8 @@ from siggen.dataset.manifest import CARD, MANIFEST
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
-from siggen.dataset.storage import LocalFolder
+from siggen.dataset.storage import copy_object
+from siggen.dataset.storage_at import storage_at
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.publication.audit_section import AUDIT, audit_section
 from siggen.publication.croissant import FOLDERS, croissant
@@ -123,14 +123,13 @@ def publish(
         As of `publication`, or if the target is not empty.
     """
     made = publication(path, facts_file, audit, with_recordings=with_recordings)
-    source, target = LocalFolder(path), LocalFolder(to)
-    if target.path.resolve() == source.path.resolve() or target.names():
+    source, target = storage_at(path), storage_at(to)
+    if target.names():
         raise UsageError(f"{to} is not empty; name a new or empty folder (nothing is deleted)")
     dataset = open_set(path)
     with target.writing():
         for name in made.copied:
-            with target.draft(name) as part:
-                shutil.copyfile(source.path / name, part)
+            copy_object(source, name, target)
         own = {**made.texts, **_previews(dataset)}
         for name, content in own.items():
             target.put(name, content)
@@ -185,7 +184,7 @@ def _texts(
     schemas = _schemas(dataset)
     info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
     card = published_card(
-        LocalFolder(dataset.path).get(CARD).decode(), config, facts, info, audit_section(config.identity, audit)
+        storage_at(dataset.path).get(CARD).decode(), config, facts, info, audit_section(config.identity, audit)
     )
     return {
         CARD: card.encode(),

@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import pi, sqrt, tan
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.config import Background, Bursts, Rubbing, at, constant
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.record.background_course import Course

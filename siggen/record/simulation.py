@@ -24,10 +24,10 @@ from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import internal_quantities
-from siggen.specimen.contact import largest_force_n, mean_line_load_n_per_m, tooth_tables
+from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.errors import erroneous_teeth, error_labels, specimen_errors
+from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, error_labels, specimen_errors
 from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
@@ -59,8 +59,20 @@ class SpecimenState:
     static: StaticMesh
 
 
-def specimen_state(config: Config, specimen: Specimen, state_id: int) -> SpecimenState:
-    """Return gears, damage, tables and structure of one specimen in one state.
+@dataclass(frozen=True, slots=True)
+class StateTeeth:
+    """Gears of one specimen in one state, with their damage, errors and tables."""
+
+    pair: GearPair
+    options: StiffnessOptions
+    damage: Damage
+    errors: SpecimenErrors | None
+    tables: ToothTables
+    labels: dict[str, object]
+
+
+def state_teeth(config: Config, specimen: Specimen, state_id: int) -> StateTeeth:
+    """Return the teeth of one specimen in one state.
 
     Raises
     ------
@@ -73,24 +85,36 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int) -> Specime
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
         lead = None if errors is None or errors.even else errors.lead_m
-        teeth = tooth_tables(
+        tables = tooth_tables(
             specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead,
             largest_force_n=largest_force_n(config.operating_points, pair),
         )  # fmt: skip
-        labels = damage_labels(config.states[state_id], pair, damage, options, teeth.sink_depth_m)
+        labels = damage_labels(config.states[state_id], pair, damage, options, tables.sink_depth_m)
+    return StateTeeth(pair, options, damage, errors, tables, labels)
+
+
+def specimen_state(config: Config, specimen: Specimen, state_id: int) -> SpecimenState:
+    """Return gears, damage, tables and structure of one specimen in one state.
+
+    Raises
+    ------
+    SolverFailure
+        If what was drawn cannot be built (named in the reason).
+    """
+    teeth = state_teeth(config, specimen, state_id)
+    pair, tables, points = teeth.pair, teeth.tables, specimen.stiffness.table_points
     with refused_as("outside_model"):
-        missing = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
-        missing = erroneous_teeth(missing, pair, errors)
+        missing = erroneous_teeth(teeth_missing(specimen.dynamics, pair, points), pair, teeth.errors)
         waves = specimen_waves(config, pair, specimen.specimen_id, state_id)
         missing = wavy_teeth(missing, config, pair, waves)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
-        labels |= {**error_labels(config, errors), **wave_labels(waves)}
-        static = static_mesh(specimen.dynamics, pair, teeth, specimen.stiffness.table_points)
+        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(waves)}
+        static = static_mesh(specimen.dynamics, pair, tables, points)
     return SpecimenState(
         pair,
-        options,
-        damage,
-        SpecimenMesh(pair, assembled, teeth.tables, missing, teeth.slices, teeth.coupling_m_per_n, teeth.contact),
+        teeth.options,
+        teeth.damage,
+        SpecimenMesh(pair, assembled, tables.tables, missing, tables.slices, tables.coupling_m_per_n, tables.contact),
         labels,
         static,
     )

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.compiled import njit
 
 SHAFT_LINES = 3
 """Lines of a shaft's modulation."""

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.compiled import njit
 
 BLOCK_SAMPLES = 256
 """Samples whose cosines are taken once; about the square root of a record's length."""

@@ -1,28 +1,23 @@
-"""Whether the simulation still has to be compiled on this machine, and what that costs."""
+"""What is said to whoever waits for the first record on a machine."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-COMPILED_S = 40
-"""CPU time of compiling all that a first record needs; 35 s measured on a core of 2024, for the law of tooth pairs."""
+from siggen.record.compilation import is_compiled
 
+if TYPE_CHECKING:
+    from siggen.config import Config
 
-def is_compiled() -> bool:
-    """Return whether numba's cache holds the forces of the tooth pairs, which take longest of all to compile.
-
-    Derived: numba keeps an index beside the code, or where NUMBA_CACHE_DIR says. It is there after the first record.
-    """
-    from siggen.dynamics.mesh import pair_forces
-
-    compiled: Any = pair_forces.write_forces
-    folder = Path(compiled.stats.cache_path)
-    return any(folder.glob("pair_forces.write_forces-*.nbi"))
+COMPILED_S = 60
+"""CPU time of compiling all that a first record needs (`python -m benchmarks cold`), for the law of tooth pairs."""
+LARGER_SHARE = 0.6
+"""Of the larger part, with which two processes are done."""
 
 
-def compilation_text() -> str:
+def compilation_text(config: Config, workers: int) -> str:
     """Return a sentence for whoever waits for the first record on a machine; empty where nothing is to be compiled."""
-    if is_compiled():
+    if is_compiled(config):
         return ""
-    return f"compiling the simulation once: about {COMPILED_S} s of CPU per worker before the first record"
+    wait_s = COMPILED_S * (LARGER_SHARE if workers > 1 else 1.0)
+    return f"compiling the simulation once, for all workers: about {wait_s:.0f} s before the first record"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from siggen.dataset.extensions import put_extensions, read_extensions
 from siggen.dataset.manifest import CONFIG, read_manifest
 from siggen.dataset.promises import has_checksums
-from siggen.dataset.storage import LocalFolder, Storage
+from siggen.dataset.storage import Storage
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.errors import ConfigError, DatasetError, UsageError
@@ -51,7 +52,7 @@ def extend(
     InterruptionError
         After SIGINT or SIGTERM; the same call continues.
     """
-    storage = LocalFolder(path)
+    storage = storage_at(path)
     read_manifest(storage)  # a folder without a set must not be created by the lock
     with storage.writing():
         manifest = read_manifest(storage)

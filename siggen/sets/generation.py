@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from siggen.dataset.extensions import earlier_specimens
 from siggen.dataset.folder import is_finished
-from siggen.dataset.storage import LocalFolder
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.sets.interruption import Interruption
@@ -37,7 +37,8 @@ def generate(
     progress : callable, optional
         Called with (records done, records of the set).
     engine : Engine or str, optional
-        'serial', 'processes' (the default), or an object with `map` and `workers` as `siggen.engines.protocol` has it.
+        'serial', 'processes' (the default), 'dask', 'ray', or an object with `map` and `workers` as
+        `siggen.engines.protocol` has it.
 
     Raises
     ------
@@ -50,7 +51,7 @@ def generate(
     EngineError
         If a simulation raised, or workers kept dying. Committed shards stay.
     """
-    storage = LocalFolder(out)
+    storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
             return unchanged(storage)

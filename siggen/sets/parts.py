@@ -7,7 +7,6 @@ configuration alone, so nothing has to be coordinated; a part that is lost is ma
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,7 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.manifest import CONFIG
 from siggen.dataset.sidecar import read_sidecar, sidecar_name
-from siggen.dataset.storage import LocalFolder
+from siggen.dataset.storage import Storage, copy_object
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
@@ -73,7 +73,7 @@ def generate_part(
         As of `generate`.
     """
     chosen = Part(*part)
-    storage = LocalFolder(out)
+    storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
             return unchanged(storage)
@@ -102,9 +102,9 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
     InterruptionError
         After SIGINT or SIGTERM; the same call continues.
     """
-    sources = [LocalFolder(part) for part in parts]
+    sources = [storage_at(part) for part in parts]
     config = _common_config(sources)
-    target = LocalFolder(out)
+    target = storage_at(out)
     with target.writing():
         if is_finished(target, config):
             return unchanged(target)
@@ -119,7 +119,7 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
             return run.finish()
 
 
-def _common_config(sources: Sequence[LocalFolder]) -> Config:
+def _common_config(sources: Sequence[Storage]) -> Config:
     from siggen.config import parse, parse_yaml
 
     found: list[Config] = []
@@ -138,7 +138,7 @@ def _common_config(sources: Sequence[LocalFolder]) -> Config:
     return found[0]
 
 
-def _copy_missing(run: SetRun, sources: Sequence[LocalFolder], target: LocalFolder) -> None:
+def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> None:
     """Copy the shards that the target has not, the sidecar last; what was copied is hashed afterwards."""
     for shard in run.planned:
         run.interruption.check()
@@ -147,8 +147,7 @@ def _copy_missing(run: SetRun, sources: Sequence[LocalFolder], target: LocalFold
             continue
         sidecar = read_sidecar(source, shard.key)
         for name in (*(file.name for file in sidecar.files), sidecar.name):
-            with target.draft(name) as copy:
-                shutil.copyfile(source.path / name, copy)
+            copy_object(source, name, target)
 
 
 def _check_complete(run: SetRun) -> None:

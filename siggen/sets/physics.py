@@ -12,6 +12,11 @@ from siggen.dataset.label_tables import DamageRows
 
 if TYPE_CHECKING:
     from siggen.config import Config
+    from siggen.record.compilation import CompilationPart
+
+
+def _nothing(config: Config) -> Sequence[CompilationPart]:  # noqa: ARG001 - as every physics
+    return ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +31,14 @@ class Physics:
         (config, record_id) -> rows of `damage/`.
     quantities
         config -> columns of `internals/`; asked only where a set stores some.
+    to_compile
+        config -> tasks that compile what its records need, side by side; none where that is compiled.
     """
 
     simulate: Simulate
     damage_rows: DamageRows
     quantities: Callable[[Config], Sequence[Column]]
+    to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
 
     def stored(self, config: Config) -> tuple[Column, ...]:
         """Return the columns of `internals/` of a set; none where it stores none."""
@@ -39,8 +47,9 @@ class Physics:
 
 def physics() -> Physics:
     """Return the physics of this version; compiled code is imported here and not before."""
+    from siggen.record.compilation import to_compile
     from siggen.record.damage_rows import damage_rows
     from siggen.record.internals import stored_quantities
     from siggen.record.simulation import simulate_specimen
 
-    return Physics(simulate_specimen, damage_rows, stored_quantities)
+    return Physics(simulate_specimen, damage_rows, stored_quantities, to_compile)

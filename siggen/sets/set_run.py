@@ -8,13 +8,14 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from itertools import islice
-from pathlib import Path
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
 from siggen.columns.record import RecordFailure, channels, record_schema
 from siggen.dataset.card import card
+from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
 from siggen.dataset.extensions import EXTENSIONS
@@ -25,10 +26,12 @@ from siggen.dataset.seal import sealed
 from siggen.dataset.shard import TableFile, table_draft
 from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
 from siggen.dataset.storage import Storage
+from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
 from siggen.errors import EXIT_INTERRUPTED, SiggenError
 from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shards
+from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
 
@@ -61,7 +64,7 @@ class Generation:
         Of the whole set.
     """
 
-    path: Path
+    path: PurePath
     rows: int
     failures: tuple[RecordFailure, ...]
     records_made: int = 0
@@ -153,7 +156,7 @@ class SetRun:
             raise InterruptionError(self._how_to_continue()) from None
         sidecars = [self.sidecars[shard.key] for shard in wanted]
         return Generation(
-            path=Path(self.storage.location),
+            path=self.storage.path,
             rows=sum(sidecar.data.rows for sidecar in sidecars),
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
@@ -175,7 +178,7 @@ class SetRun:
         sidecars = [self.sidecars[shard.key] for shard in self.planned]
         manifest = self._conclude(sidecars, taken_over)
         return Generation(
-            path=Path(self.storage.location),
+            path=self.storage.path,
             rows=manifest["rows"],
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
@@ -196,11 +199,21 @@ class SetRun:
         """Simulate and write shards one after the other, from one stream of chunks."""
         work = {shard.key: self._chunks(shard) for shard in missing}
         tasks = (chunk for pieces in work.values() for chunk in pieces)
+        if missing and isinstance(self.engine, ProcessEngine):
+            self._compile(self.engine)
         function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
         with running(self.engine, function, tasks) as results:
             ordered = in_order(results)
             for shard in missing:
                 self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
+
+    def _compile(self, engine: ProcessEngine) -> None:
+        """Compile once for all workers, which would compile the same side by side."""
+        parts = self.physics.to_compile(self.config)
+        if parts:
+            with running(engine, run_part, parts) as compiled:
+                for _ in compiled:
+                    self.interruption.check()
 
     def _chunks(self, shard: ShardPlan) -> list[Chunk]:
         config = self.config
@@ -317,6 +330,7 @@ def _facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
         "fs_hz": float(config.fs_hz),
         "duration_s": float(config.duration_s),
         "channels": [asdict(channel) for channel in channels(config)],
+        **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
     }
 
 
@@ -324,4 +338,4 @@ def unchanged(storage: Storage) -> Generation:
     """Return what a call did that found the set finished."""
     manifest = read_manifest(storage)
     failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
-    return Generation(Path(storage.location), manifest["rows"], failures, was_finished=True)
+    return Generation(storage.path, manifest["rows"], failures, was_finished=True)

@@ -20,6 +20,7 @@ from siggen.dataset.manifest import (
     DAMAGE_FOLDER,
     MANIFEST,
     METADATA_FOLDER,
+    PHYSICS,
     RUN,
     read_manifest,
     simulation_version,
@@ -29,7 +30,8 @@ from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.seal import unsealed
 from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
-from siggen.dataset.storage import LocalFolder, Storage, sha256
+from siggen.dataset.storage import Storage, sha256
+from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
@@ -110,7 +112,7 @@ def verify(
     DatasetError
         If there is no finished set.
     """
-    storage = LocalFolder(path)
+    storage = storage_at(path)
     if not storage.exists(MANIFEST):
         read_manifest(storage)  # says what is there instead
     try:
@@ -126,7 +128,7 @@ def verify(
     comparison = "none asked for"
     if sample and mismatches:
         comparison = "none, since files differ"
-    elif sample and (reason := _why_not_again(manifest, sample)):
+    elif sample and (reason := why_not_again(manifest, sample)):
         comparison = reason
     elif sample:
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
@@ -136,7 +138,7 @@ def verify(
     return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked)
 
 
-def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
+def why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
     """Return why no record of a set can be compared with a new simulation, or an empty string."""
     made_by, schema = simulation_version(manifest), manifest.get("schema_version")
     head = f"{HASHES_ALONE}; {counted(min(sample, manifest.get('rows', sample)), 'record')} not simulated again: "
@@ -148,11 +150,12 @@ def _why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
 
 
 def _file_mismatches(storage: Storage, files: Mapping[str, Mapping[str, Any]]) -> Iterator[Mismatch]:
+    sizes = storage.sizes()
     for name, facts in sorted(files.items()):
-        if not storage.exists(name):
+        if name not in sizes:
             yield Mismatch(name, "missing")
-        elif storage.size(name) != facts["bytes"]:
-            yield Mismatch(name, f"{storage.size(name)} bytes instead of {facts['bytes']}")
+        elif sizes[name] != facts["bytes"]:
+            yield Mismatch(name, f"{sizes[name]} bytes instead of {facts['bytes']}")
         elif sha256(storage, name) != facts["sha256"]:
             yield Mismatch(name, "content differs (SHA-256)")
 
@@ -163,12 +166,13 @@ def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismat
 
 
 def _run(storage: Storage) -> Iterator[Mismatch]:
-    """Check run.json by its own digest; it may be left out when a set is published."""
-    if storage.exists(RUN):
-        try:
-            unsealed(RUN, storage.get(RUN))
-        except VerificationError as error:
-            yield Mismatch(RUN, str(error))
+    """Check run.json and physics.json by their own digests; they may be left out when a set is published."""
+    for name in (RUN, PHYSICS):
+        if storage.exists(name):
+            try:
+                unsealed(name, storage.get(name))
+            except VerificationError as error:
+                yield Mismatch(name, str(error))
 
 
 def _simulate_again(
@@ -176,7 +180,7 @@ def _simulate_again(
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
-        config = _config(storage, dataset.manifest)
+        config = stored_config(storage, dataset.manifest)
     except (ConfigError, DatasetError) as error:
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
@@ -200,8 +204,14 @@ def _simulate_again(
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
-def _config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
-    """Return the set's configuration; its identity must be the one that this version computes, too."""
+def stored_config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
+    """Return the set's configuration; its identity must be the one that this version computes, too.
+
+    Raises
+    ------
+    ConfigError, DatasetError
+        If this version reads it otherwise.
+    """
     from siggen.config import parse, parse_yaml
 
     parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG))

@@ -47,7 +47,7 @@ def _draw_pitch(axis: Axes, chart: GearChart) -> None:
     cumulative = 1e6 * chart.made.found.cumulative_pitch_m
     middle = 0.5 * float(cumulative.max() + cumulative.min())
     _band(axis, middle, 1e6 * chart.made.tolerances.cumulative_pitch_m, chart, "$F_p$")
-    axis.bar(range(cumulative.size), cumulative, color="tab:blue", width=0.8)
+    axis.bar(range(cumulative.size), cumulative, color="C2", width=0.8)
     largest = {name: 1e6 * value for name, value in chart.made.found.largest.items()}
     limits = chart.made.tolerances
     axis.set_title(
@@ -68,7 +68,7 @@ def _draw_profiles(axis: Axes, chart: GearChart) -> None:
     _band(axis, 0.0, 1e6 * chart.made.tolerances.profile_m, chart, r"$F_\alpha$")
     place = np.linspace(0.0, 1.0, chart.profile_um.shape[1])
     for profile in chart.profile_um:
-        axis.plot(place, profile - 0.5 * (profile.max() + profile.min()), lw=0.6, color="tab:blue", alpha=0.6)
+        axis.plot(place, profile - 0.5 * (profile.max() + profile.min()), lw=0.6, color="C2", alpha=0.6)
     largest, limits = chart.made.found.largest, chart.made.tolerances
     parts = (
         (r"$F_\alpha$", "profile_m"),
@@ -90,12 +90,12 @@ def _draw_helix(axis: Axes, chart: GearChart) -> None:
     place = np.linspace(0.0, 1.0, points)
     errors = 1e6 * (helix.missing_m(place) - helix.crowning_m * (2.0 * place - 1.0) ** 2)
     _band(axis, 0.0, 1e6 * limits.helix_m, chart, r"$F_\beta$")
-    axis.plot(place, errors, color="tab:blue", label="errors")
+    axis.plot(place, errors, color="C2", label="errors")
     if helix.crowning_m > 0.0:
         axis.plot(
             place,
             np.zeros(points) if chart.helix_um is None else chart.helix_um,
-            color="tab:orange",
+            color="C6",
             label="with crowning",
         )
     form = 1e6 * float(np.ptp(helix.form_m))

@@ -15,6 +15,7 @@ import numpy as np
 
 from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
+from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
@@ -27,12 +28,12 @@ from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
-from siggen.specimen.drive import record_drive
+from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.integration import steps_per_sample
 from siggen.specimen.motion import specimen_motion
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 """Raised when a key changes its meaning or goes away; new keys leave it."""
 
 ENDING = ".npz"
@@ -53,8 +54,6 @@ def exported_model(whole: Config, record_id: int) -> Model:
     ------
     SolverFailure
         If what was drawn cannot be built; says why.
-    UsageError
-        If speed, torque or other forces vary: the format holds a constant speed and torque alone.
     """
     record = planned_record(whole, record_id)
     config = gearbox_config(whole, record.specimen_id)
@@ -63,15 +62,10 @@ def exported_model(whole: Config, record_id: int) -> Model:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
-        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps))
         angle = start_angle_rad(config, state.pair, record)
         driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
-        if driven.excitation is not None:
-            raise UsageError(
-                "export-model: received a configuration with variation, dynamics.unbalance or dynamics.bearing_tones; "
-                "allowed are constant speed and torque, without other forces: a model would lack them"
-            )
-        grid = _time_grid(config, motion, point.speed_hz, angle, steps)
+        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
+        grid = _time_grid(config, motion, driven.rotation, steps)
         start = motion.start(grid["start_pitches"])
     return {
         "format": "siggen exported model",
@@ -86,7 +80,10 @@ def exported_model(whole: Config, record_id: int) -> Model:
         **_static_part(motion.equations),
         "torque_nm": point.torque_nm,
         "integrator": specimen.dynamics.method,
+        "speed_hz": point.speed_hz,
+        "start_angle_rad": angle,
         **grid,
+        **_inputs(driven, grid),
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
         **_law(motion.law),
@@ -165,7 +162,7 @@ def _static_part(equations: Equations) -> dict[str, Any]:
     }
 
 
-def _time_grid(config: Config, motion: Motion, speed_hz: float, angle_rad: float, steps: int) -> dict[str, Any]:
+def _time_grid(config: Config, motion: Motion, rotation: Rotation, steps: int) -> dict[str, Any]:
     """Return rate, steps and the phase of the mesh; the transient lies before time 0."""
     step_s = 1.0 / (config.fs_hz * steps)
     settling = settling_steps(motion.transient_s, settle_s(config), config.fs_hz * steps)
@@ -176,11 +173,23 @@ def _time_grid(config: Config, motion: Motion, speed_hz: float, angle_rad: float
         "samples": config.samples,
         "steps_per_sample": steps,
         "step_s": step_s,
-        "speed_hz": speed_hz,
-        "start_angle_rad": angle_rad,
         "start_s": start_s,
-        "start_pitches": (angle_rad + 2.0 * np.pi * speed_hz * start_s) * per_radian,
+        "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian,
         "pitches_per_rad": per_radian,
+    }
+
+
+def _inputs(driven: RecordDrive, grid: Mapping[str, Any]) -> dict[str, Any]:
+    """Return angle and inputs at all steps up to the end of the filter behind the last sample, where they vary."""
+    if driven.excitation is None:
+        return {}
+    count = round((grid["samples"] / grid["fs_hz"] - grid["start_s"]) / grid["step_s"])
+    time_s = grid["start_s"] + np.arange(count + half_length(grid["steps_per_sample"]) + 1) * grid["step_s"]
+    return {
+        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"],
+        "inputs": driven.excitation.inputs(time_s, driven.rotation),
+        "input_vectors": driven.excitation.vectors,
+        "speed_input": driven.speed_input,
     }
 
 

@@ -71,8 +71,8 @@ def _draw(axis: Axes, view: FlankView, colours: ScalarMappable) -> None:
         patch = Polygon(corners, closed=True, fc=colours.to_rgba(np.array([depth_mm]))[0], ec="0.25", lw=0.4)
         axis.add_patch(patch)
         patch.set_clip_path(outline)
-    axis.hlines(view.pitch_mm, 0, view.face_width_mm, color="tab:blue", lw=1.0, ls="-.")
-    axis.hlines(view.start_mm, 0, view.face_width_mm, color="tab:green", lw=1.0, ls="--")
+    axis.hlines(view.pitch_mm, 0, view.face_width_mm, color="C2", lw=1.0, ls="-.")
+    axis.hlines(view.start_mm, 0, view.face_width_mm, color="C5", lw=1.0, ls="--")
     _name_heights(axis, view)
     axis.set_xlabel("across the face [mm]")
     axis.set_ylabel("arc above the\nbase circle [mm]")
@@ -85,8 +85,8 @@ def _draw(axis: Axes, view: FlankView, colours: ScalarMappable) -> None:
 
 def _name_heights(axis: Axes, view: FlankView) -> None:
     """Write what the lines and zones are beside the flank."""
-    names = [(view.tip_mm, "tip", "black"), (view.pitch_mm, "pitch line", "tab:blue")]
-    names += [(view.start_mm, "start of active profile", "tab:green")]
+    names = [(view.tip_mm, "tip", "black"), (view.pitch_mm, "pitch line", "C2")]
+    names += [(view.start_mm, "start of active profile", "C5")]
     for zone in view.zones:
         names.append((0.5 * (zone.low_mm + zone.high_mm), f"{_NUMBERS.get(zone.pairs, zone.pairs)} contact", "0.45"))
     room = 0.075 * (view.tip_mm - view.foot_mm + 2 * MARGIN_MM)

@@ -20,11 +20,12 @@ def modes_figure(found: SpecimenModes) -> Figure:
     figure = Figure(figsize=(9.0, 0.4 * count + 1.8), layout="constrained")
     shapes, mesh = figure.subplots(1, 2, sharey=True, width_ratios=(4, 1))
     image = shapes.imshow(100.0 * kinetic_shares(found), aspect="auto", cmap="Blues", vmin=0.0, vmax=100.0)
+    shapes.grid(visible=False)
     shapes.set_xticks(range(count), found.coordinates, rotation=45)
     shapes.set_yticks(range(count), [f"{f:.1f} Hz" for f in found.modes.frequency_hz])
     shapes.set_title("share of kinetic energy [%]")
     figure.colorbar(image, ax=shapes, location="left")
-    mesh.barh(range(count), 100.0 * found.modes.mesh_share, color="tab:red")
+    mesh.barh(range(count), 100.0 * found.modes.mesh_share, color="C3")
     mesh.set_xlim(0.0, 100.0)
     mesh.set_title("strain energy in the mesh [%]", loc="right", fontsize="medium")
     return figure

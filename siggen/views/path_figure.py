@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LOWEST_HZ = 50.0
-POINT_COLOURS = ("tab:red", "tab:green", "tab:purple", "tab:brown", "tab:olive")
+POINT_COLOURS = ("C3", "C5", "tab:purple", "tab:brown", "tab:olive")
 
 
 def path_figure(found: PathCurves) -> Figure:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from siggen.errors import UsageError
+from siggen.views.figure_style import figure_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,7 +29,7 @@ def check_picture_file(path: Path) -> Path:
 
 
 def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
-    """Draw a figure into a file.
+    """Draw a figure into a file, in the one look of all pictures.
 
     Raises
     ------
@@ -37,11 +38,15 @@ def save_figure(draw: Callable[[], Figure], path: Path, dpi: int = 150) -> None:
     """
     check_picture_file(path)
     try:
-        figure = draw()
+        import matplotlib as mpl
+
+        with mpl.rc_context(figure_style()):
+            figure = draw()
     except ImportError:
         raise UsageError("drawing needs matplotlib: pip install 'siggen[diagnostics]'") from None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=dpi)
+        with mpl.rc_context(figure_style()):  # letters are set when the file is written
+            figure.savefig(path, dpi=dpi)
     except OSError as error:
         raise UsageError(f"{path} cannot be written: {error.strerror or error}") from error

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = ("tab:blue", "tab:red", "tab:purple", "tab:brown", "tab:pink", "tab:cyan")
+COLOURS = ("C2", "C3", "tab:purple", "tab:brown", "tab:pink", "tab:cyan")
 """Of the positions that are drawn one by one; as many of them at most."""
 MOST_POSITIONS = len(COLOURS)
 
@@ -109,9 +109,9 @@ def _draw_flank(figure: Figure, axis: Axes, pressure: FacePressure, positions: S
     )
     figure.colorbar(image, ax=axis, label="largest pressure [MPa]", location="left", shrink=0.9)
     for corners in view.outlines_mm:
-        axis.add_patch(Polygon(corners, closed=True, fc="none", ec="tab:green", lw=1.4))
+        axis.add_patch(Polygon(corners, closed=True, fc="none", ec="C5", lw=1.4))
     axis.axhline(view.pitch_mm, color="tab:cyan", lw=1.0, ls="-.")
-    axis.annotate("pitch line", (0.1, view.pitch_mm), fontsize=8, color="tab:blue", va="bottom")
+    axis.annotate("pitch line", (0.1, view.pitch_mm), fontsize=8, color="C2", va="bottom")
     for colour, at in zip(COLOURS, positions, strict=False):
         axis.axhline(float(pressure.arc_mm[at]), color=colour, lw=1.0, ls="--")
     axis.set_xlim(0.0, view.face_width_mm)
@@ -127,7 +127,7 @@ def _draw_along(axis: Axes, pressure: FacePressure, positions: Sequence[int]) ->
         edges = np.where(pressure.at_edge > 0.0, values, np.nan)
         worst = np.where(pressure.at_edge.any(axis=1), np.nan_to_num(edges).max(axis=1), np.nan)
         label = f"edges of {pressure.edge_radius_mm:.3g} mm"
-        axis.plot(worst, pressure.arc_mm, color="tab:orange", label=label)
+        axis.plot(worst, pressure.arc_mm, color="C6", label=label)
     for colour, at in zip(COLOURS, positions, strict=False):
         axis.axhline(float(pressure.arc_mm[at]), color=colour, lw=1.0, ls="--")
     axis.set_xlim(left=0.0)

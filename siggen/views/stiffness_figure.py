@@ -100,7 +100,7 @@ def _stack(axis: Axes, curve: StiffnessCurve) -> None:
     for name in names:
         side, _, _ = name.partition("_")
         place = [n for n in names if n.startswith(side)].index(name)
-        colours.append(colormaps[SHADES[side]](shades[place % 4]) if side in SHADES else "tab:orange")
+        colours.append(colormaps[SHADES[side]](shades[place % 4]) if side in SHADES else "C6")
     layers = [1e9 * curve.parts_m_per_n[name][inside] for name in names]
     axis.stackplot(
         np.degrees(curve.angle_rad[inside]), layers, labels=[n.replace("_", " ") for n in names], colors=colours

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
+import yaml
 
 from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
+from siggen.checks.tilt_problems import static_tilts_rad
 from siggen.columns.record import RecordFailure
 from siggen.errors import ConfigError
-from siggen.record.simulation import simulate
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.simulation import simulate, specimen_state
+from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
@@ -64,16 +73,58 @@ def test_the_linear_law_has_no_contact_across_the_face() -> None:
         load_config(minimal(dynamics={"model": "8dof", "mesh": {"law": "linear", "contact": "face"}}))
 
 
+def test_the_tilt_of_plan_is_that_of_the_motion() -> None:
+    # The closed form of the check against the static state of the assembled gearbox.
+    uneven = {"gear_position": 0.42, "bearing_span_mm": 120.0}
+    config = load_config(with_shafts(**uneven))
+    config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
+    specimen = draw_specimen(config, 0)
+    state = specimen_state(config, specimen, 0)
+    motion = specimen_motion(specimen.dynamics, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
+    found = sum(static_tilts_rad(specimen.dynamics, which, state.pair, 45.0)[1] for which in ("pinion", "gear"))
+    assert abs(found) > 1e-6
+    assert found == pytest.approx(motion.pair_equations.static_tilt, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "pinion",
+    [
+        {"diameter_mm": 20.0, "bearing_span_mm": 200.0, "gear_position": 0.3},
+        {"diameter_mm": 10.0, "gear_position": 0.3},
+    ],
+)
+def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_with_what_would_do(
+    pinion: dict[str, float], tmp_path: Path
+) -> None:
+    file = tmp_path / "soft.yaml"
+    file.write_text(yaml.safe_dump(with_shafts(**pinion), sort_keys=False))
+    line = next(n for n, text in enumerate(file.read_text().splitlines(), 1) if "diameter_mm" in text)
+    with pytest.raises(ConfigError, match=r"allowed: a tilt of at most \d+ urad") as refused:
+        load_config(file)
+    told = str(refused.value)
+    assert f"dynamics.shafts.pinion.diameter_mm: received {pinion['diameter_mm']}" in told
+    assert f"(line {line})" in told
+    thick = float(re.search(r"from ([\d.]+) mm on", told).group(1))
+    load_config(with_shafts(**pinion | {"diameter_mm": thick}))
+    with pytest.raises(ConfigError):
+        load_config(with_shafts(**pinion | {"diameter_mm": thick - 0.2}))
+
+
+@pytest.mark.parametrize("which", ["bench", "industrial", "quickstart", "paper_b"])
+def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
+    load_config(ROOT / "configs" / f"{which}.yaml")
+
+
 @pytest.mark.parametrize(
     ("pinion", "reason"),
     [
-        ({"diameter_mm": 20.0, "bearing_span_mm": 200.0, "gear_position": 0.3}, "the flanks tilt by"),
-        ({"diameter_mm": 10.0, "gear_position": 0.3}, "the flanks tilt by"),
+        ({"diameter_mm": 14.0}, "the flanks tilt by"),  # pushed askew by the misaligned mesh
         ({"diameter_mm": 5.0, "bearing_span_mm": 400.0}, "a gear moves by"),
     ],
 )
-def test_shafts_that_are_too_soft_end_a_record_with_a_reason(pinion: dict[str, float], reason: str) -> None:
-    config = load_config(with_shafts(**pinion) | {"fs_hz": 25600.0, "duration_s": 0.05})
+def test_shafts_that_are_too_soft_in_motion_end_a_record_with_a_reason(pinion: dict[str, float], reason: str) -> None:
+    askew = {"accuracy_class": 6, "lead_misalignment_um": 30.0}
+    config = load_config(with_shafts(**pinion) | {"fs_hz": 25600.0, "duration_s": 0.05, "manufacture": askew})
     (failure,) = simulate(config, [0])
     assert isinstance(failure, RecordFailure)
     assert failure.status == "outside_model"

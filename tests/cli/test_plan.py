@@ -141,3 +141,13 @@ def test_the_plan_says_what_varies_within_a_record(path):
     assert summary["mesh_hz"] == pytest.approx([540 * 0.5 * 0.988, 540 * 1.012])
     assert "unbalance of grade G6.3" in run("plan", path, *overrides)
     assert json.loads(run("plan", path, "--json"))["variation"] == []
+
+
+def test_a_set_of_pairs_tells_them_and_the_mesh_frequencies_of_all(tmp_path):
+    found = tmp_path / "set.yaml"
+    pairs = [{"teeth": teeth, "module_mm": 2.5, "face_width_mm": 25} for teeth in ([18, 47], [20, 51], [25, 56])]
+    found.write_text(yaml_text(minimal(specimens=2, gears__pairs=pairs)), encoding="utf-8")
+    summary = json.loads(run("plan", found, "--json"))
+    assert summary["mesh_hz"] == [540, 750]
+    assert summary["pairs"][2] == "25/56 teeth, m 2.5, b 25 mm"
+    assert "3, of which its gearboxes have 2: 18/47 teeth" in run("plan", found)

@@ -54,3 +54,13 @@ class DiesOnArrival:
 
     def __reduce__(self) -> tuple:
         return os._exit, (7,)
+
+
+def busy(task: int) -> int:
+    """Say that it works, then hold the interpreter for minutes in one call, as compiled code does for seconds."""
+    import re
+
+    if folder := os.environ.get("SIGGEN_TEST_BUSY"):
+        (Path(folder) / str(os.getpid())).touch()
+        re.match(r"(a?){32}a{32}", "a" * 32)
+    return task

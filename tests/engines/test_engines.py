@@ -74,9 +74,11 @@ def test_engines_are_found_by_name_and_objects_are_taken_as_they_are() -> None:
 
 def test_an_unknown_engine_and_two_numbers_of_workers_are_refused() -> None:
     with pytest.raises(
-        UsageError, match="received the engine 'ray'; allowed: serial, processes, dask, or an Engine object"
+        UsageError, match="received the engine 'spark'; allowed: serial, processes, dask, ray, or an Engine object"
     ):
-        engine_of("ray", 2)
+        engine_of("spark", 2)
+    with pytest.raises(UsageError, match="received the address a:1 and the engine processes; allowed: an address with"):
+        engine_of(None, 2, "a:1")
     with pytest.raises(UsageError, match="received workers 3 and an engine of 2 workers"):
         engine_of(ProcessEngine(2), 3)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,12 @@ from diagnostics.audit.envelope import realism
 from diagnostics.audit.measured_set import measured_set
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from siggen.checks.loading import load_config
+from siggen.checks.plausibility import implausible
 from siggen.config import Config
 from siggen.config.inheritance import inherited
 from siggen.config.yaml_source import read_yaml
+from siggen.planning.gearbox import pair_of
+from siggen.planning.plan import SPLITS, split_of
 from siggen.record.simulation import simulate
 from siggen.sets.verification import verify
 
@@ -126,3 +130,20 @@ def test_the_ideal_set_is_trivially_separable(tmp_path: Path) -> None:
     findings = separability_findings(measured_set(siggen.open(tmp_path / "ideal")))
     assert "healthy_without_sidebands" in [finding.trap for finding in findings]
     assert verdict(findings, config.specimens).startswith("The set is trivially separable")
+
+
+MODULES_OF_ISO_54 = {1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0}
+
+
+def test_families_holds_many_usual_pairs_that_hunt_and_keeps_each_in_one_split() -> None:
+    """Loading checks every pair; a change of the drawing of pairs would give the preset another identity."""
+    config = load_config(CONFIGS / "families.yaml")
+    pairs = config.gears.pairs
+    assert len(pairs) >= 50
+    assert {pair.module_mm for pair in pairs} <= MODULES_OF_ISO_54
+    assert all(math.gcd(*pair.teeth) == 1 and pair.teeth[0] >= 17 for pair in pairs)
+    assert all(7.7 <= pair.face_width_mm / pair.module_mm <= 15.3 for pair in pairs)
+    found = {pair_of(config, i): split_of(config, i) for i in range(len(pairs))}
+    assert [sum(split == name for split in found.values()) for name in SPLITS] == [36, 12, 12]
+    assert str(pairs[0]) == "17/35 teeth, m 2.5, b 32 mm"
+    assert implausible(config) == ()

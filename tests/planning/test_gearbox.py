@@ -40,6 +40,10 @@ def test_drawn_pairs_lie_in_their_ranges_differ_and_hunt() -> None:
         == config(gears__pairs=RANGES, seed=8).gears.pairs
         != config(gears__pairs={**RANGES, "seed": 1}).gears.pairs
     )
+    made = config(gears__pairs=RANGES)
+    again = parse(made.canonical()).config
+    assert again is not None
+    assert (again, again.identity) == (made, made.identity)
     assert pairs[:20] == config(gears__pairs={**RANGES, "count": 20}).gears.pairs
 
 

@@ -1,4 +1,4 @@
-"""Whoever waits for the first record on a machine is told why."""
+"""Whoever waits for the first record on a machine is told why, and workers do not compile the same side by side."""
 
 from __future__ import annotations
 
@@ -6,18 +6,66 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from numba.core.dispatcher import Dispatcher
 
-from siggen.dynamics.mesh import pair_forces
-from siggen.dynamics.mesh.pair_forces import static_force
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.sets.compilation import compilation_text, is_compiled
-from tests.dynamics.pair_runs import law
+import siggen
+from siggen.config import Config
+from siggen.dataset.storage import LocalFolder
+from siggen.dynamics.time import exponential_step
+from siggen.engines.processes import ProcessEngine
+from siggen.record import compilation
+from siggen.record.compilation import CompilationPart, is_compiled, run_part, to_compile
+from siggen.record.simulation import simulate_specimen
+from siggen.sets.compilation import compilation_text
+from siggen.sets.interruption import Interruption
+from siggen.sets.set_run import set_run
 
 
-def test_an_empty_cache_is_told_and_a_filled_one_is_not(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    static_force(law(), 1e-6, 0.3, pair_table(law()))  # compiles the forces, or finds them compiled
-    assert is_compiled()
-    assert compilation_text() == ""
-    empty = SimpleNamespace(stats=SimpleNamespace(cache_path=str(tmp_path / "nothing")))
-    monkeypatch.setattr(pair_forces, "write_forces", empty)
-    assert "compiling the simulation once: about 40 s of CPU per worker" in compilation_text()
+@pytest.fixture(scope="module")
+def short() -> Config:
+    return siggen.load_config("configs/quickstart.yaml", ["specimens=1", "duration_s=0.05"])
+
+
+def test_the_parts_compile_all_that_a_record_needs(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in (compilation.TEETH, compilation.MOTION):
+        run_part(CompilationPart(short, name))
+    later = []
+    known = Dispatcher._compile_for_args
+
+    def noted(dispatcher: Dispatcher, *arguments: object, **named: object) -> object:
+        later.append(dispatcher.py_func.__qualname__)
+        return known(dispatcher, *arguments, **named)
+
+    monkeypatch.setattr(Dispatcher, "_compile_for_args", noted)
+    simulate_specimen(short, [short.records_per_specimen - 1])
+    assert later == []
+
+
+def test_an_empty_cache_is_told_and_a_filled_one_is_not(
+    short: Config, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    run_part(CompilationPart(short, compilation.MOTION))
+    assert is_compiled(short)
+    assert (compilation_text(short, 2), to_compile(short)) == ("", ())
+    empty = SimpleNamespace(
+        stats=SimpleNamespace(cache_path=str(tmp_path / "nothing")), py_func=exponential_step.advance.py_func
+    )
+    monkeypatch.setattr(exponential_step, "advance", empty)
+    assert "compiling the simulation once, for all workers: about 36 s" in compilation_text(short, 2)
+    assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
+
+
+def test_a_run_compiles_before_its_first_record(short: Config, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    mapped: list[type] = []
+
+    class Noting(ProcessEngine):
+        def map(self, function, tasks):
+            for index, task in enumerate(tasks):
+                mapped.append(type(task))
+                yield index, function(task)
+
+    monkeypatch.setattr(compilation, "is_compiled", lambda config: False)
+    storage = LocalFolder(tmp_path / "set")
+    with storage.writing(), Interruption() as interruption:
+        set_run(short, storage, Noting(1), None, interruption).finish()
+    assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "Chunk"]

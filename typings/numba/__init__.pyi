@@ -13,5 +13,6 @@ prange = range
 
 class _Config:
     DISABLE_JIT: bool
+    CACHE_DIR: str
 
 config: _Config

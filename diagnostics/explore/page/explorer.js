@@ -4,7 +4,9 @@ Explore.chosen = null;
 Explore.facts = (row) => {
   const record = Explore.data.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
-  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}.`;
+  const load = record.torque_nm === null ? "" : `, load ${Explore.number(record.torque_nm)}`;
+  if (Explore.data.measured) return `${record.name}, ${record.state}, pinion ${Explore.number(record.speed_hz)} Hz${load}, ${record.teeth_pinion} and ${record.teeth_gear} teeth.`;
+  return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };
 
 Explore.healthyOf = (row) => (document.getElementById("overlay").checked ? Explore.data.overlay[row] : null);
@@ -13,7 +15,11 @@ Explore.showOverlayNote = (row) => {
   const note = document.getElementById("overlay-note");
   const other = Explore.data.overlay[row];
   note.hidden = !document.getElementById("overlay").checked;
-  note.textContent = other === null
+  const measured = Explore.data.measured;
+  const laid = other === null ? null : Explore.data.records[other];
+  note.textContent = measured
+    ? laid === null ? "No other recording is known to be healthy: nothing is laid over." : `Laid over: ${laid.name}, the healthy recording nearest in speed.`
+    : other === null
     ? "This page has no other healthy record of this gearbox at this operating point: nothing is laid over."
     : `Laid over: record ${Explore.data.records[other].record_id}, healthy, same gearbox and operating point.`;
 };
@@ -22,7 +28,7 @@ Explore.open = (row) => {
   Explore.chosen = row;
   const record = Explore.data.records[row];
   const title = document.getElementById("chosen-title");
-  title.replaceChildren(`Record ${record.record_id}: `, Explore.element("bdi", record.state));
+  title.replaceChildren(`${Explore.data.measured ? "Recording" : "Record"} ${record.record_id}: `, Explore.element("bdi", Explore.data.measured ? record.name : record.state));
   document.getElementById("chosen-facts").textContent = Explore.facts(row);
   Explore.markRow();
   Explore.draw();
@@ -46,14 +52,21 @@ Explore.draw = () => {
 
 Explore.begin = () => {
   Explore.listen();
-  Explore.filterRecords();
+  const asked = Explore.address();
   Explore.buildScatter(document.getElementById("scatter"));
   document.getElementById("channel").addEventListener("change", Explore.draw);
   document.getElementById("overlay").addEventListener("change", Explore.draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
   addEventListener("resize", Explore.resize);
-  const damaged = Explore.data.records.findIndex((record) => record.fault !== "healthy");
-  Explore.open(Math.max(damaged, 0));
+  addEventListener("hashchange", () => {
+    const row = Explore.address();
+    const shown = Explore.visible();
+    if (row >= 0) Explore.open(row);
+    else if (shown.length) Explore.open(Number(shown[0].dataset.row));
+  });
+  const shown = Explore.visible().map((line) => Number(line.dataset.row));
+  const damaged = shown.find((row) => Explore.data.records[row].fault !== "healthy");
+  Explore.open(asked >= 0 ? asked : damaged ?? shown[0] ?? 0);
 };
 
 Explore.begin();

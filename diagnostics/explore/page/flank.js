@@ -33,6 +33,7 @@ Explore.flank = (gear, tooth, damages, size) => {
 Explore.showFlank = (section, row) => {
   const body = section.querySelector(".body");
   body.replaceChildren();
+  section.hidden = Explore.data.measured;
   const record = Explore.data.records[row];
   const damages = Explore.data.damage[String(record.record_id)] || [];
   const teeth = Explore.damagedTeeth(row);

@@ -39,9 +39,10 @@ Explore.showIndicators = (section, row, channel) => {
   const label = Explore.element("label", "Indicator contains ");
   const search = Explore.element("input", "", { type: "search", autocomplete: "off" });
   label.append(search);
+  const those = Explore.data.measured ? "other healthy recordings" : "healthy records of other gearboxes";
   const against = healthy.length < 3
-    ? "This page has fewer than three healthy records of other gearboxes: no indicator has a place among them."
-    : `Compared with ${healthy.length} healthy records of other gearboxes on this page, ${where}. Many are looked at, so that some stand far out by chance.`;
+    ? `This page has fewer than three ${those}: no indicator has a place among them.`
+    : `Compared with ${healthy.length} ${those} on this page, ${where}. Many are looked at, so that some stand far out by chance.`;
   const fill = () => Explore.fillIndicators(body, found, search.value.toLowerCase(), against);
   search.addEventListener("input", fill);
   controls.replaceChildren(label);
@@ -100,7 +101,7 @@ Explore.drawScatter = (section) => {
   const high = data[0][data[0].length - 1];
   const margin = 0.04 * (high - low) || 1;
   const plot = Explore.chart(body, {
-    title: "Scatter of two indicators", x, y, height: 340, data, range: [low - margin, high + margin], series: [dots("healthy", "healthy", 7), dots("damaged", "record", 7), dots("chosen", "damage", 13)],
+    title: "Scatter of two indicators", x, y, height: 340, data, range: [low - margin, high + margin], series: [dots("healthy", "healthy", 7), dots(Explore.data.measured ? "others" : "damaged", "record", 7), dots("chosen", "damage", 13)],
     summary: `${rows.length} records; the table of records opens them too.`, caption: "A click on a point opens its record. Drag to zoom.", cursor: { drag: { x: true, y: true, uni: 30 } },
   });
   let from = null;

@@ -23,6 +23,20 @@ Explore.filterRecords = () => {
   document.getElementById("count").textContent = `${Explore.visible().length} of ${Explore.data.records.length} records shown`;
 };
 
+// What the address asks for: `#record=12`, or values of the filters such as `#state=severe&predicted=healthy`.
+Explore.address = () => {
+  const wanted = new URLSearchParams(location.hash.slice(1));
+  for (const select of document.querySelectorAll("[data-filter]")) {
+    const value = wanted.get(select.dataset.filter) ?? "";
+    const fits = [...select.options].find((option) => option.value === value);
+    select.value = fits ? value : "";
+  }
+  document.getElementById("filter-text").value = wanted.get("text") ?? "";
+  document.getElementById("filter-size").value = wanted.get("area_from") ?? "";
+  Explore.filterRecords();
+  return Explore.data.records.findIndex((record) => String(record.record_id) === wanted.get("record"));
+};
+
 Explore.same = (value, text) => (typeof value === "number" ? value === Number(text) : value === text);
 
 // One row of the table takes part in the order of the Tab key: the chosen one, or the first that is shown.

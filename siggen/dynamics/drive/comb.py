@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.compiled import njit
 
 
 @dataclass(frozen=True, slots=True)

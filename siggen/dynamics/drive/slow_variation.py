@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 KNOTS_PER_CORNER_PERIOD = 16
 """Knots per 1/f_c: the spline damps the process by 2.6 % at the corner and cuts it off around 8 f_c."""

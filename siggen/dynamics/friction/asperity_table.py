@@ -15,9 +15,9 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
 from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh

@@ -14,8 +14,9 @@ from __future__ import annotations
 from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from siggen.compiled import njit
 
 Values: TypeAlias = float | NDArray[np.float64]
 """A number or an array; functions of several broadcast."""

@@ -12,8 +12,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
 
 BOUNDARY_FRICTION = 0.11

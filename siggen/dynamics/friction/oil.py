@@ -15,8 +15,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
+from siggen.compiled import njit
 from siggen.dynamics.friction.contact_kinematics import Values
 
 PIEZO_FACTOR = 9.904

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba import njit
-
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TOUCH, WEIGHT, between
 

@@ -8,10 +8,10 @@ half a step is compared with the force.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import place_contact
 from siggen.dynamics.mesh.pair_columns import CELL, FLANK, ROW, TOUCH, WEIGHT, WHOLE

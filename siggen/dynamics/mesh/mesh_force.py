@@ -13,10 +13,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 if TYPE_CHECKING:
     from siggen.gears.stiffness.mesh_tables import MeshTables

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from math import sqrt, tanh
 
-from numba import njit
-
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import contact_moment, contact_shares
 from siggen.dynamics.mesh.pair_columns import (

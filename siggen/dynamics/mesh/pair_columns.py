@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 (
     NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,

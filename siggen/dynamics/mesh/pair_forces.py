@@ -8,9 +8,9 @@ from __future__ import annotations
 from math import tanh
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
 from siggen.dynamics.friction.friction import friction_mixed
 from siggen.dynamics.mesh import pair_law as layout

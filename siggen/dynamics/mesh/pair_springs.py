@@ -8,9 +8,9 @@ pair stays below its own compliance, since then the energy is strictly convex.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import contact_spring
 from siggen.dynamics.mesh.pair_columns import (

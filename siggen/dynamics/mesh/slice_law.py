@@ -21,9 +21,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.friction.contact_kinematics import hertz_half_width, relative_radius
 from siggen.gears.contact.slice_contact import SliceSprings, grouped_sinks, sink_depths, slice_force, slice_springs
 from siggen.gears.damage.flank_chords import ContactChords, contact_chords, flank_chords

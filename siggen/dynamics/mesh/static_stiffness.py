@@ -11,9 +11,9 @@ from __future__ import annotations
 from math import lcm
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as at
 from siggen.dynamics.mesh.pair_forces import static_force
 from siggen.dynamics.mesh.pair_law import PairLaw

@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import ComplexArray, FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.structure.structure import Structure
 
 

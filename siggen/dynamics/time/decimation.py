@@ -11,9 +11,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 PASS_EDGE = 0.45
 """Highest frequency passed unchanged, in units of the output rate."""

@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh.mesh_force import MeshLaw, mesh_force, mesh_stiffness
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import Structure

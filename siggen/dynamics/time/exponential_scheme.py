@@ -24,15 +24,15 @@ from siggen.dynamics.time.equations import Equations, inverse_times, state_matri
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
 
 NODES = 4
-LEVELS = 3
-SPLIT = 4
+LEVELS = 5
+SPLIT = 2
 """A step with an event becomes this many, and each of them again this many, up to LEVELS lengths in all."""
 
 
 class Scheme(NamedTuple):
     """Constants of the method (a named tuple, since compiled code takes no dataclass).
 
-    First axis of the first four: lengths of a step, h, h/4, h/16. The columns are the 2n numbers of the state at the
+    First axis of the first four: lengths of a step, h, h/2, .. h/16. The columns are the 2n numbers of the state at the
     end, then NODES values each of what the mesh sees at the nodes, and zeros up to a multiple of four.
     """
 

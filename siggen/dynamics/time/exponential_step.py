@@ -14,10 +14,10 @@ what happens and never by a label.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.node_forces import (
     NODE_APPROACH,
@@ -42,6 +42,8 @@ SMOOTH_CHANGE = 0.02
 KINKED_CHANGE = 1e-4
 """The same where a flank touches or parts within the step."""
 FINEST = SPLIT ** (LEVELS - 1)
+TOUCHED = 2
+"""How often a step is halved at least in which a flank touches or parts."""
 ROUND = 4.0
 """Sliding speed over the slip speed at which friction has turned: tanh is 0.999."""
 CHANNELS = 5
@@ -216,7 +218,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
             cubic += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
             rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
         parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
-        if not settled or (level == 0 and parted) or not max(abs(cubic), abs(rubbing)) <= tolerance_n:
+        if not settled or (level < TOUCHED and parted) or not max(abs(cubic), abs(rubbing)) <= tolerance_n:
             return False
     _add_response(response, level, excess, 0, size, end)
     for channel in range(channels):

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import (

@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import ceil, log2
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 LARGEST_NORM = 0.5
 TERMS = 18

@@ -11,10 +11,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, MOMENT, NORMAL, POSITION, TILT, TILT_RATE
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals

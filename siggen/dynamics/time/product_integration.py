@@ -20,9 +20,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.mesh.mesh_force import MeshLaw, row_stiffness, table_row
 from siggen.dynamics.time.equations import Equations, approach_of, external_push, linear_rate, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation

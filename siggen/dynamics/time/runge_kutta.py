@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 
 # Inlined, since kernels that take a compiled function as an argument cannot be cached; those that name it are.

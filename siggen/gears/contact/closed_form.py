@@ -15,8 +15,7 @@ from __future__ import annotations
 
 from math import log, sqrt
 
-from numba import njit
-
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import half_plane_factor, notch_factor
 
 

@@ -27,7 +27,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.kind_row import KindRow, felt, first_touch, kind_row, pits_of_kind, touch_along
-from siggen.gears.contact.table_columns import FORCE, TOUCHING, TableSolver, column_curves, table_solver
+from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, largest_tilt_rad, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
@@ -36,7 +36,7 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
-BEND = 2e-3
+BEND = 4e-3
 """Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest."""
 
 
@@ -99,8 +99,7 @@ def contact_table(
         parts.append(_damaged(solver, damaged, row, healthy, first))
     touch, column, gain, curves = (list(values) for values in zip(*parts, strict=True))
     joined = np.concatenate(curves)
-    # The ends of the face lift by as much as `table_columns` lets a tilted face take to touch.
-    tilt = 2.0 * TOUCHING * healthy.reach_m / pair.face_width_m if options.tilts else 0.0
+    tilt = largest_tilt_rad(solver) if options.tilts else 0.0
     table = ContactTable(
         np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()), tilt
     )

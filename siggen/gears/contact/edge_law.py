@@ -33,7 +33,7 @@ from __future__ import annotations
 from math import exp, log, sqrt
 from typing import NamedTuple
 
-from numba import njit
+from siggen.compiled import njit
 
 QUARTER_PLANE = 1.1815
 """Derived: see the module's docstring."""

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-from numba import njit
-
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import half_length
 
 ROUNDED_FACTOR, JOINING_POWER = 0.9325, 7.26

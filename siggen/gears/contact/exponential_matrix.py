@@ -12,9 +12,9 @@ The numbers of terms and of right sides are constants of the module: compiled lo
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 
 EXPONENTIALS = 5
 TERMS = EXPONENTIALS + 1

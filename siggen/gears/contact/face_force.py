@@ -23,9 +23,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink
 from siggen.gears.contact.line_kernel import diagonal, strengths

@@ -11,9 +11,9 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.damage.flank_chords import FlankChords, depth_at
 from siggen.gears.geometry import involute

@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.line_kernel import LineKernel, reckoned_width
 from siggen.gears.contact.tooth_kernel import ToothKernel
 from siggen.gears.contact.two_edges import GapSink, gap_sink

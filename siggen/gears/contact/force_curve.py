@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.face_force import face_force
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.newton_matrix import SolverRoom

@@ -26,10 +26,10 @@ from math import asinh, exp, log, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.exponential_matrix import EXPONENTIALS
 
 SHORTEST_CELLS, LONGEST_DEPTHS = 0.5, 1.8

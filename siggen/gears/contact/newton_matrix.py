@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, TERMS, solve_rows
 from siggen.gears.contact.face_slices import FaceSlices
 

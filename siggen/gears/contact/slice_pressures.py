@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.edge_pressure import largest_edge_pressure
 from siggen.gears.contact.face_slices import FaceSlices, slice_sink

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.exponential_matrix import add_row_products, products
 from siggen.gears.contact.face_slices import FaceSlices, contact_half_width, slice_sink

@@ -58,6 +58,11 @@ def table_solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOpti
     return TableSolver(pair, options, lead_m, reach * (np.arange(options.nodes) / (options.nodes - 1.0)) ** 2)
 
 
+def largest_tilt_rad(solver: TableSolver) -> float:
+    """Return the tilt up to which the expansion holds: it lifts the ends of the face by `TOUCHING` of the reach."""
+    return float(2.0 * TOUCHING * solver.node_m[-1] / solver.pair.face_width_m)
+
+
 def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceSlices]:
     """Return the slices at fine points (chosen,)."""
     options = solver.options

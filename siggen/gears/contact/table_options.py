@@ -26,8 +26,8 @@ class TableOptions(NamedTuple):
     largest_force_n: float
     edge_radius_m: float = 0.1e-3
     cell_widths: float = 1.6
-    nodes: int = 10
-    healthy_columns: int = 65
+    nodes: int = 19
+    healthy_columns: int = 129
     finest: int = 2
     section_loss: bool = False
     coupled: bool = True

@@ -16,9 +16,9 @@ from math import exp, expm1, sinh
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 RIGID = 1e-9
 """b/l below which a tooth counts as rigid: T differs from 1/n by 1e-19."""

@@ -21,8 +21,7 @@ from __future__ import annotations
 from math import log, sqrt
 from typing import NamedTuple
 
-from numba import njit
-
+from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE, edge_terms
 
 FLOOR_ROUNDING, FLOOR_LIFT = 0.5, 0.3

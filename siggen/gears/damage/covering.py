@@ -10,10 +10,10 @@ from itertools import pairwise
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,

@@ -14,9 +14,9 @@ from math import asin, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.row_columns import (
     EDGE_RADIUS,

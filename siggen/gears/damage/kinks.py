@@ -11,9 +11,9 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,

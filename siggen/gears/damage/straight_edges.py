@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from math import sqrt
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import HIGHEST, LEFT_HIGH, LEFT_LOW, LOWEST
 
 

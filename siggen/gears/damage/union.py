@@ -15,9 +15,9 @@ from __future__ import annotations
 from math import atan2, pi, sqrt
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,

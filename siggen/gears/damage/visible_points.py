@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from math import isnan
 
-from numba import njit
-
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import (
     DEPTH,
     DISH,

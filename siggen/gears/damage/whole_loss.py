@@ -12,9 +12,9 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.row_columns import (
     FACE,

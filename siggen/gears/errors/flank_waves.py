@@ -48,7 +48,8 @@ def missing_m(
     radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
     roll, sense = radius / gear.base_radius_m, 1.0 if which == "pinion" else -1.0
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
-    seen = half_width_m / radius  # b over ρ: κb per wave on the revolution
+    # b over ρ: κb per wave on the revolution. Tables of few teeth may begin below the base circle, where no flank is.
+    seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
     total = np.zeros((gear.teeth, position_m.size))
     for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
         total += amplitude * j0(n * seen) * np.cos(n * (roll + tooth[:, None]) + phase)
@@ -79,9 +80,12 @@ def with_waves(
 
 
 def half_width_m(pair: GearPair, position_m: FloatArray, line_load_n_per_m: float) -> FloatArray:
-    """Return the half-width (k,) of the Hertz contact at positions (k,), √(4 F_l R_e / (π E*)), both of one steel."""
+    """Return the half-width (k,) of the Hertz contact at positions (k,), √(4 F_l R_e / (π E*)), both of one steel.
+
+    Below either base circle, where no flank is, 0.
+    """
     line = pair.line_of_action_m
-    radius = position_m * (line - position_m) / line
+    radius = np.maximum(position_m * (line - position_m) / line, 0.0)
     modulus = 0.5 * pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
     return np.asarray(np.sqrt(4.0 * line_load_n_per_m * radius / (np.pi * modulus)))
 

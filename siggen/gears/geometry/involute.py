@@ -12,9 +12,9 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt, tan
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 
 
 @njit(cache=True)

@@ -11,10 +11,10 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt, tan
 
 import numpy as np
-from numba import njit
 from scipy.optimize import brentq
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.geometry.quadrature import NODES_48, WEIGHTS_48
 
 

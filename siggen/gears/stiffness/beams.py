@@ -16,9 +16,9 @@ from functools import lru_cache
 from math import cos, sin, sqrt
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.gears.geometry.involute import half_thickness, height
 from siggen.gears.geometry.quadrature import NODES_8, WEIGHTS_8
 from siggen.gears.geometry.spur_gear import SpurGear

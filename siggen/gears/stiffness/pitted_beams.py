@@ -14,9 +14,9 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import numpy as np
-from numba import njit
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.damage.row_columns import DISH, FACE, HEIGHT, LOWEST, SEMI_HEIGHT, TRAPEZOID
 from siggen.gears.damage.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
 from siggen.gears.damage.visible_points import edge_square, shows

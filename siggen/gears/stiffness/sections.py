@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.compiled import njit
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.kinks import section_kinks

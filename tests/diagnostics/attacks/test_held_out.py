@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.attacks import circular_network as network_module
 from diagnostics.attacks.chance import chance_maximum, permuted
-from diagnostics.attacks.circular_network import circular_network
 from diagnostics.attacks.column_attackers import all_columns, best_column
 from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows, trials
 from diagnostics.attacks.ridge_scores import PENALTIES, products, ridge_scores
-from diagnostics.attacks.trial import Trial, Verdicts
+from diagnostics.attacks.trial import Trial
 
 GEARBOXES, COLUMNS = 16, 60
 
@@ -114,25 +112,3 @@ def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_cha
     assert 0.5 < np.quantile(maxima, 0.95) < 0.85
     planted = best_column("best", values - 4.0 * damaged[:, None], names())
     assert held_out(planted, every, damaged, specimen, folds, 0).auc.value > max(maxima)
-
-
-def test_the_network_finds_a_burst_wherever_it_is_and_says_the_same_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("torch")
-    monkeypatch.setattr(network_module, "STEPS", 100)
-    specimen, damaged = design()
-    rng = np.random.default_rng(4)
-    waves = rng.standard_normal((specimen.size, 1, 256)).astype(np.float32)
-    burst = 5.0 * np.sin(np.arange(12))
-    for row in np.flatnonzero(damaged):
-        waves[row, 0, rng.integers(240) + np.arange(12)] += burst
-    usable = np.ones(specimen.size, dtype=bool)
-
-    def score() -> np.ndarray:
-        attacker = circular_network("network", waves, damaged, specimen, usable, 0)
-        assert attacker is not None
-        found: Verdicts = attacker.attack(Trial(np.arange(specimen.size), damaged, specimen, specimen < 10, 0, 0))
-        return found.score
-
-    first, held = score(), damaged[specimen >= 10]
-    assert np.mean(first[held][:, None] > first[~held]) > 0.9
-    assert np.array_equal(first, score())

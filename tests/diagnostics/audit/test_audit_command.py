@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
-from diagnostics.attacks import circular_network
-from diagnostics.audit import audit_report, bank_detections
+from diagnostics.audit import audit_report, bank_detections, network_attacker
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 from siggen.sets.verification import verify
@@ -33,7 +32,8 @@ def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few permutations and steps of training: what they find is tested with the attackers."""
     for module in (audit_report, bank_detections):
         monkeypatch.setattr(module, "PERMUTATIONS", 3)
-    monkeypatch.setattr(circular_network, "STEPS", 4)
+    monkeypatch.setattr(network_attacker, "SHOWN", 40)
+    monkeypatch.setattr(network_attacker, "FEWEST_EPOCHS", 1)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

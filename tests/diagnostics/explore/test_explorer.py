@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import http.client
 import json
+import shutil
+import subprocess
+import threading
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -15,13 +19,22 @@ import pytest
 
 from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
-from diagnostics.explore.explorer import write_explorer
+from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+from diagnostics.explore.predictions import predicted_labels
+from diagnostics.explore.server import page_server
 from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.release.saved_models import save_models
+from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training.training import train_models
+from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
 from tests.diagnostics.explore.unpacked import steps
 
+BROWSER = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
+)
 NAMES = {
     "healthy": "</script><script>window.broken=1</script>",
     "slight": "<img src=x onerror=alert(1)>&amp;\"' \u202eright to left\u2066 ",
@@ -60,11 +73,12 @@ class Read(HTMLParser):
             self.cells[-1] += text
 
 
-def renamed(dataset: MemoryDataset) -> MemoryDataset:
+def renamed(dataset: MemoryDataset, names: dict[str, str] | None = None) -> MemoryDataset:
+    names = names or NAMES
     place = dataset.table.schema.get_field_index("state")
-    states = [NAMES[state] for state in dataset.table.column("state").to_pylist()]
+    states = [names[state] for state in dataset.table.column("state").to_pylist()]
     dataset.table = dataset.table.set_column(place, "state", pa.array(states))
-    dataset.manifest = {**dataset.manifest, "name": NAMES["healthy"]}
+    dataset.manifest = {**dataset.manifest, "name": names["healthy"]}
     return dataset
 
 
@@ -101,6 +115,65 @@ def test_the_page_holds_every_record_with_all_its_views(page: str) -> None:
     assert data["overlay"] == [None, 0, 0, None, 3, 3]
     titles = {indicator["title"] for indicator in data["indicators"]}
     assert {"FM4, pinion", "Sideband amplitude, gear, mesh harmonic 1, upper sideband 1", "RMS [m/s²]"} <= titles
+
+
+def test_a_model_names_every_record_and_a_report_folder_holds_one(
+    dataset: MemoryDataset, features: pa.Table, tmp_path: Path
+) -> None:
+    training = train_models(dataset, features, 0, network=NetworkOptions(cnn=False))
+    save_models(training, features, dataset, tmp_path / "report" / "models")
+    options = ExplorerOptions(model=tmp_path / "report")
+    text = write_explorer(dataset, tmp_path / "page.html", options).read_text(encoding="utf-8")
+    records = json.loads(Read(text).data)["records"]
+    said = {record["record_id"]: record["predicted"] for record in records if record["split"] == "test"}
+    judged = next(found for found in training.judged if found.name == "indicators").predictions
+    ids = dataset.labels("test").column("record_id").to_pylist()
+    assert [said[record] for record in ids] == [judged.classes[k] for k in judged.predicted]
+    assert {record["named"] for record in records} <= {"rightly", "wrongly"}
+    assert all((record["named"] == "rightly") == (record["predicted"] == record["state"]) for record in records)
+    assert 'data-filter="predicted"' in text
+    other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
+    with pytest.raises(UsageError, match="columns that the set does not have"):
+        predicted_labels(other, tmp_path / "report")  # type: ignore[arg-type]
+
+
+@pytest.mark.skipif(not BROWSER, reason="needs a browser")
+@pytest.mark.parametrize(
+    ("asked", "shown", "opened"), [("state=severe", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 1)]
+)
+def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, opened: int) -> None:
+    page = write_explorer(memory_dataset(("train", "test")), tmp_path / "page.html")
+    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
+    address = f"{page.as_uri()}#{asked}"
+    done = subprocess.run([*command, "--dump-dom", address], capture_output=True, text=True, timeout=120, check=True)
+    assert f"{shown} of 6 records shown" in done.stdout
+    assert f"Record {opened}: <bdi>" in done.stdout
+
+
+def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDataset) -> None:
+    server = page_server("<p>page</p>", dataset, np.array([3]))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+
+    def answer(path: str, host: str = "") -> tuple[int, bytes]:
+        line = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10)
+        line.request("GET", path, headers={"Host": host or f"127.0.0.1:{server.server_port}"})
+        found = line.getresponse()
+        body = found.read()
+        line.close()
+        return found.status, body
+
+    wave = f"/wave?record=3&channel={CHANNELS[1]}"
+    try:
+        assert server.server_address[0] == "127.0.0.1"
+        assert answer("/") == (200, b"<p>page</p>")
+        signal = dataset.record(3)[f"accel_{CHANNELS[1]}_m_s2"]
+        assert np.array_equal(np.frombuffer(answer(wave)[1], "<f4"), signal)
+        assert answer(wave, host="evil.example")[0] == 403
+        refused = ("/wave?record=4&channel=" + CHANNELS[1], "/wave?record=3&channel=tacho_s", "/wave?record=-3", "/etc")
+        assert [answer(path)[0] for path in refused] == [404] * 4
+    finally:
+        server.shutdown()
+        server.server_close()
 
 
 def test_a_set_without_healthy_records_says_so(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
+from diagnostics.loader import windows
 from diagnostics.loader.windows import OrderRecords, WindowSettings, drawn_windows, order_records, record_windows
+from diagnostics.records.recording import Recording
 from diagnostics.training.baselines import state_index
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 from siggen.errors import DatasetError, UsageError
@@ -172,3 +175,26 @@ def test_weights_that_are_not_finite_or_of_another_schema_are_refused(name: str,
     save_network(network, facts, tmp_path / "cnn.safetensors")
     with pytest.raises(UsageError, match=message):
         load_network(tmp_path / "cnn.safetensors")
+
+
+def test_pinions_of_different_teeth_get_the_same_steps_per_revolution(monkeypatch: pytest.MonkeyPatch) -> None:
+    time_s, teeth, speed_hz = np.arange(12800) / 12800.0, (18, 24), (20.0, 16.0)
+    pulses = [np.arange(0.0, 0.99, 1.0 / speed) for speed in speed_hz]
+    found = [
+        Recording(
+            {"record_id": i, "teeth_pinion": teeth[i]},
+            {"a": np.sin(2.0 * np.pi * teeth[i] * speed_hz[i] * time_s).astype(np.float32)},
+            pulses[i],
+            12800.0,
+        )
+        for i in range(2)
+    ]
+    labels = pa.table({"teeth_pinion": list(teeth)})
+    dataset = SimpleNamespace(labels=labels.select, channels=[SimpleNamespace(name="a")])
+    monkeypatch.setattr(windows, "recordings", lambda _: iter(found))
+    records = order_records(dataset)  # type: ignore[arg-type]
+    assert records.settings.samples_per_revolution == 24 * 16
+    for signal, count in zip(records.signals, teeth, strict=True):
+        window = signal[0, : records.settings.samples]
+        spectrum = np.abs(np.fft.rfft(window))
+        assert int(np.argmax(spectrum)) == count * records.settings.revolutions

@@ -21,12 +21,16 @@ from diagnostics.training.splits import specimen_split
 CLASSES = ("healthy", "worn")
 
 
-def fingerprints(specimens: int = 30) -> FeatureMatrix:
-    """Windows that show their gearbox plainly and its state not at all: six windows, each state on half the boxes."""
+def fingerprints(specimens: int = 30, per_pair: int = 1) -> FeatureMatrix:
+    """Windows that show their gearbox plainly and its state not at all: six windows, each state on half the boxes.
+
+    With several gearboxes per gear pair they show the pair.
+    """
     rng = np.random.default_rng(0)
     specimen = np.repeat(np.arange(specimens), 6)
-    marks = rng.standard_normal((specimens, 40))[specimen]
-    state = np.where(specimen % 2 == 0, *CLASSES)
+    pair = specimen // per_pair
+    marks = rng.standard_normal((specimens, 40))[pair]
+    state = np.where(pair % 2 == 0, *CLASSES)
     values = marks + 0.05 * rng.standard_normal(marks.shape)
     names = ("rms__a", "rms__b", *(f"f{k}__{c}" for k in range(19) for c in "ab"))
     labels = {
@@ -34,6 +38,8 @@ def fingerprints(specimens: int = 30) -> FeatureMatrix:
         "record_id": np.repeat(np.arange(2 * specimens), 3),
         "state": state,
         "class": state,
+        "teeth_pinion": 18 + (pair if per_pair > 1 else 0 * pair),
+        "teeth_gear": np.full(specimen.size, 47),
         "speed_hz": rng.uniform(20.0, 35.0, size=2 * specimens).repeat(3),
     }
     return FeatureMatrix(values, names, labels)
@@ -48,6 +54,14 @@ def test_random_windows_reward_memory_and_unseen_specimens_do_not() -> None:
     for title in ("specimens", "one speed band of other specimens", "single channel: one sensor of other specimens"):
         assert found[title] == pytest.approx(0.5, abs=0.3)
         assert found[title] < found["random windows (leaky)"] - 0.15
+
+
+def test_other_gearboxes_of_the_same_pairs_reward_memory_of_the_pair_and_other_pairs_do_not() -> None:
+    rows = split_study(fingerprints(60, per_pair=3), CLASSES, seed=0)
+    found = {row.title: row.indicators.macro_auroc.value for row in rows}
+    assert found["specimens"] > 0.9
+    assert found["gear pairs"] == pytest.approx(0.5, abs=0.35)  # 20 pairs scatter by 0.12 round chance
+    assert not next(row for row in rows if row.title == "gear pairs").leaky
 
 
 def test_frequencies_that_differ_between_folds_do_not_push_a_blind_classifier_below_chance() -> None:

@@ -61,7 +61,7 @@ def test_the_force_of_a_single_pair_is_that_of_its_column() -> None:
                 gear_pair().contact_end_m - gear_pair().contact_start_m
             )
             column = place * (table.curves.shape[0] - 1)
-            node = table.reach_m * (np.arange(10) / 9.0) ** 2
+            node = table.reach_m * np.linspace(0.0, 1.0, table.curves.shape[1]) ** 2
             low, high = (
                 np.interp(pairs[i, PENETRATION], node, table.curves[k, :, 0]) for k in (int(column), int(column) + 1)
             )

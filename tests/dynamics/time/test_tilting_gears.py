@@ -23,6 +23,7 @@ from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.contact import whole_face
 from tests.dynamics.casing_stage import make_casing, make_stage, make_structure
@@ -44,17 +45,23 @@ def one_sided() -> Damage:
 
 @cache
 def tilting_law(
-    damage: Damage = (), lead_m: float = 0.0, options: TableOptions = TILTING, friction: float = 0.0
+    damage: Damage = (),
+    lead_m: float = 0.0,
+    options: TableOptions = TILTING,
+    friction: float = 0.0,
+    coupled: bool = False,
 ) -> PairLaw:
     pair = gear_pair()
     slices = face_slices(pair, options)
     lead = lead_m * ((np.arange(slices) + 0.5) / slices - 0.5)
     table = contact_table(pair, damage, TEETH, options, POINTS, lead)
+    along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     return law(
         missing_material(pair, RELIEF),
         whole_face(pair, damage, TEETH, POINTS),
         contact=table,
         friction=constant_friction(friction) if friction else None,
+        coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
     )
 
 
@@ -71,8 +78,9 @@ def sums(chosen: PairLaw, approach_m: float, tilt_rad: float, pitches: float) ->
 
 
 @pytest.mark.parametrize("pitches", [5.2, 5.55, 5.9])
-def test_a_closed_loop_of_approach_and_tilt_does_no_work(pitches: float) -> None:
-    chosen = tilting_law(one_sided(), lead_m=3e-6)
+@pytest.mark.parametrize("coupled", [False, True])
+def test_a_closed_loop_of_approach_and_tilt_does_no_work(pitches: float, coupled: bool) -> None:
+    chosen = tilting_law(one_sided(), lead_m=3e-6, coupled=coupled)
     turns = np.linspace(0.0, 2.0 * np.pi, 801)
     approach, tilt = 9e-6 + 2e-6 * np.cos(turns), 2e-5 * np.sin(turns)
     found = np.array([sums(chosen, d, theta, pitches) for d, theta in zip(approach, tilt, strict=True)])
@@ -119,9 +127,9 @@ def test_a_spall_at_one_end_of_the_face_moves_the_load_to_the_other() -> None:
 
 
 @pytest.mark.slow
-def test_power_is_balanced_with_tilt_and_friction() -> None:
+def test_power_is_balanced_with_tilt_coupling_and_friction() -> None:
     step = 1.0 / (MESHES * 30.0 * 400)
-    run = motion(locked_load(structure()), tilting_law(one_sided(), 3e-6, friction=0.05), step_s=step)
+    run = motion(locked_load(structure()), tilting_law(one_sided(), 3e-6, friction=0.05, coupled=True), step_s=step)
     pitches, states = settled(run, 30.0, step, 846 * 400, settle_s=4.0)
     states, pitches = states[:-1], pitches[:-1]
     bare, held = structure(), run.structure
@@ -139,4 +147,5 @@ def test_power_is_balanced_with_tilt_and_friction() -> None:
     mesh = (inner["mesh_force_n"] * inner["approach_rate_m_s"] + inner["mesh_moment_nm"] * tilt_rate).mean()
     dampers = float(np.einsum("ti,ij,tj->t", rate, bare.damping, rate).mean())
     assert power_in == pytest.approx(5655.0, abs=0.5)
+    assert np.ptp(inner["mesh_tilt_rad"]) > 1e-6
     assert abs(power_in - power_out - friction - mesh - dampers) < 0.05

@@ -120,7 +120,7 @@ def test_the_table_gives_the_force_of_the_solver(damage: Damage) -> None:
         approach = touch + np.array([3e-6, 6e-6, 10e-6])
         errors.append(from_table(found, 1, place, approach) - solved(damage, place, approach))
     share = np.abs(errors) / FORCE_N
-    # Columns are halved until they bend by less than 2e-3; kinks at edges rule the largest error, not the mean one.
+    # Columns are halved until they bend by less than 4e-3; kinks at edges rule the largest error, not the mean one.
     assert np.sqrt(np.mean(np.square(share))) < 1.5e-3
     assert share.max() < 1.5e-2
 
@@ -188,8 +188,8 @@ def test_missing_material_across_the_face_is_carried_by_the_near_end_first() -> 
     even = table(())
     assert tilted.lead_m == pytest.approx(lead.min())
     middle = OPTIONS.healthy_columns // 2
-    assert tilted.curves[middle, 2, CARRYING] < 0.5 * even.curves[middle, 2, CARRYING]
-    assert tilted.curves[middle, 2, FORCE] < even.curves[middle, 2, FORCE]
+    assert tilted.curves[middle, 4, CARRYING] < 0.5 * even.curves[middle, 4, CARRYING]
+    assert tilted.curves[middle, 4, FORCE] < even.curves[middle, 4, FORCE]
 
 
 @pytest.mark.parametrize("damage", [(), skewed()], ids=["healthy", "skewed, with land"])
@@ -205,7 +205,7 @@ def test_the_expansion_in_the_tilt_gives_force_and_moment_of_the_solver(damage: 
         column = round(tilting.column[row, int(place)])
     curve = tilting.curves[column]
     for tilt in (2e-5, -2e-5, 1e-4, -1e-4):
-        for k in (4, 6, 8):
+        for k in (8, 12, 16):
             force, moment = solved_with_tilt(damage, place, tilting.touch_m[row, int(place)] + node[k], tilt)
             expanded = curve[k, FORCE] + tilt * curve[k, MOMENT_SLOPE] + 0.5 * tilt**2 * curve[k, TURNING_SLOPE]
             turned = curve[k, MOMENT] + tilt * curve[k, TURNING]

@@ -55,10 +55,14 @@ def test_a_face_of_nine_depths_is_one_per_cent_stiffer_than_an_endless_line():
     assert loads[:100] == pytest.approx(loads[:99:-1], rel=1e-9)
 
 
-def test_a_spall_through_the_face_touches_at_the_rigid_sink():
+SOFT = {"teeth": BENDING, "rest": 0.25 * REST}
+
+
+@pytest.mark.parametrize("teeth", [{}, SOFT], ids=["rigid", "bending"])
+def test_a_spall_through_the_face_touches_at_the_rigid_sink(teeth):
     # that of `slice_contact.sink_depths` (test_two_edges)
     for offset in (0.0, 0.2e-3, 0.45e-3):
-        whole = spall(offset, half=WIDTH)
+        whole = spall(offset, half=WIDTH, **teeth)
         sink = (0.6e-3 - abs(offset)) ** 2 / (2.0 * whole.radius_m)
         assert solve(whole, sink - 1e-9)[0].force_n == 0.0
         assert solve(whole, sink + 1e-9)[0].force_n > 0.0
@@ -198,8 +202,9 @@ def test_the_slope_starts_from_zero_at_first_touch():
     np.testing.assert_allclose(per_hundred[:2], -np.log(10.0), rtol=0.03)
 
 
-def test_the_moment_balances_the_loads_and_mirrors_with_them():
-    slices = spall(0.1e-3, skew=0.05)
+@pytest.mark.parametrize("teeth", [{}, SOFT], ids=["rigid", "bending"])
+def test_the_moment_balances_the_loads_and_mirrors_with_them(teeth):
+    slices = spall(0.1e-3, skew=0.05, **teeth)
     answer, loads = solve(slices, 14e-6, 0.1e-3)
     line = loads / slices.kappa_per_pa * slices.kernel.cell_m
     assert answer.force_n == pytest.approx(line.sum(), rel=1e-10)
@@ -208,7 +213,7 @@ def test_the_moment_balances_the_loads_and_mirrors_with_them():
     other, _ = solve(mirrored, 14e-6, -0.1e-3)
     assert other.force_n == pytest.approx(answer.force_n, rel=1e-9)
     assert other.moment_n_m == pytest.approx(-answer.moment_n_m, rel=1e-9)
-    even, _ = solve(spall(0.0), 14e-6)
+    even, _ = solve(spall(0.0, **teeth), 14e-6)
     assert abs(even.moment_n_m) < 1e-10 * even.force_n * WIDTH
 
 

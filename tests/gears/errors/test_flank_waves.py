@@ -89,3 +89,17 @@ def test_the_half_width_is_that_of_hertz() -> None:
     modulus = effective_modulus(PAIR.youngs_modulus_pa, PAIR.poisson_ratio)
     expected = hertz_half_width(LOAD, relative_radius(position, PAIR.line_of_action_m), modulus)
     np.testing.assert_allclose(half_width_m(PAIR, position, LOAD), expected)
+
+
+def test_below_the_base_circles_where_tables_may_begin_waves_are_finite_and_above_them_unchanged() -> None:
+    line = PAIR.line_of_action_m
+    inside = np.linspace(0.05, 0.95, 19) * line
+    outside = np.array([-0.02, 0.0, 1.0, 1.02]) * line
+    position = np.sort(np.concatenate([inside, outside]))
+    width = half_width_m(PAIR, position, LOAD)
+    assert np.all(width[np.isin(position, outside)] == 0.0)
+    for which in ("pinion", "gear"):
+        found = missing_m(PAIR, which, waves(PAIR, which, 127), position, width)
+        assert np.isfinite(found).all()
+        alone = missing_m(PAIR, which, waves(PAIR, which, 127), inside, half_width_m(PAIR, inside, LOAD))
+        assert np.array_equal(found[:, np.isin(position, inside)], alone)

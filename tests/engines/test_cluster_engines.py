@@ -1,4 +1,4 @@
-"""The engine of Dask on a cluster of its own: as every engine, and a set's bytes do not depend on it."""
+"""The engines of Dask and Ray on clusters of their own: as every engine, and a set's bytes do not depend on them."""
 
 from __future__ import annotations
 
@@ -16,25 +16,31 @@ from siggen.sets.generation import generate
 from tests.dataset.fake_set import fake_config, fake_physics, file_bytes
 from tests.engines.tasks import die_at_three, fail_at_three, slow_at_first, square
 
-pytest.importorskip("distributed")
 pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow]
+PACKAGES = {"dask": "distributed", "ray": "ray"}
 
 
-def test_every_task_gives_one_result_at_its_position() -> None:
-    assert dict(engine_of("dask", 2).map(square, range(20))) == {i: i * i for i in range(20)}
+@pytest.fixture(params=PACKAGES)
+def name(request: pytest.FixtureRequest) -> str:
+    pytest.importorskip(PACKAGES[request.param])
+    return str(request.param)
 
 
-def test_a_raising_task_is_named_with_its_traceback() -> None:
+def test_every_task_gives_one_result_at_its_position(name: str) -> None:
+    assert dict(engine_of(name, 2).map(square, range(20))) == {i: i * i for i in range(20)}
+
+
+def test_a_raising_task_is_named_with_its_traceback(name: str) -> None:
     with pytest.raises(EngineError, match=r"(?s)^3 raised ValueError: three is not allowed.*in fail_at_three"):
-        dict(engine_of("dask", 1).map(fail_at_three, range(6)))
+        dict(engine_of(name, 1).map(fail_at_three, range(6)))
 
 
-def test_a_task_that_kills_its_workers_is_named() -> None:
+def test_a_task_that_kills_its_workers_is_named(name: str) -> None:
     with pytest.raises(EngineError, match="3 was lost because the workers that ran it died"):
-        dict(engine_of("dask", 1).map(die_at_three, range(6)))
+        dict(engine_of(name, 1).map(die_at_three, range(6)))
 
 
-def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task() -> None:
+def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task(name: str) -> None:
     taken: list[int] = []
 
     def tasks() -> Iterator[int]:
@@ -43,7 +49,7 @@ def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task() -> None:
             yield task
 
     seen: set[int] = set()
-    with closing(engine_of("dask", 2).map(slow_at_first, tasks())) as results:
+    with closing(engine_of(name, 2).map(slow_at_first, tasks())) as results:
         for index, _ in results:
             if 0 not in seen and index != 0:
                 assert index < WINDOW_PER_WORKER * 2
@@ -51,9 +57,9 @@ def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task() -> None:
     assert seen == set(range(40))
 
 
-def test_a_set_has_the_same_bytes(tmp_path: Path) -> None:
+def test_a_set_has_the_same_bytes(name: str, tmp_path: Path) -> None:
     with fake_physics():
-        generate(fake_config(), tmp_path / "dask", 2, engine="dask")
+        generate(fake_config(), tmp_path / name, 2, engine=name)
         generate(fake_config(), tmp_path / "serial", engine="serial")
-    assert file_bytes(tmp_path / "dask") == file_bytes(tmp_path / "serial")
-    assert open_set(tmp_path / "dask").labels().num_rows == 30
+    assert file_bytes(tmp_path / name) == file_bytes(tmp_path / "serial")
+    assert open_set(tmp_path / name).labels().num_rows == 30

@@ -1,0 +1,45 @@
+"""Peak memory of a process that makes one record, against the record's duration."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+
+from benchmarks.row import Row
+
+PRESETS = ("bench", "industrial")
+SHORT_S, LONG_S = 10, 60
+GOAL_BYTES, GOAL_GROWTH_BYTES = 450e6, 50e6
+RECORD = """
+import json, resource, sys
+import siggen
+from siggen.record.simulation import simulate_specimen
+
+config = siggen.load_config(sys.argv[1], ["specimens=1", f"duration_s={sys.argv[2]}"])
+simulate_specimen(config, [0])
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(json.dumps([peak * (1 if sys.platform == "darwin" else 1024), 4 * config.samples * len(config.channels)]))
+"""
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield the peak of a long record beside that of a short one, and how much of it is the delivered signals."""
+    for name in PRESETS[:1] if quick else PRESETS:
+        (short, _), (long, delivered) = _peak(name, SHORT_S), _peak(name, LONG_S)
+        yield Row(
+            f"{name}: peak memory of a record of {LONG_S} s, {delivered / 1e6:.0f} MB of it delivered",
+            f"{long / 1e6:.0f} MB",
+            f"{SHORT_S} s: {short / 1e6:.0f} MB",
+            goal=f"<= {GOAL_BYTES / 1e6:.0f} MB, + {GOAL_GROWTH_BYTES / 1e6:.0f} MB",
+            met=long <= GOAL_BYTES and long - short <= GOAL_GROWTH_BYTES,
+        )
+
+
+def _peak(name: str, duration_s: int) -> tuple[int, int]:
+    """Return the peak of a process of its own, and the bytes of the delivered signals."""
+    command = [sys.executable, "-c", RECORD, name, str(duration_s)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    peak, delivered = json.loads(done.stdout)
+    return int(peak), int(delivered)

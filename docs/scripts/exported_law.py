@@ -1,0 +1,326 @@
+"""Forces of an exported model, from its arrays alone (docs/reference/exported_model.md).
+
+Plain Python on purpose: it can be read beside the page, and shares no code with siggen.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Forces:
+    """ΣN [N], ΣF [N], Σ s F [N m], Σμ [N m] and Σ ζ F [N m] of all pairs."""
+
+    normal: float = 0.0
+    friction: float = 0.0
+    friction_moment: float = 0.0
+    across: float = 0.0
+    friction_across: float = 0.0
+
+
+@dataclass
+class State:
+    """Approach and its rate, sliding speed v = sliding_0 + s sliding_1, tilt and its rate; SI."""
+
+    approach: float
+    rate: float
+    sliding_0: float = 0.0
+    sliding_1: float = 0.0
+    tilt: float = 0.0
+    tilt_rate: float = 0.0
+
+
+@dataclass
+class Pair:
+    """One pair at an angle: row and cell of its tables, whole stiffness, position, what is missing, its penetration."""
+
+    row: int
+    cell: int
+    weight: float
+    whole: float
+    position: float
+    offset: float
+    missing: float
+    number: int
+    side: int = 0
+    penetration: float = 0.0
+    touching: bool = False
+
+
+@dataclass
+class Spring:
+    """Elastic force of a pair with its stiffness, carrying share, share on damage, moment and its derivatives."""
+
+    force: float = 0.0
+    slope: float = 0.0
+    carrying: float = 1.0
+    rough: float = 0.0
+    moment: float = 0.0
+    cross: float = 0.0
+    turning: float = 0.0
+
+
+def place_in(count, place):
+    """Return the cell of a table with `count` points, and the weight of its upper end; kept at the ends."""
+    place = min(max(place, 0.0), count - 1.0)
+    cell = min(int(place), count - 2)
+    return cell, place - cell
+
+
+def between(rows, cell, weight):
+    """Return the value of a table (points,) in a cell, linear."""
+    return rows[cell] * (1.0 - weight) + rows[cell + 1] * weight
+
+
+class LinearLaw:
+    """`law: linear`: stiffness of all pairs times the approach beyond half the backlash."""
+
+    def __init__(self, model):
+        self.model, self.rows = model, model["law.stiffness"].tolist()
+
+    def forces(self, state, pitches):
+        """Return the forces of a state at a pinion angle in base pitches."""
+        model, gap = self.model, float(self.model["law.half_backlash_m"])
+        if gap > 0 and abs(state.approach) <= gap:
+            return Forces()
+        stiffness = 0.0
+        teeth_1, teeth_2 = model["law.table_of_pair"].shape
+        for n in range(math.floor(pitches), math.floor(pitches - model["law.contact_ratio"]), -1):
+            row = self.rows[model["law.table_of_pair"][n % teeth_1, n % teeth_2]]
+            stiffness += between(row, *place_in(len(row), (pitches - n) * model["law.intervals_per_pitch"]))
+        beyond = state.approach - math.copysign(gap, state.approach)
+        return Forces(stiffness * beyond + model["law.damping_n_s_per_m"] * state.rate)
+
+
+class PairLaw:
+    """`law: pairs`: every pair with its own spring, damper, film and friction."""
+
+    def __init__(self, model):
+        self.model = {
+            name[4:]: value.tolist()  # plain numbers and lists: single elements of arrays are slow
+            for name, value in model.items()
+            if name.startswith("law.")
+        }
+        self.of_face = "contact.curves" in self.model
+        self.of_slices = "slices.sink_m" in self.model
+        self.lead = self.model.get("contact.lead_m", self.model.get("slices.lead_m", 0.0))
+        self.alone = 0 if self.model["film_n_s_per_m"] > 0.0 else 1
+        self.before = {}
+        if self.of_face:
+            nodes, reach = len(self.model["contact.curves"][0]), self.model["contact.reach_m"]
+            self.nodes = [reach * (k / (nodes - 1)) ** 2 for k in range(nodes)]
+
+    def forces(self, state, pitches):
+        """Return the forces of a state at a pinion angle in base pitches."""
+        pairs = self.pairs(state, pitches)
+        # One pair alone has nobody to share with, but its force widens the gaps in which others squeeze oil.
+        if "coupling_m_per_n" in self.model and sum(pair.side != 0 for pair in pairs) > self.alone:
+            self.share(pairs, state.tilt)
+        springs = [self.spring(pair, pair.penetration, state.tilt) for pair in pairs]
+        total = sum(spring.slope for spring in springs if spring.force != 0.0)
+        sums = Forces()
+        for pair, spring in zip(pairs, springs, strict=True):
+            if spring.force == 0.0:
+                sums.normal += self.film(pair, state.rate)
+            else:
+                self.add(sums, pair, spring, state, 1.0 / math.sqrt(total))
+        self.before = {pair.number: spring.force for pair, spring in zip(pairs, springs, strict=True)}
+        return sums
+
+    def pairs(self, state, pitches):
+        """Return the pairs in reach."""
+        law = self.model
+        found = []
+        last = pitches - law["contact_ratio"] - law["reach_after"]
+        number = math.floor(pitches + law["reach_before"])
+        while number > last:
+            one, two = number % len(law["offset_1"]), number % len(law["offset_2"])
+            row, since = law["table_of_pair"][one][two], pitches - number
+            cell, weight = place_in(len(law["stiffness"][row]), since * law["intervals_per_pitch"])
+            kinds = law["missing_1"][law["kind_of_tooth_1"][one]], law["missing_2"][law["kind_of_tooth_2"][two]]
+            at = place_in(len(kinds[0]), (since + law["reach_before"]) * law["missing_intervals_per_pitch"])
+            offset = law["offset_1"][one] + law["offset_2"][two]
+            pair = Pair(
+                row, cell, weight,
+                whole=between(law["stiffness"][row], cell, weight),
+                position=law["start_m"] + since * law["base_pitch_m"],
+                offset=offset,
+                missing=offset + self.lead + between(kinds[0], *at) + between(kinds[1], *at),
+                number=number,
+            )  # fmt: skip
+            pair.penetration = state.approach - pair.missing
+            pair.side = 1 if pair.penetration > 0.0 else 0
+            if not pair.side and state.approach - offset < -law["backlash_m"]:
+                pair.side, pair.penetration = -1, state.approach - offset + law["backlash_m"]
+            found.append(pair)
+            number -= 1
+        return found
+
+    def share(self, pairs, tilt):
+        """Replace the penetrations by those under the forces of the other pairs: Newton's method on the forces."""
+        table = self.model["coupling_m_per_n"]
+        coupling = np.zeros((len(pairs), len(pairs)))
+        for i, later in enumerate(pairs):
+            for j in range(len(pairs)):
+                if 0 < j - i <= len(table):
+                    coupling[i, j] = coupling[j, i] = between(table[j - i - 1], later.cell, later.weight)
+        alone = np.array([pair.penetration for pair in pairs])
+        force = np.array([self.before.get(pair.number, 0.0) for pair in pairs])
+        for _ in range(60):
+            under = alone - coupling @ force
+            springs = [self.spring(pair, depth, tilt) for pair, depth in zip(pairs, under, strict=True)]
+            slopes = np.array([spring.slope if spring.force != 0.0 else 0.0 for spring in springs])
+            wrong = np.array([spring.force for spring in springs]) - force
+            step = np.linalg.solve(np.eye(len(pairs)) + slopes[:, None] * coupling, wrong)
+            force = force + step
+            if np.abs(step).max() <= 1e-9 * max(np.abs(force).max(), 1e-12):
+                break
+        for pair, depth in zip(pairs, alone - coupling @ force, strict=True):
+            pair.penetration = float(depth)
+
+    def spring(self, pair, depth, tilt):
+        """Return the spring of a pair at a penetration."""
+        if pair.side < 0:
+            return Spring(pair.whole * depth, pair.whole) if depth < 0.0 else Spring()
+        if depth <= 0.0:
+            return Spring()
+        if self.of_face:
+            return self.spring_of_face(pair, depth - self.touch(pair), tilt)
+        return self.spring_of_slices(pair, depth) if self.of_slices else Spring(pair.whole * depth, pair.whole)
+
+    def touch(self, pair):
+        """Return the approach at which a pair first touches."""
+        return between(self.model["contact.touch_m"][pair.row], pair.cell, pair.weight)
+
+    def spring_of_face(self, pair, approach, tilt):
+        """Return the spring from the table of the contact across the face."""
+        if approach <= 0.0:
+            return Spring()
+        law, nodes = self.model, self.nodes
+        column = law["contact.column"][pair.row][pair.cell] + law["contact.gain"][pair.row][pair.cell] * pair.weight
+        whole = min(int(column), len(law["contact.curves"]) - 2)
+        node = min(int(math.sqrt(approach / nodes[1])), len(nodes) - 2)
+        share, span, over = column - whole, nodes[node + 1] - nodes[node], approach - nodes[node]
+        ends = [
+            [a * (1.0 - share) + b * share for a, b in zip(*both, strict=True)]
+            for both in (
+                (law["contact.curves"][whole][k], law["contact.curves"][whole + 1][k]) for k in (node, node + 1)
+            )
+        ]
+        t = min(over / span, 1.0)
+        force, slope, _ = cubic(ends[0][0:2], ends[1][0:2], over, span)
+        spring = Spring(force, slope, *(ends[0][k] * (1.0 - t) + ends[1][k] * t for k in (2, 3)))
+        if len(ends[0]) == 8:
+            moment, cross, bend = cubic(ends[0][4:6], ends[1][4:6], over, span)
+            turning, turning_slope, turning_bend = cubic(ends[0][6:8], ends[1][6:8], over, span)
+            spring.force = max(force + tilt * (cross + 0.5 * tilt * turning_slope), 0.0)
+            spring.slope = max(slope + tilt * (bend + 0.5 * tilt * turning_bend), 0.0)
+            spring.moment, spring.cross = moment + turning * tilt, cross + turning_slope * tilt
+            spring.turning = turning
+        return spring
+
+    def spring_of_slices(self, pair, depth):
+        """Return the spring whose groups of the face touch one by one."""
+        law, row, at = self.model, pair.row, (pair.cell, pair.weight)
+        rough = between(law["slices.on_damage"][row], *at)
+        low, high = law["slices.sink_m"][row][pair.cell], law["slices.sink_m"][row][pair.cell + 1]
+        if low[-1] == 0.0 and high[-1] == 0.0:
+            return Spring(pair.whole * depth, pair.whole, between(law["slices.land"][row], *at), rough)
+        sinks = np.array(low) * (1.0 - pair.weight) + np.array(high) * pair.weight
+        flush, contact = between(law["slices.flush"][row], *at), between(law["slices.contact_n_per_m"], *at)
+        # Springs in the order in which they touch: what is flush, then groups that stand for 1, 3, 5 ... parts of it.
+        parts = contact * (1.0 - flush) * (2 * np.arange(sinks.size) + 1) / sinks.size**2
+        stiffness = np.cumsum(np.append(contact * flush, parts))
+        preload = np.cumsum(np.append(0.0, parts * sinks))
+        compliance = 1.0 / pair.whole - 1.0 / contact
+        # The force is the largest of those with the first 1, 2, 3, ... springs in contact.
+        forces = (stiffness * depth - preload) / (1.0 + compliance * stiffness)
+        last = int(np.argmax(forces))
+        if forces[last] <= 0.0:
+            return Spring()
+        slope = stiffness[last] / (1.0 + compliance * stiffness[last])
+        return Spring(float(forces[last]), float(slope), flush + (1.0 - flush) * last**2 / sinks.size**2, rough)
+
+    def add(self, sums, pair, spring, state, shared):
+        """Add the forces of a pair that touches: spring, damper, moment, friction."""
+        damping = self.root(pair, spring) * shared
+        normal = spring.force + damping * (spring.slope * state.rate + spring.cross * state.tilt_rate)
+        if pair.side < 0:
+            sums.normal += min(0.0, normal)
+            return
+        if normal <= 0.0:
+            return
+        moment = spring.moment + damping * (spring.cross * state.rate + spring.turning * state.tilt_rate)
+        sums.normal += normal
+        sums.across += moment
+        if self.model["rubs"]:
+            _, coefficient = self.lubricated(pair, spring, normal)
+            sliding = state.sliding_0 + pair.position * state.sliding_1
+            friction = coefficient * normal * math.tanh(sliding / self.model["friction.slip_speed_m_s"])
+            sums.friction += friction
+            sums.friction_moment += pair.position * friction
+            sums.friction_across += friction * moment / normal
+
+    def root(self, pair, spring):
+        """Return the root of the damper, in parts where the asperities have a say."""
+        law = self.model
+        if "damping_root_kg" in law:
+            return law["damping_root_kg"]
+        if pair.side < 0:
+            return law["damping_structure_root_kg"] + law["damping_film_root_kg"]
+        share, _ = self.lubricated(pair, spring, spring.force)
+        film, asperities = law["damping_film_root_kg"], law["damping_asperities_root_kg"]
+        return law["damping_structure_root_kg"] + film * (1.0 - share) + asperities * share
+
+    def lubricated(self, pair, spring, force):
+        """Return the share of the load on asperities and the friction coefficient, at force over carrying share."""
+        law, line = self.model, self.model["friction.table.line_m"]
+        fluids = law["friction.table.fluid"]
+        along, a = place_in(len(fluids), (pair.position - law["friction.table.start_m"]) * law["friction.table.per_m"])
+        held = law["friction.table.start_m"] + (along + a) / law["friction.table.per_m"]
+        load = force / max(spring.carrying, 1e-3) * line / (law["friction.table.floor_n_per_m"] * held * (line - held))
+        up, b = place_in(len(fluids[0]), math.log(max(load, 1.0)) * law["friction.table.per_log"])
+
+        def read(table):
+            low = between([row[up] for row in table[along : along + 2]], 0, a)
+            return low * (1.0 - b) + between([row[up + 1] for row in table[along : along + 2]], 0, a) * b
+
+        ratios = [min(read(table), 1.0) for table in law["friction.table.ratio"]]
+        share = ratios[0] if len(ratios) == 1 else ratios[0] * (1.0 - spring.rough) + ratios[1] * spring.rough
+        boundary = law["friction.boundary"]
+        return share, share * boundary + (1.0 - share) * min(read(fluids), boundary)
+
+    def film(self, pair, rate):
+        """Return the force of the oil that a pair squeezes out before it touches."""
+        law = self.model
+        along = (pair.position - law["start_m"]) / law["base_pitch_m"]
+        if law["film_n_s_per_m"] == 0.0 or rate <= 0.0 or not 0.0 <= along <= law["contact_ratio"]:
+            return 0.0
+        gap = self.sink(pair) - pair.penetration
+        radius = pair.position * (law["line_of_action_m"] - pair.position) / law["line_of_action_m"]
+        return law["film_n_s_per_m"] * (0.5 * radius / max(gap, law["film_floor_m"])) ** 1.5 * rate
+
+    def sink(self, pair):
+        """Return how deep the mating flank of a pair lies before anything touches."""
+        if self.of_face:
+            return self.touch(pair)
+        if not self.of_slices or between(self.model["slices.flush"][pair.row], pair.cell, pair.weight) > 0.0:
+            return 0.0
+        first = [sinks[0] for sinks in self.model["slices.sink_m"][pair.row][pair.cell : pair.cell + 2]]
+        return between(first, 0, pair.weight)
+
+
+def cubic(left, right, over, span):
+    """Return value and two derivatives of Hermite's cubic at `over` of `span`; beyond it the last slope goes on."""
+    (f_0, s_0), (f_1, s_1) = left, right
+    if over > span:
+        return f_1 + s_1 * (over - span), s_1, 0.0
+    t, rise = over / span, (f_1 - f_0) / span
+    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
+    value = f_0 + over * (s_0 + t * (bend + t * twist))
+    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) / span
+
+
+LAWS = {"linear": LinearLaw, "pairs": PairLaw}

@@ -1,0 +1,132 @@
+"""Shafts so soft that the gears tilt beyond the contact's expansion already under the steady torque.
+
+Derived: springs k at the distances l from the gear's middle (`tilting_shaft`), a force F in that middle, towards the
+bearings, and no moment give, per axis, the tilt F S_1/(S_0 S_2 - S_1²) with S_j = Σ k l^j. The flanks' tilt is the sum
+over axes and gears, each times the squared share of the line of action along the axis; bounds of the numbers enter gear
+by gear. Refused is what tilts too far in every gearbox of a set; where only some do, plan says so. How far a motion
+swings about that is known only when it is simulated: it then ends as `outside_model`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from siggen.config import Dynamics, Rotor, Shaft, bounds
+from siggen.dynamics.structure.tilting_shaft import Shaft as Beam
+from siggen.dynamics.structure.tilting_shaft import cantilever_compliance_m_per_n
+from siggen.errors import Problem
+from siggen.gears.contact.table_columns import largest_tilt_rad, table_solver
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.specimen.contact import face_options, largest_force_n
+from siggen.specimen.gears import stiffness_options
+
+NEEDED = ("dynamics", "operating_points", "stiffness")
+MEMBERS = ("pinion", "gear")
+
+
+def tilt_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Iterator[Problem]:
+    """Yield the shaft that tilts most where the steady torque alone tilts all flanks of a pair too far."""
+    if not set(NEEDED) <= sections.keys() or sections["dynamics"].shafts is None:
+        return
+    for pair in pairs:
+        tilts = flank_tilts(sections, pair)
+        if tilts.least_rad > tilts.limit_rad:
+            yield _problem(sections["dynamics"], pair, tilts)
+            return
+
+
+class FlankTilts(NamedTuple):
+    """Tilts of a pair's flanks under the largest steady torque, and how far the contact's expansion holds."""
+
+    torque_nm: float
+    limit_rad: float
+    ranges_rad: dict[str, tuple[float, float]]
+    """Least and largest tilt of pinion and gear, with signs."""
+
+    @property
+    def least_rad(self) -> float:
+        """Least size of the sum over both gears."""
+        return _least(self.ranges_rad.values())
+
+    @property
+    def largest_rad(self) -> float:
+        """Largest size of the sum over both gears."""
+        low, high = map(sum, zip(*self.ranges_rad.values(), strict=True))
+        return float(max(-low, high))
+
+
+def flank_tilts(sections: Mapping[str, Any], pair: GearPair) -> FlankTilts:
+    """Return the tilts of a pair under the largest torque of all operating points, over the bounds of the numbers."""
+    dynamics, points = sections["dynamics"], sections["operating_points"]
+    torque_nm = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
+    options = face_options(dynamics, largest_force_n(points, pair))
+    solver = table_solver(pair, stiffness_options(sections["stiffness"]), options, np.zeros(1))
+    ranges = {which: static_tilts_rad(dynamics, which, pair, torque_nm) for which in MEMBERS}
+    return FlankTilts(torque_nm, largest_tilt_rad(solver), ranges)
+
+
+def _least(ranges_rad: Iterable[tuple[float, float]]) -> float:
+    low, high = map(sum, zip(*ranges_rad, strict=True))
+    return float(max(low, -high, 0.0))
+
+
+def static_tilts_rad(
+    dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float, diameter_mm: float | None = None
+) -> tuple[float, float]:
+    """Return least and largest tilt [rad] of one gear under a motor torque, over the bounds of shaft and bearings."""
+    shaft: Shaft = getattr(dynamics.shafts, which)
+    rotor: Rotor = getattr(dynamics, which)
+    caps = dynamics.casing.caps
+    along = {"vertical": np.cos(pair.working_pressure_angle_rad), "horizontal": np.sin(pair.working_pressure_angle_rad)}
+    bearings = {"vertical": rotor.bearing_stiffness_y_n_per_m, "horizontal": rotor.bearing_stiffness_x_n_per_m}
+    diameters = bounds(shaft.diameter_mm) if diameter_mm is None else (diameter_mm,)
+    found = []
+    for span, place, thick in product(bounds(shaft.bearing_span_mm), bounds(shaft.gear_position), diameters):
+        beam = Beam(1e-3 * span, place, 1e-3 * thick, pair.youngs_modulus_pa, pair.poisson_ratio, 0.0)
+        each = []
+        for axis, share in along.items():
+            seats = (np.inf,) if caps is None else bounds(getattr(caps, f"{axis}_stiffness_n_per_m"))
+            softness = [_tilt_per_n(beam, k, seat) for k, seat in product(bounds(bearings[axis]), seats)]
+            each.append((share**2 * min(softness), share**2 * max(softness)))
+        found.append([sum(ends) for ends in zip(*each, strict=True)])
+    force_n = torque_nm / pair.pinion.base_radius_m
+    return force_n * min(low for low, _ in found), force_n * max(high for _, high in found)
+
+
+def _tilt_per_n(beam: Beam, bearing_n_per_m: float, seat_n_per_m: float) -> float:
+    """Return the tilt per force in the middle of the gear [rad/N] on both bearings together."""
+    levers = np.array(list(beam.levers_m.values()))
+    give_way = [cantilever_compliance_m_per_n(beam, abs(lever)) for lever in levers]
+    springs = 1.0 / (2.0 / bearing_n_per_m + np.array(give_way) + 1.0 / seat_n_per_m)
+    zeroth, first, second = (float((springs * levers**power).sum()) for power in (0, 1, 2))
+    return first / (zeroth * second - first**2)
+
+
+def _problem(dynamics: Dynamics, pair: GearPair, tilts: FlankTilts) -> Problem:
+    """Return what is wrong with the worse shaft, and the least diameter that would do beside the other one as it is."""
+    which, kept = sorted(MEMBERS, key=lambda member: -_least([tilts.ranges_rad[member]]))
+    torque_nm, limit = tilts.torque_nm, tilts.limit_rad
+
+    def tilt(diameter_mm: float | None) -> float:
+        return _least([static_tilts_rad(dynamics, which, pair, torque_nm, diameter_mm), tilts.ranges_rad[kept]])
+
+    shaft: Shaft = getattr(dynamics.shafts, which)
+    thin, thick = bounds(shaft.diameter_mm)[0], 2e3 * pair.member(which).root_radius_m
+    received = (
+        f"{shaft.diameter_mm}, with which the flanks tilt by {1e6 * tilt(None):.3g} urad under {torque_nm:g} N m, "
+        f"with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
+        f"dynamics.{which}.bearing_stiffness_x_n_per_m {getattr(dynamics, which).bearing_stiffness_x_n_per_m}"
+    )
+    allowed = f"allowed: a tilt of at most {1e6 * limit:.3g} urad (4 % of the largest approach)"
+    if tilt(thick) > limit:
+        advice = "no diameter below that of the root does; move gear_position nearer to 0.5, or take stiffer bearings"
+        return Problem(f"dynamics.shafts.{which}.diameter_mm", received, f"{allowed}; {advice}")
+    for _ in range(40):
+        middle = 0.5 * (thin + thick)
+        thin, thick = (thin, middle) if tilt(middle) <= limit else (middle, thick)
+    advice = f"from {np.ceil(10.0 * thick) / 10.0:.1f} mm on, or a gear_position nearer to 0.5"
+    return Problem(f"dynamics.shafts.{which}.diameter_mm", received, f"{allowed}: {advice}")

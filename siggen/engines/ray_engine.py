@@ -1,0 +1,140 @@
+"""The engine of Ray: tasks go to a cluster that is there already, or to worker processes of this machine."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from typing import Any
+
+from siggen.engines.orphan import end_with
+from siggen.engines.processes import TASK_ATTEMPTS, WINDOW_PER_WORKER
+from siggen.engines.protocol import Result, Results, Task
+from siggen.engines.task_failure import task_error
+from siggen.engines.worker import ONE_THREAD, RAISED, answer
+from siggen.errors import EngineError, UsageError
+
+ADDRESS_VARIABLE = "RAY_ADDRESS"
+
+RESULT_BYTES = 128 << 20
+"""Of Ray's shared memory per worker: a window of results, each of a few row groups."""
+
+QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
+"""Nothing is reported to anybody, and no warning about graphics cards that no task uses."""
+
+
+class RayEngine:
+    """Runs tasks on Ray workers with one numeric thread each.
+
+    Parameters
+    ----------
+    workers : int
+        Processes of a cluster on this machine, which ends with the work; for a given cluster, how many workers the
+        window of open tasks is cut for.
+    address : str, optional
+        Of a cluster: 'auto' for the one that this machine belongs to, or ray://head:10001; default: the environment's
+        `RAY_ADDRESS`, else a cluster on this machine. Workers of a given cluster need siggen.
+
+    Raises
+    ------
+    UsageError
+        If Ray is not installed, or fewer than one worker is asked for.
+    """
+
+    def __init__(self, workers: int, address: str | None = None) -> None:
+        if importlib.util.find_spec("ray") is None:
+            raise UsageError("the engine 'ray' needs ray; install with: pip install 'siggen[ray]'")
+        if workers < 1:
+            raise UsageError(f"received {workers} workers; at least 1 is needed")
+        self.workers = workers
+        self.address = address or os.environ.get(ADDRESS_VARIABLE)
+
+    def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
+        """Yield (position, result) as tasks complete; see `Engine.map`.
+
+        Raises
+        ------
+        EngineError
+            If a task raised, its workers died too often, or the cluster cannot be reached.
+        """
+        source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
+        with self._cluster() as ray:
+            run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(
+                answer if self.address is not None else _child_answer
+            )
+            everywhere = ray.put(function)
+            while True:
+                while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
+                    try:
+                        task = next(source)
+                    except StopIteration:
+                        break
+                    opened[run.remote(everywhere, task)] = (taken, task)
+                    taken += 1
+                if not opened:
+                    return
+                for reference in ray.wait(list(opened), num_returns=1)[0]:
+                    index, task = opened.pop(reference)
+                    yield index, _value(ray, reference, task)
+
+    @contextmanager
+    def _cluster(self) -> Iterator[Any]:
+        os.environ.update({name: value for name, value in QUIET.items() if name not in os.environ})
+        import ray
+
+        options: dict[str, Any] = {"runtime_env": {"env_vars": dict(ONE_THREAD)}}
+        if self.address is None:
+            memory = RESULT_BYTES * max(2, self.workers)
+            local = {"num_cpus": self.workers, "include_dashboard": False, "object_store_memory": memory}
+            options |= {"address": "local", **local}
+        else:
+            options["address"] = self.address
+        logging.getLogger("ray").setLevel(logging.ERROR)
+        # Ray prints what befalls its workers to stdout, where a command's result stands alone
+        with redirect_stdout(sys.stderr):
+            with _own_signals():
+                try:
+                    ray.init(log_to_driver=False, configure_logging=False, **options)
+                except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
+                    raise EngineError(f"the cluster of Ray at {self.address or 'this machine'}: {error}") from error
+            try:
+                yield ray
+            finally:
+                ray.shutdown()
+
+
+@contextmanager
+def _own_signals() -> Iterator[None]:
+    """Keep what SIGTERM does: Ray puts a handler of its own in place."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _child_answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
+    """Answer on a worker of this machine's cluster: its parent is Ray's own process, which ends with the driver."""
+    end_with(os.getppid())
+    return answer(function, task)
+
+
+def _value(ray: Any, reference: Any, task: object) -> Any:
+    try:
+        kind, content = ray.get(reference)
+    except (ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError, ray.exceptions.OutOfMemoryError) as error:
+        raise EngineError(
+            f"{task} was lost because the workers that ran it died ({str(error).splitlines()[0]}); what is committed "
+            "stays: try again with fewer workers"
+        ) from error
+    if kind == RAISED:
+        raise task_error(task, content)
+    return content

@@ -1,0 +1,96 @@
+"""CompilationPart: a piece of a first record that is run for what it leaves in the cache of compiled functions.
+
+The parts share few functions, so processes compile them side by side. Teeth: the contact and the damage of every kind.
+Motion: the loop, the background and the sensors, with plain teeth, so that nothing of the other part is compiled twice.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+TEETH, MOTION = "teeth", "motion"
+SHORT_S = 0.02
+"""Duration of the record of the part motion."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompilationPart:
+    """One of the parts for one configuration; a task for engines."""
+
+    config: Config
+    name: str
+
+    def __str__(self) -> str:
+        return f"compiling the {self.name}"
+
+
+def to_compile(config: Config) -> tuple[CompilationPart, ...]:
+    """Return the parts, largest first; none where a record of such a configuration was compiled on this machine."""
+    return () if is_compiled(config) else (CompilationPart(config, TEETH), CompilationPart(config, MOTION))
+
+
+def is_compiled(config: Config) -> bool:
+    """Return whether numba's cache holds the time loop of a configuration, which is compiled after its teeth.
+
+    Derived: numba keeps an index beside the code, or where NUMBA_CACHE_DIR says. It is there after the first record.
+    """
+    from siggen.dynamics.time import exponential_step, pair_motion, product_integration
+
+    loops: dict[str, Any] = {
+        "exponential": exponential_step.advance,
+        "runge_kutta": pair_motion._advance,
+        "product": product_integration._advance,
+    }
+    loop = loops[config.dynamics.method]
+    module = loop.py_func.__module__.rpartition(".")[2]
+    return any(Path(loop.stats.cache_path).glob(f"{module}.{loop.py_func.__name__}-*.nbi"))
+
+
+def run_part(part: CompilationPart) -> None:
+    """Run a part."""
+    # what cannot be simulated is told with the number of its record, later
+    with contextlib.suppress(Exception):
+        if part.name == TEETH:
+            _run_teeth(part.config)
+        else:
+            _run_motion(part.config)
+
+
+def _run_teeth(config: Config) -> None:
+    from siggen.planning.specimen import draw_specimen
+    from siggen.record.simulation import state_teeth
+
+    specimen = draw_specimen(config, 0)
+    for state_id in _damaged(config):
+        state_teeth(config, specimen, state_id)
+
+
+def _damaged(config: Config) -> Sequence[int]:
+    """Return the last state of every kind of damage; the first state where there is none."""
+    kinds = {state.damage.kind: i for i, state in enumerate(config.states) if state.damage is not None}
+    return tuple(kinds.values()) or (0,)
+
+
+def _run_motion(config: Config) -> None:
+    import numpy as np
+
+    from siggen.planning.plan import record_ids_of
+    from siggen.planning.specimen import draw_operating_point, draw_specimen
+    from siggen.record.simulation import simulate_specimen, specimen_state
+
+    # Tables of the same types without solving any contact. No file says so: nothing of it is checked or stored.
+    mesh = config.dynamics.mesh.model_copy(update={"contact": "slices", "damage": "stiffness"})
+    dynamics = config.dynamics.model_copy(update={"mesh": mesh, "shafts": None})
+    states = tuple(state.model_copy(update={"damage": None}) for state in config.states[:1])
+    short = config.model_copy(update={"dynamics": dynamics, "states": states, "duration_s": SHORT_S})
+    simulate_specimen(short, record_ids_of(short, 0)[:1])
+    # what a label of damaged teeth needs besides
+    static = specimen_state(short, draw_specimen(short, 0), 0).static
+    static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))

@@ -1,0 +1,49 @@
+"""Every pair of a set is checked before anything is simulated, and named with its place."""
+
+from __future__ import annotations
+
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.checks.plausibility import implausible
+from siggen.errors import ConfigError
+
+SOUND = "{teeth: [18, 47], module_mm: 3, face_width_mm: 20}"
+WRONG = [
+    # (pair, what is told)
+    ("{teeth: [7, 40], module_mm: 3, face_width_mm: 20}", "7/40 teeth, m 3, b 20 mm: gears.pinion"),
+    ("{teeth: [18, 47], module_mm: 3, face_width_mm: 20, profile_shifts: [-0.9, 0]}", "m 3, b 20 mm: gears.gear"),
+    ("{teeth: [290, 291], module_mm: 3, face_width_mm: 20}", "fs_hz"),
+]
+
+
+@pytest.mark.parametrize(("pair", "told"), WRONG)
+def test_a_pair_that_cannot_be_is_refused_by_name_and_the_others_are_not(pair: str, told: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        load_config("linear_pits", [f"gears.pairs=[{SOUND}, {pair}]"])
+    (problem,) = refused.value.problems
+    assert problem.path == ("fs_hz" if told == "fs_hz" else "gears.pairs.1")
+    assert told in f"{problem.path}: {problem.received}"
+
+
+def test_damage_that_may_be_on_either_gear_is_checked_on_both() -> None:
+    layered = "states.1.damage={{kind: layered, gear: {}, layers: 1, pits_per_layer: 1, first_height_mm: 1.2, \
+semi_axis_face_mm: 0.2, semi_axis_profile_mm: 0.2, depth_mm: 0.1}}"
+    load_config("linear_pits", [layered.format("pinion")])
+    found = {}
+    for gear in ("gear", "either"):
+        with pytest.raises(ConfigError) as refused:
+            load_config("linear_pits", [layered.format(gear)])
+        found[gear] = [str(problem) for problem in refused.value.problems]
+    assert found["gear"] == found["either"]
+
+
+def test_what_is_implausible_of_a_pair_is_told_once_with_that_pair_and_their_number() -> None:
+    thin = "{teeth: [19, 48], module_mm: 3, face_width_mm: 4}"
+    sentences = [
+        sentence
+        for sentence in implausible(load_config("quickstart", [f"gears.pairs=[{SOUND}, {thin}]"]))
+        if "face width over module" in sentence
+    ]
+    assert len(sentences) == 1
+    assert "gears.pairs.1, 19/48 teeth, m 3, b 4 mm (1 of 2 pairs)" in sentences[0]

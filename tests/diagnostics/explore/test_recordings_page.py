@@ -1,0 +1,76 @@
+"""Recordings of a machine on the page: over the healthy one nearest in speed, with their verdicts, any name as text."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from diagnostics.cli.app import app
+from diagnostics.explore.recordings_source import ShownRecording, recordings_source
+from diagnostics.machine.check_history import PastCheck
+from diagnostics.machine.recording_indicators import recording_indicators
+from diagnostics.recordings.measured_recording import RecordingFacts
+from siggen.errors import UsageError
+from tests.diagnostics.explore.test_explorer import Read
+from tests.diagnostics.machine.test_check import FS_HZ, write_recording
+
+FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed-range", "20,30")
+
+
+def run(*arguments: object) -> str:
+    result = CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def data_of(page: Path) -> tuple[dict, Read]:
+    found = Read(page.read_text(encoding="utf-8"))
+    return json.loads(found.data), found
+
+
+def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Path) -> None:
+    slow = write_recording(tmp_path / "slow.npz", seed=1, speed_hz=22.0)
+    fast = write_recording(tmp_path / "fast.npz", seed=2, speed_hz=28.0)
+    new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=3, speed_hz=27.0, knock=0.8)
+    page = tmp_path / "page.html"
+    run("explore", new, "--healthy", slow, "--healthy", fast, *FACTS, "--out", page)
+    data, found = data_of(page)
+    assert [record["name"] for record in data["records"]] == ["slow.npz", "fast.npz", new.name]
+    assert data["overlay"] == [1, 0, 1]
+    assert [record["fault"] for record in data["records"]] == ["healthy", "healthy", "unknown"]
+    assert [round(record["speed_hz"]) for record in data["records"]] == [22, 28, 27]
+    assert data["measured"]
+    assert "img" not in found.tags
+    assert new.name in found.cells
+    assert all({"wave", "spectrum", "envelope", "averages"} <= set(one["channels"]["lid"]) for one in data["signals"])
+
+
+def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Path) -> None:
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(3)]
+    new = write_recording(tmp_path / "august.npz", seed=9, knock=0.8)
+    run("baseline", *files, *FACTS, "--load", "40", "--out", tmp_path / "rig")
+    past = PastCheck("2026-01-01", "august.npz", "changed", 25.0, 9.0, 3.0)
+    line = json.dumps({name: getattr(past, name) for name in PastCheck.__slots__})
+    (tmp_path / "rig" / "checks.jsonl").write_text(f"{line}\n")
+    run("explore", tmp_path / "rig", *files, new, "--out", tmp_path / "page.html")
+    records = data_of(tmp_path / "page.html")[0]["records"]
+    assert [record["state"] for record in records] == [*["healthy reference"] * 3, "changed"]
+    assert [record["torque_nm"] for record in records] == [40.0, 40.0, 40.0, None]
+    with pytest.raises(UsageError, match="holds no samples of its recordings"):
+        run("explore", tmp_path / "rig")
+
+
+def test_recordings_of_another_rate_or_other_channels_are_refused_by_name(tmp_path: Path) -> None:
+    one = write_recording(tmp_path / "one.npz", seed=1)
+    found = recording_indicators(one, (20, 31), RecordingFacts(fs_hz=FS_HZ), (20.0, 30.0))
+    slow = replace(found, name="slow.npz", recording=replace(found.recording, fs_hz=4000.0))
+    with pytest.raises(UsageError, match=r"slow.npz: recorded at 4000 Hz, one.npz at 8000 Hz"):
+        recordings_source([ShownRecording(found, "unchanged", 0.0), ShownRecording(slow, "unchanged", 0.0)])
+    lid = replace(found, name="lid.npz", recording=replace(found.recording, channels={"lid": np.zeros(9)}))
+    with pytest.raises(UsageError, match=r"lid.npz: has the channels lid, one.npz lid, side"):
+        recordings_source([ShownRecording(found, "unchanged", 0.0), ShownRecording(lid, "unchanged", 0.0)])

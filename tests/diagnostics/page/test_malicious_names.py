@@ -1,0 +1,91 @@
+"""Names of a set and of files show as text on every page, whatever they hold: markup, scripts, directions."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from diagnostics.cli.app import app
+from diagnostics.indicators.ranking_table import ranking_table
+from diagnostics.indicators.table import record_table
+from diagnostics.page import html
+from diagnostics.report.indicator_report import write_indicator_report
+from diagnostics.report.report import write_report
+from diagnostics.statistics.assessment import AssessmentSettings
+from diagnostics.training.network_training import NetworkOptions
+from tests.diagnostics.conftest import MemoryDataset, memory_dataset
+from tests.diagnostics.explore.test_explorer import NAMES, renamed
+from tests.diagnostics.machine.test_check import FS_HZ, run, write_recording
+
+MARKS = re.compile("[\u202a-\u202e\u2066-\u2069]")
+"""Characters that turn the direction of all text behind them."""
+
+
+class Seen(HTMLParser):
+    """Elements of a page with the names of their attributes, and its text."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, frozenset[str]]] = []
+        self.text = ""
+        self._code = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, frozenset(name for name, _ in attributes)))
+        self._code = tag in ("script", "style")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._code = False
+
+    def handle_data(self, text: str) -> None:
+        self.text += "" if self._code else text
+
+
+def check(page: Path, names: list[str]) -> None:
+    seen = Seen(page.read_text(encoding="utf-8"))
+    assert not [tag for tag, attributes in seen.elements if any(name.startswith("on") for name in attributes)]
+    assert [tag for tag, _ in seen.elements].count("script") == 1
+    assert all("alt" in attributes for tag, attributes in seen.elements if tag == "img")
+    assert not MARKS.search(page.read_text(encoding="utf-8"))
+    for name in names:
+        assert shown(name) in re.sub(r"\s+", " ", seen.text), name
+
+
+def shown(name: str) -> str:
+    """Return a name as a page shows it: with a visible word for what would turn the text."""
+    return re.sub(r"\s+", " ", MARKS.sub(lambda found: f"[U+{ord(found.group()):04X}]", name)).strip()
+
+
+@pytest.fixture(scope="module")
+def malicious() -> MemoryDataset:
+    names = {**NAMES, "severe": NAMES["severe"] + r"$\frac{1}$"}  # no mathematics for figures to typeset
+    return renamed(memory_dataset(("train",) * 4 + ("validation",) * 2 + ("test",) * 4), names)
+
+
+def test_report_and_ranking_show_every_name_as_text(malicious: MemoryDataset, tmp_path: Path) -> None:
+    states = list(dict.fromkeys(malicious.table.column("state").to_pylist()))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # letters that the font of figures lacks; no room for a name
+        check(write_report(malicious, tmp_path / "report", 0, network=NetworkOptions(cnn=False)), states)
+        table = ranking_table(record_table(malicious), malicious)
+        settings = AssessmentSettings(seed=0, resamples=50)
+        check(write_indicator_report(malicious, table, tmp_path / "indicators", settings), states)
+
+
+def test_the_page_of_a_machine_shows_names_of_files_as_text(tmp_path: Path) -> None:
+    assert app.info.name == "siggen-diagnostics"
+    files = [write_recording(tmp_path / f"<b>healthy\u202e{k}<!--.npz", seed=k) for k in range(3)]
+    new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=9)
+    run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    run("check", tmp_path / "rig", new)
+    check(tmp_path / "rig" / "machine.html", [files[0].name, new.name])
+
+
+def test_characters_that_turn_the_text_behind_them_are_named_and_right_to_left_names_stay() -> None:
+    assert html.inline("a\u202eb\u2066c") == "a[U+202E]b[U+2066]c"
+    assert html.inline("שלום") == "שלום"

@@ -1,0 +1,65 @@
+"""Workers whose driver was killed end within two seconds, however busy they are."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+DRIVER = """
+import sys
+from siggen.engines.registry import engine_of
+from tests.engines.tasks import busy
+if __name__ == "__main__":
+    list(engine_of(sys.argv[1], 2).map(busy, range(8)))
+"""
+
+ENGINES = [
+    "processes",
+    pytest.param("dask", marks=pytest.mark.slow),
+    pytest.param("ray", marks=pytest.mark.slow),
+]
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def wait_until(condition, seconds: float) -> bool:
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return bool(condition())
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.parametrize("engine", ENGINES)
+def test_busy_workers_end_with_their_driver(engine: str, tmp_path: Path) -> None:
+    pytest.importorskip({"dask": "distributed"}.get(engine, engine if engine == "ray" else "siggen"))
+    script = tmp_path / "driver.py"
+    script.write_text(DRIVER)
+    (tmp_path / "busy").mkdir()
+    environment = {**os.environ, "SIGGEN_TEST_BUSY": str(tmp_path / "busy"), "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, script, engine]
+    driver = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, start_new_session=True)
+    workers: list[int] = []
+    try:
+        assert wait_until(lambda: len(list((tmp_path / "busy").iterdir())) == 2, 90)
+        workers = [int(file.name) for file in (tmp_path / "busy").iterdir()]
+        assert all(is_alive(pid) for pid in workers)
+        driver.kill()
+        assert wait_until(lambda: not any(is_alive(pid) for pid in workers), 2.0)
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(driver.pid, signal.SIGKILL)  # with two processes of Ray's own, which outlive what they served
+        driver.wait()

@@ -1,0 +1,92 @@
+"""The numerical error of a finished set: measured, compared with what the set states, kept without touching the set."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import siggen.record.simulation
+from siggen.cli.app import app
+from siggen.columns.record import Record, RecordFailure
+from siggen.config import Config
+from siggen.dataset.manifest import PHYSICS, read_manifest
+from siggen.dataset.storage import LocalFolder
+from siggen.errors import EXIT_MISMATCH
+from siggen.sets.precision import REFERENCE_STEPS, measure_precision
+from siggen.sets.verification import verify
+from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
+
+SECOND = Path(__file__).parent / "schema_2"
+
+
+def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[Record | RecordFailure]:
+    """Stand in for the physics: the reference differs from everything else by a share of the signal."""
+    results = simulate(config, record_ids)
+    if (config.dynamics.method, config.dynamics.steps_per_sample) == ("runge_kutta", REFERENCE_STEPS):
+        for result in results:
+            assert isinstance(result, Record)
+            name = next(iter(result.channels))
+            result.channels[name] = (result.channels[name] / (1.0 + error)).astype(np.float32)
+    return results
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_fake_set(tmp_path / "set", fake_config(dynamics={"integrator": "auto"}))
+    return tmp_path / "set"
+
+
+def measured(folder: Path, monkeypatch: pytest.MonkeyPatch, error: float, *options: str):
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", partial(simulate_off_by, error=error))
+    return CliRunner().invoke(app, ["verify", str(folder), "--sample", "0", "--physics", "7", *options])
+
+
+def test_the_error_is_found_in_every_state_and_the_set_stays_as_it_is(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = file_bytes(folder)
+    assert read_manifest(LocalFolder(folder))["integration_tolerance"] == 1e-3
+    result = measured(folder, monkeypatch, 5e-4, "--json")
+    assert result.exit_code == 0
+    found = json.loads(result.stdout)["physics"]
+    assert [state["state"] for state in found["states"]] == ["healthy", "slight", "moderate"]
+    assert sorted(state["records"] for state in found["states"]) == [2, 2, 3]
+    assert all(state["largest"] == pytest.approx(5e-4, rel=1e-3) for state in found["states"])
+    kept = json.loads((folder / PHYSICS).read_text())
+    assert kept["records"] == found["records"]
+    assert kept["within"] is True
+    (folder / PHYSICS).rename(folder.parent / PHYSICS)
+    assert file_bytes(folder) == before
+
+
+def test_an_error_above_the_stated_one_ends_with_4(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = measured(folder, monkeypatch, 2e-3)
+    assert result.exit_code == EXIT_MISMATCH
+    assert "above the tolerance: 2.0e-03; allowed: 0.001" in result.stdout
+    assert verify(folder).mismatches == ()
+    kept = folder / PHYSICS
+    kept.write_text(kept.read_text().replace('"within": false', '"within": true'))
+    assert [mismatch.what for mismatch in verify(folder).mismatches] == [PHYSICS]
+
+
+def test_the_same_records_are_chosen_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = (json.loads(measured(folder, monkeypatch, 0.0, "--json").stdout)["physics"] for _ in range(2))
+    assert first == second
+    assert all(state["largest"] == 0.0 for state in first["states"])
+
+
+def test_a_set_made_with_two_runge_kutta_steps_is_measured_and_states_no_tolerance(tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(SECOND, tmp_path / "set"))
+    found = measure_precision(folder, 2)
+    assert found.tolerance is None
+    assert found.within
+    assert [state.state for state in found.states] == ["healthy", "severe"]
+    # Two steps at 16 kHz err like one at 32 kHz: between a tenth and ten percent of a percent, never nothing.
+    assert 1e-4 < found.largest < 1e-1

@@ -1,0 +1,84 @@
+"""The exponential integrator against fine Runge-Kutta, on gearboxes and damages drawn from every preset."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+
+import siggen
+from siggen.config import Config
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
+from siggen.specimen.drive import record_drive
+from siggen.specimen.integration import steps_per_sample
+from siggen.specimen.motion import specimen_motion
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+PRESETS = ("bench", "bench_parallel", "ideal", "industrial", "paper_b", "quickstart", "transfer_path")
+"""Those with the law pairs."""
+REFERENCE_STEPS = 64
+WINDOW_S, STARTING_S = 0.04, 0.01
+
+
+def drawn_record(preset: str, number: int) -> tuple[Config, int]:
+    """Return a preset and the id of one of its records, drawn by name and number."""
+    config = siggen.load_config(CONFIGS / f"{preset}.yaml", [f"duration_s={WINDOW_S}"])
+    return config, Random(f"{preset} {number}").randrange(config.specimens * config.records_per_specimen)
+
+
+def accelerations(config: Config, record_id: int, state: SpecimenState, integrator: str, steps: int) -> np.ndarray:
+    """Return the accelerations (samples, motions) of a record from the static start, means over two samples."""
+    record = planned_record(config, record_id)
+    specimen = draw_specimen(config, record.specimen_id)
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    angle = start_angle_rad(config, state.pair, record)
+    driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
+    rate_hz = config.fs_hz * steps
+    dynamics = specimen.dynamics.model_copy(update={"integrator": integrator})
+    motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven)
+    times = np.arange(round(WINDOW_S * rate_hz) + 1) / rate_hz
+    pitches = driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
+    inputs = np.zeros((times.size, motion.equations.external_input.shape[0]))
+    if driven.excitation is not None:
+        inputs = driven.excitation.inputs(times, driven.rotation)
+    reference = specimen_motion(
+        dynamics.model_copy(update={"integrator": "runge_kutta"}), state.mesh, point, 1.0, driven
+    )
+    path = np.empty((times.size, 2 * len(motion.structure.coordinates)))
+    motion.start(pitches[0])
+    path[0] = reference.start(
+        pitches[0]
+    )  # the same for both: without the friction that the exponential one starts with
+    motion.advance(pitches, inputs, path)
+    motions = np.array(list(motion.structure.motions.values()))
+    moved = path[::steps, : motions.shape[1]] @ motions.T
+    return np.asarray(np.diff(moved, n=2, axis=0)[round(STARTING_S * config.fs_hz) :] * config.fs_hz**2)
+
+
+def errors(preset: str, number: int) -> np.ndarray:
+    """Return the relative rms error of every motion with the steps that the rule takes."""
+    config, record_id = drawn_record(preset, number)
+    record = planned_record(config, record_id)
+    specimen = draw_specimen(config, record.specimen_id)
+    assert specimen.dynamics.method == "exponential"
+    state = specimen_state(config, specimen, record.state_id)
+    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
+    fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
+    fast = accelerations(config, record_id, state, "exponential", steps)
+    return np.asarray(np.sqrt(np.mean((fast - fine) ** 2, axis=0) / np.mean(fine**2, axis=0)))
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_random_record_of_every_preset_meets_the_stated_error(preset: str) -> None:
+    assert np.median(errors(preset, 0)) <= 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(1, 5))
+@pytest.mark.parametrize("preset", PRESETS)
+def test_more_random_records_meet_it(preset: str, number: int) -> None:
+    assert np.median(errors(preset, number)) <= 1e-3

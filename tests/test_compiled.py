@@ -1,0 +1,57 @@
+"""The cache of compiled functions lies somewhere that can be written to, and that nobody else can write to."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from siggen.compiled import private_folder
+
+WITHOUT_A_FOLDER = """
+import numba.core.caching as caching
+from pathlib import Path
+import sys
+import siggen.compiled
+
+def refused(cls, py_func, py_file):
+    return None
+
+for name in ("InTreeCacheLocator", "InTreeCacheLocatorFsAgnostic", "UserWideCacheLocator"):
+    for kind in (name, f"_{name}"):
+        if hasattr(caching, kind):
+            setattr(getattr(caching, kind), "from_function", classmethod(refused))
+from siggen.sensing import tones
+import numpy as np
+signal = np.zeros(300)
+tones._add_line(signal, 0.1, 2.0, 0.5)
+assert np.allclose(signal, 2.0 * np.cos(0.1 * np.arange(300) + 0.5))
+print(len(list(Path(sys.argv[1]).rglob("*.nbi"))))
+"""
+
+
+def test_without_a_folder_for_the_cache_functions_are_cached_among_temporary_files(tmp_path: Path) -> None:
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_A_FOLDER, str(tmp_path)], env={**environment, "TMPDIR": str(tmp_path)},
+        check=False, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+def test_a_folder_that_others_can_write_to_or_that_leads_elsewhere_is_not_taken(tmp_path: Path) -> None:
+    folder = private_folder(tmp_path)
+    assert folder is not None
+    assert private_folder(tmp_path) == folder
+    folder.chmod(0o777)
+    assert private_folder(tmp_path) is None
+    folder.rmdir()
+    (tmp_path / "elsewhere").mkdir(mode=0o700)
+    folder.symlink_to(tmp_path / "elsewhere")
+    assert private_folder(tmp_path) is None
+    assert private_folder(tmp_path / "nowhere") is None
