@@ -35,7 +35,8 @@ from siggen.errors import UsageError
 GRID_STEPS = 1024
 LEAST_LINE_SHARE = 0.3
 """Of a group's energy above the floor; below, it is no line that has a level."""
-FEWEST_GROUPS = 2
+FEWEST_GROUPS, SURE_SHARE = 2, 0.75
+"""Mesh lines that a channel must show: four times the floor, which noise hardly ever reaches twice."""
 SPEED_MARGIN = 0.01
 SLOW_TURNS = 5
 LARGEST_RANDOM_RMS = 0.05
@@ -168,22 +169,22 @@ class _Seen:
 def _seen(name: str, blocks: HealthyBlocks, groups: tuple[LineGroup, ...], teeth: tuple[int, int]) -> _Seen:
     records = tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
     points_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, CEPSTRUM_POINTS)
-    hz, energy, floors, visible = [], [], [], []
+    hz, energy, floors, visible, sure = [], [], [], [], []
     for record in records:
         level, share = group_levels(record, groups)
         hz.append([group.centre * record.speed_hz for group in groups])
         energy.append(10.0 * np.log10(np.maximum(level, 1e-30)))
         visible.append(share > LEAST_LINE_SHARE)
+        sure.append(int((share[::3] > SURE_SHARE).sum()))
         density = np.interp(points_hz, np.arange(record.floor.size) * record.bin_hz, record.floor / record.bin_hz)
         floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
     lines = ChannelLines(np.array(hz), np.array(energy), np.array(visible), np.array(floors))
-    _check_lines(name, blocks, lines)
+    _check_lines(name, blocks, sure)
     return _Seen(name, records, lines)
 
 
-def _check_lines(name: str, blocks: HealthyBlocks, lines: ChannelLines) -> None:
-    known = lines.is_line[:, ::3].sum(axis=1)
-    for block, count in zip(blocks.blocks, known.tolist(), strict=True):
+def _check_lines(name: str, blocks: HealthyBlocks, counts: list[int]) -> None:
+    for block, count in zip(blocks.blocks, counts, strict=True):
         if count < FEWEST_GROUPS:
             raise UsageError(
                 f"{block.name}: channel {name} shows {count} mesh lines above its floor; a path needs {FEWEST_GROUPS}. "
