@@ -11,6 +11,7 @@ import inspect
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from string import Formatter
 
 SUFFIX = re.compile(r"(_(pinion|gear))?(_h\d+)?(_(k|lower|upper)\d+|_o\d+_\d+)?$")
@@ -71,16 +72,26 @@ class Indicator:
     @property
     def fields(self) -> tuple[str, ...]:
         """What its columns differ by: `shaft`, `harmonic` ..."""
-        return tuple(name for _, name, _, _ in Formatter().parse(self.column) if name)
+        return _fields(self.column)
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """What its formula takes; a parameter with a default only where its columns differ by it."""
-        return tuple(
-            name
-            for name, parameter in inspect.signature(self.function).parameters.items()
-            if parameter.default is parameter.empty or name in self.fields
-        )
+        return _parameters(self.function, self.fields)
+
+
+@cache  # asked for at every value of every record
+def _fields(column: str) -> tuple[str, ...]:
+    return tuple(name for _, name, _, _ in Formatter().parse(column) if name)
+
+
+@cache
+def _parameters(function: Callable[..., float], fields: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(
+        name
+        for name, parameter in inspect.signature(function).parameters.items()
+        if parameter.default is parameter.empty or name in fields
+    )
 
 
 INDICATORS: list[Indicator] = []

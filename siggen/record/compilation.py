@@ -64,12 +64,15 @@ def run_part(part: CompilationPart) -> None:
 
 
 def _run_teeth(config: Config) -> None:
+    from siggen.planning.gearbox import gearbox_config
     from siggen.planning.specimen import draw_specimen
     from siggen.record.simulation import state_teeth
+    from siggen.specimen.made_gears import MadeGears
 
-    specimen = draw_specimen(config, 0)
-    for state_id in _damaged(config):
-        state_teeth(config, specimen, state_id)
+    specimen, own = draw_specimen(config, 0), gearbox_config(config, 0)
+    made = MadeGears(own, specimen)
+    for state_id in _damaged(own):
+        state_teeth(own, specimen, state_id, made)
 
 
 def _damaged(config: Config) -> Sequence[int]:
@@ -81,6 +84,7 @@ def _damaged(config: Config) -> Sequence[int]:
 def _run_motion(config: Config) -> None:
     import numpy as np
 
+    from siggen.planning.gearbox import gearbox_config
     from siggen.planning.plan import record_ids_of
     from siggen.planning.specimen import draw_operating_point, draw_specimen
     from siggen.record.simulation import simulate_specimen, specimen_state
@@ -92,5 +96,5 @@ def _run_motion(config: Config) -> None:
     short = config.model_copy(update={"dynamics": dynamics, "states": states, "duration_s": SHORT_S})
     simulate_specimen(short, record_ids_of(short, 0)[:1])
     # what a label of damaged teeth needs besides
-    static = specimen_state(short, draw_specimen(short, 0), 0).static
+    static = specimen_state(gearbox_config(short, 0), draw_specimen(short, 0), 0).static
     static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))

@@ -27,12 +27,13 @@ from siggen.record.quantities import internal_quantities
 from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, error_labels, specimen_errors
-from siggen.specimen.flank_waves import specimen_waves, wave_labels, wavy_teeth
-from siggen.specimen.gears import gear_pair, stiffness_options
+from siggen.specimen.errors import SpecimenErrors, error_labels
+from siggen.specimen.flank_waves import wave_labels
+from siggen.specimen.gears import stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
 from siggen.specimen.integration import steps_per_sample
-from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
+from siggen.specimen.made_gears import MadeGears
+from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
 
@@ -71,7 +72,7 @@ class StateTeeth:
     labels: dict[str, object]
 
 
-def state_teeth(config: Config, specimen: Specimen, state_id: int) -> StateTeeth:
+def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGears) -> StateTeeth:
     """Return the teeth of one specimen in one state.
 
     Raises
@@ -79,11 +80,11 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int) -> StateTeeth
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
+    pair, options = made.pair, stiffness_options(specimen.stiffness)
     with refused_as("impossible_damage"):
         damage = state_damage(config, specimen.specimen_id, pair, state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
-        errors = specimen_errors(config, pair, specimen.specimen_id, state_id)
+        errors = made.errors(state_id)
         lead = None if errors is None or errors.even else errors.lead_m
         tables = tooth_tables(
             specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead,
@@ -93,22 +94,21 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int) -> StateTeeth
     return StateTeeth(pair, options, damage, errors, tables, labels)
 
 
-def specimen_state(config: Config, specimen: Specimen, state_id: int) -> SpecimenState:
-    """Return gears, damage, tables and structure of one specimen in one state.
+def specimen_state(config: Config, specimen: Specimen, state_id: int, made: MadeGears | None = None) -> SpecimenState:
+    """Return gears, damage, tables and structure of one specimen in one state; `made` if other states made them.
 
     Raises
     ------
     SolverFailure
         If what was drawn cannot be built (named in the reason).
     """
-    teeth = state_teeth(config, specimen, state_id)
+    made = made or MadeGears(config, specimen)
+    teeth = state_teeth(config, specimen, state_id, made)
     pair, tables, points = teeth.pair, teeth.tables, specimen.stiffness.table_points
     with refused_as("outside_model"):
-        missing = erroneous_teeth(teeth_missing(specimen.dynamics, pair, points), pair, teeth.errors)
-        waves = specimen_waves(config, pair, specimen.specimen_id, state_id)
-        missing = wavy_teeth(missing, config, pair, waves)
+        missing = made.missing(state_id)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
-        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(waves)}
+        labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         static = static_mesh(specimen.dynamics, pair, tables, points)
     return SpecimenState(
         pair,
@@ -207,7 +207,8 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record
     specimen = draw_specimen(whole, records[0].specimen_id)
     family = gearbox_labels(whole, specimen)
     instrument = specimen_instrument(config, specimen)
-    state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id))
+    gears = MadeGears(config, specimen)
+    state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id, gears))
     for record in records:
         try:
             made = _simulated(config, specimen, instrument, state_of(record.state_id), record)

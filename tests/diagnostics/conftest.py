@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -14,6 +14,9 @@ import pyarrow.compute as pc
 import pytest
 
 from siggen.dataset.reading import RowGroup
+
+if TYPE_CHECKING:
+    from diagnostics.indicators.table import RecordTable
 
 STATES = ("healthy", "slight", "severe")
 DEPTH = {"healthy": 0.0, "slight": 0.15, "severe": 0.5}
@@ -153,12 +156,27 @@ def effectless() -> MemoryDataset:
 
 
 @pytest.fixture(scope="session")
-def features(dataset: MemoryDataset) -> pa.Table:
-    """The feature table of the separable set."""
-    from diagnostics.indicators.classifier_table import classifier_table
+def measured(dataset: MemoryDataset) -> RecordTable:
+    """The one pass over the separable set, which many tests begin with."""
     from diagnostics.indicators.table import record_table
 
-    return classifier_table(record_table(dataset))
+    return record_table(dataset)
+
+
+@pytest.fixture(scope="session")
+def measured_effectless(effectless: MemoryDataset) -> RecordTable:
+    """The one pass over the set without effect."""
+    from diagnostics.indicators.table import record_table
+
+    return record_table(effectless)
+
+
+@pytest.fixture(scope="session")
+def features(measured: RecordTable) -> pa.Table:
+    """The feature table of the separable set."""
+    from diagnostics.indicators.classifier_table import classifier_table
+
+    return classifier_table(measured)
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ import pytest
 
 from diagnostics.indicators.ranking_table import ranking_table
 from diagnostics.indicators.registry import ALL
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.report.indicator_report import kind_notes, write_indicator_report
 from diagnostics.statistics.assessment import AssessmentSettings
 from diagnostics.statistics.noise_curve import noise_curve
@@ -24,9 +24,9 @@ SETTINGS = AssessmentSettings(resamples=60)
 
 
 @pytest.fixture(scope="module")
-def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(dataset: Any, measured: RecordTable, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("indicators")
-    table = ranking_table(record_table(dataset), dataset)
+    table = ranking_table(measured, dataset)
     rng = np.random.default_rng(1)
     table.matrix.labels["snr_bearing_vertical_db"] = rng.uniform(0, 30, len(table.notes))
     table.matrix.values[0, table.matrix.names.index("phase_modulation_gear_h1__bearing_vertical")] = np.nan
@@ -106,7 +106,8 @@ def test_states_of_several_kinds_are_noted_with_their_kinds(dataset: Any) -> Non
     assert "pitting: slight; pitting through the face: severe" in note
 
 
-def test_page_carries_the_note_on_kinds(dataset: Any, tmp_path: Path) -> None:
+def test_page_carries_the_note_on_kinds(make_dataset: Any, tmp_path: Path) -> None:
+    dataset = make_dataset(("train", "test"))
     state = dataset.table.column("state").to_pylist()
     mixed = with_labels(dataset, through_face=[name == "severe" for name in state])
     table = ranking_table(record_table(mixed), mixed)

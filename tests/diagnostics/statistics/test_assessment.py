@@ -11,7 +11,7 @@ import pytest
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
 from diagnostics.statistics.indicator_result import IndicatorResult
 
@@ -19,8 +19,8 @@ SETTINGS = AssessmentSettings(resamples=60)
 
 
 @pytest.fixture(scope="module")
-def table(dataset: Any) -> IndicatorTable:
-    return ranking_table(record_table(dataset), dataset)
+def table(dataset: Any, measured: RecordTable) -> IndicatorTable:
+    return ranking_table(measured, dataset)
 
 
 @pytest.fixture(scope="module")
@@ -60,8 +60,8 @@ def test_level_is_random_between_specimens(found: list[IndicatorResult]) -> None
     assert abs(level.others["slight"].separation.value - 0.5) < 0.25  # AUC of 24 against 24 scatters by 0.083
 
 
-def test_without_an_effect_nothing_survives_the_correction(effectless: Any) -> None:
-    found = assessment(ranking_table(record_table(effectless), effectless), SETTINGS)
+def test_without_an_effect_nothing_survives_the_correction(effectless: Any, measured_effectless: RecordTable) -> None:
+    found = assessment(ranking_table(measured_effectless, effectless), SETTINGS)
     # NA4* of a history depends on M by construction; it compares with one record, the rest must show nothing
     fresh = [r for r in found if not r.indicator.startswith(("na4", "nb4"))]
     assert min(result.holm for r in fresh for result in r.others.values() if np.isfinite(result.holm)) > 0.05

@@ -7,7 +7,6 @@ import math
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -16,7 +15,7 @@ import pytest
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable
 from diagnostics.statistics.evaluation import scores
 from diagnostics.statistics.separability import separability
 from diagnostics.training.baselines import (
@@ -79,8 +78,8 @@ def test_permutation_keeps_the_labels_of_test_specimens_and_the_counts(
     assert (shuffled != truth).any()
 
 
-def test_without_any_effect_the_scores_are_chance(effectless: Any) -> None:
-    matrix = feature_matrix(classifier_table(record_table(effectless)))
+def test_without_any_effect_the_scores_are_chance(measured_effectless: RecordTable) -> None:
+    matrix = feature_matrix(classifier_table(measured_effectless))
     split = specimen_split(matrix.labels)
     found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0).macro_auroc
     assert found.value == pytest.approx(0.5, abs=0.3)  # one run on 24 records: 0.5 +- 0.1, three of which are allowed

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -12,7 +11,7 @@ import pytest
 
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.table import record_table
+from diagnostics.indicators.table import RecordTable
 from diagnostics.training.boosting import DEFAULT_TREES
 from diagnostics.training.severity import area_predictions, area_scores, boosted_areas, mean_areas
 from diagnostics.training.splits import SpecimenSplit, specimen_split
@@ -57,8 +56,8 @@ def test_regressions_find_areas_that_show(matrix: FeatureMatrix, split: Specimen
     assert found["boosting"] < 0.5 * found["median"]
 
 
-def test_areas_that_do_not_show_are_no_better_than_the_median(effectless: Any) -> None:
-    matrix = feature_matrix(classifier_table(record_table(effectless)))
+def test_areas_that_do_not_show_are_no_better_than_the_median(measured_effectless: RecordTable) -> None:
+    matrix = feature_matrix(classifier_table(measured_effectless))
     # the median has the least absolute error of all constants; 24 records let a regression scatter by about a tenth
     found = errors_mm2(matrix, specimen_split(matrix.labels))
     assert found["boosting"] > 0.85 * found["median"]

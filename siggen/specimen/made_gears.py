@@ -1,0 +1,56 @@
+"""MadeGears: the deviations of one specimen's gears, computed once for all states that share their gears."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from siggen.config import Config
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.planning.specimen import Specimen
+from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
+from siggen.specimen.flank_waves import SpecimenWaves, specimen_waves, wavy_teeth
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.motion import teeth_missing
+
+
+class MadeGears:
+    """Errors, waves and missing material by state; those of `manufacture.draw: specimen` are one for all states."""
+
+    def __init__(self, config: Config, specimen: Specimen) -> None:
+        self.pair: GearPair = gear_pair(specimen.gears)
+        self._config, self._specimen = config, specimen
+        # not over instances: what belongs to a gearbox ends with it
+        self._errors = cache(self._computed_errors)
+        self._waves_and_missing = cache(self._computed_missing)
+
+    def errors(self, state_id: int) -> SpecimenErrors | None:
+        """Return the errors; None for perfect gears.
+
+        Raises
+        ------
+        ValueError
+            If a gear lies outside the range of ISO 1328-1.
+        """
+        return self._errors(self._drawn_for(state_id))
+
+    def waves(self, state_id: int) -> SpecimenWaves | None:
+        """Return the waves; None without them."""
+        return self._waves_and_missing(self._drawn_for(state_id))[0]
+
+    def missing(self, state_id: int) -> MissingMaterial:
+        """Return the missing material of relief, errors and waves."""
+        return self._waves_and_missing(self._drawn_for(state_id))[1]
+
+    def _drawn_for(self, state_id: int) -> int:
+        section = self._config.manufacture
+        return state_id if section is not None and section.draw == "state" else 0
+
+    def _computed_errors(self, drawn_for: int) -> SpecimenErrors | None:
+        return specimen_errors(self._config, self.pair, self._specimen.specimen_id, drawn_for)
+
+    def _computed_missing(self, drawn_for: int) -> tuple[SpecimenWaves | None, MissingMaterial]:
+        config, specimen, pair = self._config, self._specimen, self.pair
+        plain = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+        waves = specimen_waves(config, pair, specimen.specimen_id, drawn_for)
+        return waves, wavy_teeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), config, pair, waves)
