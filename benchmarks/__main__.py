@@ -24,6 +24,7 @@ TOPICS = (
         "stiffness",
         "integration",
         "precision",
+        "lanes",
         "record",
         "sensing",
         "background",

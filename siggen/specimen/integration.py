@@ -1,8 +1,8 @@
 """How many integration steps a sample of a gearbox takes: a rule without pilot runs, the same for all of its states.
 
 Product integration and Runge-Kutta take the number of the file. The exponential integrator takes what its tolerance
-asks for. Its error falls with the square of the step (`python -m benchmarks precision`: friction coefficients are found
-once per step, and flanks touch within steps), and two rates set its size: the highest natural frequency to which the
+asks for. Its error falls with the square of the step (`python -m benchmarks precision`: friction and flanks that touch
+within steps set it), and two rates set its size: the highest natural frequency to which the
 mesh contributes, and the rate of the teeth. The faster one counts, at the highest speed of the set.
 """
 
@@ -19,7 +19,7 @@ from siggen.planning.specimen import Specimen
 SMOOTH, KINKED = (2.0, 37.0), (1.1, 66.0)
 """Radians of the mesh's vibration in one step, and steps per base pitch, of contact across the face and of slices.
 
-At 1.84 rad and 39 steps per pitch the worst of 16 records of presets erred by 7.7e-4 with `contact: face`. Slices touch
+At 1.84 rad and 39 steps per pitch the worst of 16 records of presets erred by 7.5e-4 with `contact: face`. Slices touch
 one by one, so their force has corners: at the same step the worst of 24 erred by 2.7e-3.
 """
 USUAL_TOLERANCE = 1e-3

@@ -1,8 +1,8 @@
 """Forces of all tooth pairs at the nodes of one step with their tangents, compiled.
 
-The law is that of `pair_forces`: the same places, springs, moments, dampers, film and friction. What changes little
-within a step, asperity share, friction coefficient and share on damage, is found once per pair, at the middle of the
-step and the mean force over it: its error is of second order.
+The law is that of `pair_forces`: the same places, springs, moments, dampers, film and friction. Only the asperity share
+that a damper answers to is found once per pair, at the middle of the step and the mean force over it: its error is of
+second order.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def write_node_forces(
         _load(scalars, numbers, index, pairs, q, slots, tilts, node)
     if index[layout.ROUGHNESSES] > 0:
         for i in range(slots):
-            _rub(scalars, numbers, index, weights, pairs, i, slots, tilts, node)
+            _rub(scalars, numbers, index, pairs, i, slots, tilts, node)
     return -1 - touching if changed else touching
 
 
@@ -179,19 +179,19 @@ def _middle(
 
 @njit(cache=True, _nrt=False, inline="always")
 def _rub(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slot: int,
-    slots: int, tilts: bool, node: FloatArray,
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, slot: int, slots: int, tilts: bool,
+    node: FloatArray,
 ) -> None:  # fmt: skip
     """Add the friction of a slot at all nodes."""
-    load, position, rough = _middle(scalars, numbers, index, weights, pairs, slot, slots)
-    if load <= 0.0:
-        return
-    _, coefficient = lubricated(scalars, numbers, index, position, load, rough)
-    for q in range(weights.size):
+    for q in range(node.shape[1]):
         i = q * slots + slot
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:
             continue
+        carrying, rough = pairs[i, CARRYING], pairs[i, ROUGH]
+        if index[layout.CONTACT_NODES] > 0:
+            carrying, rough = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+        _, coefficient = lubricated(scalars, numbers, index, here, force / max(carrying, LEAST_CARRYING), rough)
         speed = (node[NODE_SLIDING_0, q] + here * node[NODE_SLIDING_1, q]) / scalars[layout.SLIP_SPEED]
         friction = coefficient * force
         if abs(speed) < STRAIGHT:

@@ -128,7 +128,7 @@ def unbalanced_share(steps_per_sample: int) -> float:
 def test_work_of_all_forces_is_dissipated_or_stored() -> None:
     coarse, fine = unbalanced_share(2), unbalanced_share(8)
     # The sums over steps err with the square of the step, and what swings gives back as much as it takes. Left are
-    # 1.8e-4 and 5e-6; a force that is missing, friction say, leaves a tenth or more.
+    # 1.8e-4 and 5e-6; friction left out leaves 0.8.
     assert fine < 2e-5
     assert coarse < 5e-4
 
