@@ -13,11 +13,13 @@ from pathlib import Path
 from benchmarks.faults.bit_flips import SET_FILES, flipped_in_model, flipped_in_set
 from benchmarks.faults.hostile_files import hostile_files, refusal
 from benchmarks.faults.mutated_configurations import judged, mutated
+from benchmarks.faults.mutated_recordings import mutated_recordings
 from benchmarks.faults.victims import small_model, small_set
 from benchmarks.row import Row, duration_text
 
 FLIPS_PER_KIND = 40
 CONFIGURATIONS = 2_000
+RECORDINGS = 1_000
 COMMAND_S = 2.0
 COMMAND_BYTES = 500e6
 
@@ -27,6 +29,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         yield _mutated_row(200 if quick else CONFIGURATIONS, folder)
+        yield _recordings_row(45 if quick else RECORDINGS, folder)
         yield from (_hostile_row(what, file) for what, file in hostile_files(folder).items())
         victim = small_set(folder / "set")
         flips = 10 if quick else FLIPS_PER_KIND
@@ -56,6 +59,14 @@ def _mutated_row(count: int, folder: Path) -> Row:
     measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} accepted, longest {longest}"
     others = f"tracebacks: {outcomes['traceback']}, hangs: {outcomes['hang']}"
     return Row(f"{count} mutated configurations", measured, others, None, "no other", ended == count)
+
+
+def _recordings_row(count: int, folder: Path) -> Row:
+    outcomes = Counter(case.outcome for case in mutated_recordings(count, folder))
+    measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} with indicators"
+    others = f"tracebacks: {outcomes['traceback']}, hangs: {outcomes['hang']}"
+    met = outcomes["accepted"] + outcomes["refused"] == count
+    return Row(f"{count} mutated recordings", measured, others, None, "no other", met)
 
 
 def _hostile_row(what: str, file: Path) -> Row:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
-from diagnostics.recordings.csv_file import read_csv
-from diagnostics.recordings.mat_file import read_mat
-from diagnostics.recordings.numpy_file import read_numpy
-from diagnostics.recordings.parquet_file import read_parquet
+from diagnostics.recordings.file_columns import READERS
+from diagnostics.recordings.reading_process import columns_read_apart
 from diagnostics.recordings.recorded_columns import Columns
-from diagnostics.recordings.wav_file import read_wav
 from siggen.errors import UsageError
 
 
@@ -29,22 +25,15 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     UsageError
         If it does not exist, has another suffix, cannot be read, or holds no column of numbers.
     """
-    readers: dict[str, Callable[[Path], Columns]] = {
-        ".csv": read_csv,
-        ".txt": read_csv,
-        ".mat": read_mat,
-        ".wav": read_wav,
-    }
-    readers |= {".npy": read_numpy, ".npz": read_numpy, ".parquet": lambda file: read_parquet(file, row)}
     if path.is_dir():
         raise UsageError(f"{path}: is a folder; give the file of one recording")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    if path.suffix.lower() not in readers:
+    if path.suffix.lower() not in READERS:
         raise UsageError(
-            f"{path}: received suffix {path.suffix!r}; allowed are {', '.join(readers)}. Convert the recording."
+            f"{path}: received suffix {path.suffix!r}; allowed are {', '.join(READERS)}. Convert the recording."
         )
-    found = readers[path.suffix.lower()](path)
+    found = columns_read_apart(path, row)
     if not found.values:
         raise UsageError(f"{path}: holds no column of numbers")
     return found

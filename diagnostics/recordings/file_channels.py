@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.measured_recording import OWN_COLUMN, OWN_TACHO
+from diagnostics.recordings.signal_problem import LARGEST
 from siggen.errors import UsageError
 
 MOST_CHANNELS = 32
@@ -43,5 +44,7 @@ def file_channels(path: Path, tacho: str | None = None, row: int | None = None) 
 
 def _is_time(column: np.ndarray) -> bool:
     """Return whether a column rises by equal steps."""
+    if not np.isfinite(column).all() or np.abs(column).max(initial=0.0) > LARGEST:
+        return False
     steps = np.diff(column)
     return bool(steps.size and steps[0] > 0.0 and np.allclose(steps, steps.mean(), rtol=0.0, atol=0.01 * steps.mean()))

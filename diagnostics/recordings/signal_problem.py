@@ -6,14 +6,22 @@ import numpy as np
 
 from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
 
+LARGEST = 1e12
+"""No recorder gives such a number, in whatever unit; from the damaged file that does, the squares would overflow."""
+
 
 def signal_problem(signal: np.ndarray) -> str:
-    """Return why a channel (n,) cannot be used, or nothing: not finite, constant, clipped."""
+    """Return why a channel (n,) cannot be used, or nothing: not finite, impossibly large, constant, clipped."""
     broken = int(np.count_nonzero(~np.isfinite(signal)))
     if broken:
         return f"{broken} of {signal.size} samples are not finite; cut the recording to where it is whole"
     if signal.size == 0 or signal.min() == signal.max():
         return f"constant over all {signal.size} samples; check sensor and cable, or name another column"
+    largest = float(np.abs(signal).max())
+    if largest > LARGEST:
+        return (
+            f"received values up to {largest:.3g}, allowed: up to {LARGEST:g}; the file is damaged, or its unit wrong"
+        )
     share = clipped_share(signal)
     if share > LARGEST_CLIPPED_SHARE:
         return (

@@ -5,6 +5,7 @@ Nothing here is drawn except the order of splits within a few specimens, so a se
 
 from __future__ import annotations
 
+from array import array
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -54,12 +55,26 @@ class PlannedRecord:
 
 @dataclass(frozen=True, slots=True)
 class ShardPlan:
-    """One file of the set: whole specimens of one split, in ascending order."""
+    """One file of the set: whole specimens of one split, in ascending order.
+
+    A million records are some thousand shards, so specimens are kept as numbers of 8 bytes and records not at all.
+    """
 
     split: str
     number: int
-    specimens: tuple[int, ...]
-    record_ids: tuple[int, ...]
+    specimens: Sequence[int]
+    records_per_specimen: int
+
+    @property
+    def record_count(self) -> int:
+        """Number of records."""
+        return len(self.specimens) * self.records_per_specimen
+
+    @property
+    def record_ids(self) -> Iterator[int]:
+        """Ids of all records, ascending."""
+        per_specimen = self.records_per_specimen
+        return (i for one in self.specimens for i in range(one * per_specimen, (one + 1) * per_specimen))
 
     @property
     def key(self) -> str:
@@ -198,15 +213,13 @@ def shards(config: Config, split: str, earlier: Sequence[int] = ()) -> tuple[Sha
         Numbers of specimens, ascending, that the set had before it was extended: shards never hold specimens from
         both sides of one, so that those of the smaller set stay as they are.
     """
-    members, size = plan(config).specimens_of(split), specimens_per_shard(config)
-    groups: list[tuple[int, ...]] = []
+    members = array("q", (i for i in range(config.specimens) if split_of(config, i) == split))
+    size = specimens_per_shard(config)
+    groups: list[Sequence[int]] = []
     for first, end in pairwise((0, *earlier, config.specimens)):
         own = members[bisect_left(members, first) : bisect_left(members, end)]
         groups += [own[start : start + size] for start in range(0, len(own), size)]
-    return tuple(
-        ShardPlan(split, number, group, tuple(i for specimen in group for i in record_ids_of(config, specimen)))
-        for number, group in enumerate(groups)
-    )
+    return tuple(ShardPlan(split, number, group, config.records_per_specimen) for number, group in enumerate(groups))
 
 
 def specimen_count(config: Config, split: str) -> int:

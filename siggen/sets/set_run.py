@@ -90,7 +90,7 @@ def set_run(
     quantities = physics.stored(config)
     planned = planned_shards(config, earlier)
     run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned)
-    run.total = sum(len(shard.record_ids) for shard in planned)
+    run.total = sum(shard.record_count for shard in planned)
     return run
 
 
@@ -166,7 +166,7 @@ class SetRun:
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
-        self.total = sum(len(shard.record_ids) for shard in wanted)
+        self.total = sum(shard.record_count for shard in wanted)
         self._advance(0)
         self.take_over(wanted)
         taken_over = len(self.sidecars)
@@ -197,15 +197,16 @@ class SetRun:
 
     def _make(self, missing: Sequence[ShardPlan]) -> None:
         """Simulate and write shards one after the other, from one stream of chunks."""
-        work = {shard.key: self._chunks(shard) for shard in missing}
-        tasks = (chunk for pieces in work.values() for chunk in pieces)
+        tasks = (chunk for shard in missing for chunk in self._chunks(shard))
         if missing and isinstance(self.engine, ProcessEngine):
             self._compile(self.engine)
         function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
         with running(self.engine, function, tasks) as results:
             ordered = in_order(results)
             for shard in missing:
-                self._write(shard, zip(work[shard.key], islice(ordered, len(work[shard.key])), strict=True))
+                # cut once more rather than kept: chunks of all shards would fill memory before the first is made
+                chunked = self._chunks(shard)
+                self._write(shard, zip(chunked, islice(ordered, len(chunked)), strict=True))
 
     def _compile(self, engine: ProcessEngine) -> None:
         """Compile once for all workers, which would compile the same side by side."""

@@ -224,12 +224,12 @@ def fake_physics(simulation: Any = simulate) -> Iterator[None]:
 
 
 def write_fake_set(
-    path: Path, config: Config | None = None, *, workers: int = 0, simulation: Any = simulate
+    path: Path, config: Config | None = None, *, workers: int = 0, simulation: Any = simulate, engine: str | None = None
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
     # row groups of 2: several chunks per shard
     with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
-        return generate(config or fake_config(), path, workers)
+        return generate(config or fake_config(), path, workers, engine=engine)
 
 
 def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: Any = simulate) -> Verification:
@@ -260,11 +260,12 @@ def file_bytes(path: Path) -> dict[str, bytes]:
 
 
 if __name__ == "__main__":
-    # python -m tests.dataset.fake_set FOLDER WORKERS: a process of its own that a test can kill
+    # python -m tests.dataset.fake_set FOLDER WORKERS [ENGINE]: a process of its own that a test can kill
     from siggen.errors import SiggenError
 
     try:
-        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly)
+        chosen = sys.argv[3] if len(sys.argv) > 3 else None
+        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly, engine=chosen)
     except SiggenError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -13,7 +18,7 @@ from siggen.engines.processes import WINDOW_PER_WORKER
 from siggen.engines.registry import engine_of
 from siggen.errors import EngineError
 from siggen.sets.generation import generate
-from tests.dataset.fake_set import fake_config, fake_physics, file_bytes
+from tests.dataset.fake_set import fake_config, fake_physics, file_bytes, simulate_and_die_once, write_fake_set
 from tests.engines.tasks import die_at_three, fail_at_three, slow_at_first, square
 
 pytestmark = [pytest.mark.filterwarnings("ignore"), pytest.mark.slow]
@@ -63,3 +68,28 @@ def test_a_set_has_the_same_bytes(name: str, tmp_path: Path) -> None:
         generate(fake_config(), tmp_path / "serial", engine="serial")
     assert file_bytes(tmp_path / name) == file_bytes(tmp_path / "serial")
     assert open_set(tmp_path / name).labels().num_rows == 30
+
+
+def test_a_killed_worker_costs_nothing_but_a_repeat(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIGGEN_TEST_MARKER", str(tmp_path / "killed"))
+    write_fake_set(tmp_path / name, workers=2, simulation=simulate_and_die_once, engine=name)
+    write_fake_set(tmp_path / "serial")
+    assert (tmp_path / "killed").exists()
+    assert file_bytes(tmp_path / name) == file_bytes(tmp_path / "serial")
+
+
+def test_a_killed_driver_loses_nothing_that_is_committed(name: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tests.dataset.fake_set", str(tmp_path / name), "2", name]
+    driver = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, start_new_session=True)
+    deadline = time.monotonic() + 120
+    while len(list((tmp_path / name).glob("shards/*.json"))) < 2 and time.monotonic() < deadline:
+        time.sleep(0.01)
+    driver.kill()
+    driver.wait()
+    with suppress(ProcessLookupError):
+        os.killpg(driver.pid, signal.SIGKILL)  # processes of Ray's own, which outlive what they served
+    kept = len(list((tmp_path / name).glob("shards/*.json")))
+    assert 2 <= kept < 5
+    assert write_fake_set(tmp_path / name, workers=2, engine=name).shards_taken_over == kept
+    write_fake_set(tmp_path / "serial")
+    assert file_bytes(tmp_path / name) == file_bytes(tmp_path / "serial")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from collections import Counter
 from itertools import pairwise
 
@@ -160,10 +161,26 @@ def test_shards_hold_whole_specimens_of_a_split_in_order(specimens, duration_s):
         assert all(len(shard.specimens) == per_shard for shard in found[:-1])
         for shard in found:
             assert 1 <= len(shard.specimens) <= per_shard
-            assert shard.record_ids == tuple(i for s in shard.specimens for i in record_ids_of(made, s))
-            assert all(a < b for a, b in pairwise(shard.record_ids))
-            seen += shard.record_ids
+            ids = list(shard.record_ids)
+            assert ids == [i for s in shard.specimens for i in record_ids_of(made, s)]
+            assert len(ids) == shard.record_count
+            assert all(a < b for a, b in pairwise(ids))
+            seen += ids
     assert sorted(seen) == list(range(plan(made).count))
+
+
+def test_a_planned_record_takes_few_bytes_of_memory():
+    """A million of them 5 MB, where the process that plans them takes 100 MB by itself."""
+    made = config(specimens=5_000, repeats=4)
+    tracemalloc.start()
+    try:
+        kept = [shards(made, split) for split in SPLITS]
+        held = tracemalloc.get_traced_memory()[0]
+    finally:
+        tracemalloc.stop()
+    records = sum(shard.record_count for found in kept for shard in found)
+    assert records == plan(made).count
+    assert held / records < 5.0
 
 
 def test_a_larger_set_has_the_same_full_shards():

@@ -1,0 +1,50 @@
+"""The columns of a recorded file, read in this process by the reader of its suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from diagnostics.recordings.csv_file import read_csv
+from diagnostics.recordings.mat_file import read_mat
+from diagnostics.recordings.numpy_file import read_numpy
+from diagnostics.recordings.parquet_file import read_parquet
+from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.wav_file import read_wav
+from siggen.errors import UsageError
+
+READERS: dict[str, Callable[[Path], Columns]] = {
+    ".csv": read_csv,
+    ".txt": read_csv,
+    ".mat": read_mat,
+    ".wav": read_wav,
+    ".npy": read_numpy,
+    ".npz": read_numpy,
+    ".parquet": read_parquet,
+}
+
+
+def file_columns(path: Path, row: int | None = None) -> Columns:
+    """Return the columns of a file whose suffix is one of `READERS`; `row` as for `read_columns`.
+
+    Raises
+    ------
+    UsageError
+        If it cannot be read, whatever the libraries below say to what is in it.
+    """
+    try:
+        suffix = path.suffix.lower()
+        return read_parquet(path, row) if suffix == ".parquet" else READERS[suffix](path)
+    except UsageError:
+        raise
+    except MemoryError as error:
+        raise UsageError(f"{path}: cannot be read: it asks for more memory than a file of its size may take") from error
+    except Exception as error:  # a damaged file finds every way out of a parser that there is
+        kind = type(error).__name__
+        raise UsageError(
+            f"{path}: cannot be read as {suffix[1:]}, it is damaged or no such file ({kind}: {_one_line(error)})"
+        ) from error
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200]

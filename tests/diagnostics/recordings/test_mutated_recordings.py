@@ -1,0 +1,49 @@
+"""Recordings with wrong bytes give indicators or a sentence, and what parses them cannot take the command along."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.faults.mutated_recordings import mutated_recordings, recordings
+from diagnostics.recordings import reading_process
+from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.file_columns import file_columns
+from siggen.errors import UsageError
+
+
+def test_every_mutated_recording_is_read_or_refused_in_words(tmp_path: Path) -> None:
+    cases = list(mutated_recordings(27, tmp_path, seed=3))
+    assert {case.outcome for case in cases} == {"accepted", "refused"}, [c for c in cases if c.outcome == "traceback"]
+    assert all(case.message.startswith(str(tmp_path)) for case in cases if case.outcome == "refused")
+
+
+def test_columns_that_come_from_the_process_apart_are_those_read_here(tmp_path: Path) -> None:
+    for path in recordings(tmp_path):
+        here, apart = file_columns(path), read_columns(path)
+        assert list(here.values) == list(apart.values)
+        assert (here.fs_hz, here.full_scale, here.simulated) == (apart.fs_hz, apart.full_scale, apart.simulated)
+        for name, column in here.values.items():
+            np.testing.assert_array_equal(column, apart.values[name])
+
+
+def test_a_reading_process_that_was_killed_is_started_again(tmp_path: Path) -> None:
+    path = recordings(tmp_path)[5]
+    read_columns(path)
+    os.kill(reading_process._started[os.getpid()].pid, signal.SIGKILL)
+    reading_process._started[os.getpid()].wait()
+    assert len(read_columns(path).values) == 2
+
+
+def test_a_parser_that_crashes_or_never_ends_is_told_in_words(tmp_path: Path) -> None:
+    assert reading_process._answer(signal.SIGSEGV, tmp_path) == {"ended": "signal 11"}
+    assert reading_process._answer(signal.SIGXCPU, tmp_path) == {"ended": "reading it took too long"}
+    path = recordings(tmp_path)[0]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(reading_process, "_asked", lambda _: {"ended": "signal 11"})
+        with pytest.raises(UsageError, match=r"0.csv: cannot be read: it is damaged, or far too large \(signal 11\)"):
+            read_columns(path)
