@@ -93,12 +93,16 @@ def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
     Raises
     ------
     UsageError
-        If its model has no bearings.
+        If its model has no bearings, or its gears are drawn.
     """
     config = siggen.load_config(rig).canonical()
     if config["dynamics"]["model"] == "torsional":
         raise UsageError(f"{rig}: dynamics.model torsional has no bearing forces; allowed: 6dof, 8dof or casing")
-    return config, (config["gears"]["pinion"]["teeth"], config["gears"]["gear"]["teeth"])
+    gears = config["gears"]
+    teeth = [gears[name]["teeth"] for name in ("pinion", "gear")] if isinstance(gears, dict) else []
+    if len(teeth) != 2 or not all(isinstance(z, int) for z in teeth):
+        raise UsageError(f"{rig}: gears differ within the set; a calibration is of one pair of known teeth")
+    return config, (teeth[0], teeth[1])
 
 
 def calibrated(
