@@ -24,6 +24,7 @@ from siggen.record.background import record_background
 from siggen.record.channels import measured_channels
 from siggen.record.simulation import record_response, simulate_specimen, specimen_state
 from siggen.specimen.instrument import specimen_instrument
+from siggen.specimen.made_gears import MadeGears
 
 PRESETS = ("quickstart", "bench", "industrial", "paper_b", "linear_pits")
 GOAL_S, GOAL_S_PER_CHANNEL = 0.06, 0.01
@@ -66,7 +67,8 @@ def _costs(config: Config, gearbox: int) -> dict[str, float]:
     planned = [planned_record(config, ids[state * of_state]) for state in chosen]
     specimen = draw_specimen(config, gearbox)
     build, instrument = _timed(lambda: specimen_instrument(config, specimen))
-    tables, states = _timed(lambda: {s: specimen_state(config, specimen, s) for s in chosen})
+    made = MadeGears(config, specimen)
+    tables, states = _timed(lambda: {s: specimen_state(config, specimen, s, made) for s in chosen})
     with _loop_time() as loop:
         motion, responses = _timed(
             lambda: [record_response(config, specimen, states[p.state_id], p)[0] for p in planned]
