@@ -8,7 +8,7 @@ from pathlib import PurePath, PurePosixPath
 from siggen.errors import UsageError
 
 # pathlib, through which the command line goes, makes one slash of two
-FORM = re.compile(r"s3:/{1,2}([^/]*)/?(.*)", re.DOTALL)
+FORM = re.compile(r"s3:/{0,2}([^/]*)/?(.*)", re.DOTALL)
 
 
 class ObjectPath(PurePosixPath):

@@ -110,6 +110,12 @@ def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_w
         load_config(with_shafts(**pinion | {"diameter_mm": thick - 0.2}))
 
 
+def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_middle() -> None:
+    around = {"kind": "uniform", "low": 0.4, "high": 0.6}
+    with pytest.raises(ConfigError, match=r"pinion.diameter_mm: received 8.0.* from [\d.]+ mm on"):
+        load_config(with_shafts(diameter_mm=8.0, gear_position=around))
+
+
 @pytest.mark.parametrize("which", ["bench", "industrial", "quickstart", "paper_b"])
 def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     load_config(ROOT / "configs" / f"{which}.yaml")

@@ -51,7 +51,7 @@ def test_a_place_keeps_its_form_as_text_as_path_and_below_another(text: str) -> 
 def test_folders_are_no_places_in_a_store_and_other_stores_are_refused() -> None:
     assert object_path("sets/a") is None
     assert isinstance(storage_at(Path("C:/sets")), LocalFolder)
-    for text in ("s3://", "s3://bucket", "s3://bucket/a/../b", "gs://bucket/a"):
+    for text in ("s3://", "s3:", "s3://bucket", "s3://bucket/a/../b", "gs://bucket/a"):
         with pytest.raises(UsageError, match=r"received .*; allowed: .*s3://bucket/set"):
             storage_at(text)
 
