@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := diagnostics,cnn,onnx,s3,dev
+EXTRAS := diagnostics,cnn,onnx,s3,recordings,dev
 DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.file_columns import READERS
 from diagnostics.signal.window_features import signal_windows, window_features
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 
-SUFFIXES = (".csv", ".txt", ".mat", ".wav", ".parquet", ".npy", ".npz")
 LOWEST_RATE_HZ = 9600.0
 MOST_WINDOWS = 20
 """Windows taken of a channel, evenly spread."""
@@ -83,9 +83,9 @@ def reference_windows(folder: Path, fs_hz: float | None) -> WindowSet:
     """
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder; give the folder of healthy recordings to --reference")
-    files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES)
+    files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in READERS)
     if not files:
-        raise UsageError(f"{folder}: no recordings; allowed are files that end in {', '.join(SUFFIXES)}")
+        raise UsageError(f"{folder}: no recordings; allowed are files that end in {', '.join(READERS)}")
     windows = _Windows()
     for path in files:
         found = read_columns(path)

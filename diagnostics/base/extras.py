@@ -14,6 +14,9 @@ EXTRA_OF = {
     "torch": "cnn",
     "safetensors": "cnn",
     "onnx": "onnx",
+    "nptdms": "recordings",
+    "pyuff": "recordings",
+    "h5py": "recordings",
 }
 """Import name of every optional package and the extra that brings it."""
 

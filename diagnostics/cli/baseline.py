@@ -30,7 +30,8 @@ def baseline(
         list[str],
         typer.Argument(
             metavar="HEALTHY...",
-            help="Healthy recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz; 3 at least.",
+            help="Healthy recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, .uff, .h5; 3 at "
+            "least.",
             show_default=False,
         ),
     ],
@@ -39,7 +40,7 @@ def baseline(
     fs: Rate = None,
     speed_range: SpeedRange = None,
     channel: Channel = None,
-    unit: Unit = "m/s2",
+    unit: Unit = None,
     sensitivity: Sensitivity = None,
     full_scale: FullScale = None,
     tacho: Tacho = None,

@@ -30,7 +30,8 @@ def calibrate(
         list[str],
         typer.Argument(
             metavar="HEALTHY...",
-            help="Healthy recordings of one rate: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz; 3 or more.",
+            help="Healthy recordings of one rate: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, .tdms, "
+            ".uff, .h5; 3 or more.",
             show_default=False,
         ),
     ],
@@ -38,7 +39,7 @@ def calibrate(
     fs: Rate = None,
     speed_range: SpeedRange = None,
     channel: Channel = None,
-    unit: Unit = "m/s2",
+    unit: Unit = None,
     sensitivity: Sensitivity = None,
     full_scale: FullScale = None,
     tacho: Tacho = None,

@@ -84,7 +84,7 @@ def explore(
     speed_range: SpeedRange = None,
     fs: Rate = None,
     channel: Channel = None,
-    unit: Unit = "m/s2",
+    unit: Unit = None,
     sensitivity: Sensitivity = None,
     full_scale: FullScale = None,
     tacho: Tacho = None,

@@ -34,7 +34,8 @@ def indicators(
         list[str],
         typer.Argument(
             metavar="DIR | RECORDING...",
-            help="Folder of a finished set, or recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz.",
+            help="Folder of a finished set, or recordings: .csv, .mat, .wav, .parquet (FILE:ROW,ROW), .npy, .npz, "
+            ".tdms, .uff, .h5.",
             show_default=False,
         ),
     ],
@@ -74,7 +75,7 @@ def indicators(
     teeth: Teeth = None,
     fs: Rate = None,
     channel: Channel = None,
-    unit: Unit = "m/s2",
+    unit: Unit = None,
     sensitivity: Sensitivity = None,
     full_scale: FullScale = None,
     tacho: Tacho = None,

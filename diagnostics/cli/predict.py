@@ -20,9 +20,13 @@ def predict(
     model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `train` wrote.", show_default=False)],
     file: Annotated[
         Path,
-        typer.Argument(metavar="FILE", help="Recording: .csv, .mat, .wav, .parquet, .npy or .npz.", show_default=False),
+        typer.Argument(
+            metavar="FILE",
+            help="Recording: .csv, .mat, .wav, .parquet, .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
+            show_default=False,
+        ),
     ],
-    fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz]. Not needed for WAV files.")] = None,
+    fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz]. Not needed where the file states it.")] = None,
     teeth: Annotated[str | None, typer.Option(metavar="Z1,Z2", help="Teeth of pinion and gear.")] = None,
     speed_range: Annotated[
         str | None, typer.Option(metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho.")
@@ -33,7 +37,10 @@ def predict(
             metavar="NAME=COLUMN", help="Column of the file for a channel of the model. May be given several times."
         ),
     ] = None,
-    unit: Annotated[str, typer.Option(help="Unit of the file: m/s2, mm/s2, g, mg, mV or V.")] = "m/s2",
+    unit: Annotated[
+        str | None,
+        typer.Option(help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."),
+    ] = None,
     sensitivity: Annotated[
         float | None, typer.Option(help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
     ] = None,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 ROWS = re.compile(r"\d+(,\d+)*")
 
-Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed for WAV files.")]
+Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
 Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
 SpeedRange = Annotated[
     str | None,
@@ -27,7 +27,12 @@ Channel = Annotated[
         "--channel", metavar="NAME=COLUMN", help="Name of a channel and its column of the file. Default: all columns."
     ),
 ]
-Unit = Annotated[str, typer.Option("--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V.")]
+Unit = Annotated[
+    str | None,
+    typer.Option(
+        "--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."
+    ),
+]
 Sensitivity = Annotated[
     float | None, typer.Option("--sensitivity", help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
 ]
@@ -47,7 +52,7 @@ class RecordingDescription(NamedTuple):
     speed_range: str | None
     fs: float | None
     channel: list[str] | None
-    unit: str
+    unit: str | None
     sensitivity: float | None
     full_scale: float | None
     tacho: str | None

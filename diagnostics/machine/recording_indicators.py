@@ -66,7 +66,7 @@ def recording_indicators(
     Parameters
     ----------
     path : Path
-        .csv, .txt, .mat, .wav, .parquet, .npy or .npz.
+        Its suffix is one of `diagnostics.recordings.file_columns.READERS`.
     teeth : (int, int)
         Of pinion and gear.
     facts : RecordingFacts, optional

@@ -11,7 +11,7 @@ from siggen.errors import UsageError
 
 
 def read_columns(path: Path, row: int | None = None) -> Columns:
-    """Read a file by its suffix: .csv, .txt, .mat, .wav, .parquet, .npy or .npz.
+    """Read a file by its suffix, one of `READERS`.
 
     Parameters
     ----------

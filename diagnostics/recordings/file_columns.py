@@ -6,10 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from diagnostics.recordings.csv_file import read_csv
+from diagnostics.recordings.hdf5_file import read_hdf5
 from diagnostics.recordings.mat_file import read_mat
 from diagnostics.recordings.numpy_file import read_numpy
 from diagnostics.recordings.parquet_file import read_parquet
 from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.tdms_file import read_tdms
+from diagnostics.recordings.universal_file import read_universal
 from diagnostics.recordings.wav_file import read_wav
 from siggen.errors import UsageError
 
@@ -21,6 +24,11 @@ READERS: dict[str, Callable[[Path], Columns]] = {
     ".npy": read_numpy,
     ".npz": read_numpy,
     ".parquet": read_parquet,
+    ".tdms": read_tdms,
+    ".uff": read_universal,
+    ".unv": read_universal,
+    ".h5": read_hdf5,
+    ".hdf5": read_hdf5,
 }
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.acceleration_unit import factor_to_m_s2
+from diagnostics.recordings.channel_factor import ASSUMED, channel_factor
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.pulse_edges import pulse_edges
 from diagnostics.recordings.recorded_columns import Columns
@@ -26,11 +26,11 @@ class RecordingFacts:
     Attributes
     ----------
     fs_hz : float or None
-        Sampling frequency [Hz]; WAV files state it themselves.
+        Sampling frequency [Hz] of files that do not state it themselves.
     columns : mapping of str to str
         Channel name of the model to column of the file; empty where the file uses the model's names.
-    unit : str
-        Unit of all channels, see `factor_to_m_s2`.
+    unit : str or None
+        Unit of all channels, see `factor_to_m_s2`; None: the file's, and m/s2 where it states none.
     sensitivity_mv_per_g : float or None
         For voltages.
     full_scale : float or None
@@ -45,7 +45,7 @@ class RecordingFacts:
 
     fs_hz: float | None = None
     columns: Mapping[str, str] = field(default_factory=dict)
-    unit: str = "m/s2"
+    unit: str | None = None
     sensitivity_mv_per_g: float | None = None
     full_scale: float | None = None
     tacho: str | None = None
@@ -92,7 +92,8 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
     """
     found = read_columns(path, facts.row)
     fs_hz = _rate(path, found, facts.fs_hz)
-    signals = {name: found.values[column] for name, column in _mapping(path, found, names, facts.columns).items()}
+    mapping = _mapping(path, found, names, facts.columns)
+    signals = {name: found.values[column] for name, column in mapping.items()}
     problems = {name: signal_problem(signal) for name, signal in signals.items()}
     if any(problems.values()):
         listed = "\n".join(f"  channel {name}: {text}" for name, text in problems.items() if text)
@@ -100,8 +101,9 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
     if len({signal.size for signal in signals.values()}) > 1:
         listed = ", ".join(f"{name} {signal.size}" for name, signal in signals.items())
         raise UsageError(f"{path}: channels differ in their number of samples ({listed}); record them together")
-    factor = factor_to_m_s2(facts.unit, facts.sensitivity_mv_per_g) * _full_scale(path, found, facts)
-    channels = {name: factor * signal for name, signal in signals.items()}
+    scale = _full_scale(path, found, facts)
+    factors = {name: scale * _factor(path, found, column, facts) for name, column in mapping.items()}
+    channels = {name: factors[name] * signal for name, signal in signals.items()}
     return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts), found.simulated)
 
 
@@ -144,13 +146,17 @@ def _column(found: Columns, name: str, said: str | None) -> str | None:
     return None
 
 
+def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts) -> float:
+    return channel_factor(path, column, found.units.get(column), facts.unit, facts.sensitivity_mv_per_g)
+
+
 def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
     if not found.full_scale:
         return 1.0
     if facts.full_scale is None or not facts.full_scale > 0.0:
         raise UsageError(
             f"{path}: holds shares of full scale; received full scale {facts.full_scale}. Say what it means in "
-            f"{facts.unit}, e.g. --full-scale 50"
+            f"{facts.unit or ASSUMED}, e.g. --full-scale 50"
         )
     return facts.full_scale
 

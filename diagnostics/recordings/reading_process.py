@@ -132,7 +132,12 @@ def _limit(size: int) -> None:
 
 
 def _keep(found: Columns, folder: Path) -> None:
-    facts = {"fs_hz": found.fs_hz, "full_scale": found.full_scale, "simulated": found.simulated}
+    facts = {
+        "fs_hz": found.fs_hz,
+        "full_scale": found.full_scale,
+        "simulated": found.simulated,
+        "units": dict(found.units),
+    }
     (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
     for number, column in enumerate(found.values.values()):
         np.save(folder / f"{number}.npy", np.asarray(column, dtype=np.float64), allow_pickle=False)

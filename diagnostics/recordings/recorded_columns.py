@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,12 +22,15 @@ class Columns:
         Whether values are shares of the recorder's full scale, as integer WAV files hold them.
     simulated : bool
         Whether the file says that siggen wrote it.
+    units : mapping of str to str
+        Unit of columns where the file states it, as spelled there.
     """
 
     values: Mapping[str, np.ndarray]
     fs_hz: float | None = None
     full_scale: bool = False
     simulated: bool = False
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from siggen.config import read_yaml
 from siggen.errors import ConfigError, Problem
+from siggen.publication.spdx_licence import is_spdx_licence, nearest_spdx_licence
 
 UNSET = "unset"
 TEMPLATE = """# What `siggen publish` needs from you. Replace every `unset`.
@@ -28,7 +29,6 @@ authors:
     orcid: null              # such as 0000-0002-1825-0097
 """
 NEEDED = ("license", "title", "version", "published", "publisher", "url", "citation")
-SPDX = re.compile(r"[A-Za-z0-9][A-Za-z0-9.+-]*")
 DOI = re.compile(r"10\.\d{4,9}/\S+")
 ORCID = re.compile(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]")
 
@@ -93,7 +93,7 @@ def _wrong(raw: Mapping[str, Any]) -> list[Problem]:
             received = UNSET if value == UNSET else f"{str(value)[:40]!r}"
             found.append(Problem(name, received, f"allowed: {ALLOWED[name]}"))
         elif not _has_form(name, value):
-            found.append(Problem(name, f"the text '{value[:60]}'", f"allowed: {ALLOWED[name]}"))
+            found.append(Problem(name, f"the text '{value[:60]}'", f"allowed: {ALLOWED[name]}{_meant(name, value)}"))
     doi = raw.get("doi")
     if doi is not None and not (isinstance(doi, str) and DOI.fullmatch(doi)):
         found.append(Problem("doi", f"{str(doi)[:60]!r}", "allowed: null, or a DOI such as 10.5281/zenodo.1234567"))
@@ -111,10 +111,15 @@ ALLOWED = {
 }
 
 
+def _meant(name: str, value: str) -> str:
+    nearest = nearest_spdx_licence(value) if name == "license" else None
+    return f". Did you mean {nearest}?" if nearest else ""
+
+
 def _has_form(name: str, value: str) -> bool:
     match name:
         case "license":
-            return bool(SPDX.fullmatch(value))
+            return is_spdx_licence(value)
         case "version":
             return bool(re.fullmatch(r"\d+\.\d+\.\d+", value))
         case "published":

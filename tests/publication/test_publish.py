@@ -16,6 +16,7 @@ from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
+from siggen.publication.spdx_licence import _identifiers
 from siggen.sets.verification import verify
 
 KEPT = Path(__file__).parents[1] / "sets" / "schema_2"
@@ -73,6 +74,8 @@ def test_without_the_authors_nothing_is_published(tmp_path: Path) -> None:
     [
         ({"license": "unset"}, "license"),
         ({"license": "free for all"}, "license"),
+        ({"license": "LicenseRef-"}, "license"),
+        ({"license": "cc-by-4.0 OR mit"}, "license"),
         ({"published": "30.11.2026"}, "published"),
         ({"published": "2026-02-30"}, "published"),
         ({"version": "1"}, "version"),
@@ -87,6 +90,39 @@ def test_what_the_authors_say_has_to_have_its_form(tmp_path: Path, changes: dict
     with pytest.raises(ConfigError) as caught:
         read_publication_facts(facts_file(tmp_path, **changes))
     assert [problem.path for problem in caught.value.problems] == [path]
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("cc-by-4", "CC-BY-4.0"),
+        ("CC BY 4.0", "CC-BY-4.0"),
+        ("ODC-By", "ODC-By-1.0"),
+        ("the MIT License", "MIT"),
+        ("GPL-2.0", "GPL-2.0-only"),  # deprecated: does not say whether later versions hold as well
+    ],
+)
+def test_a_licence_that_spdx_does_not_know_is_refused_with_the_nearest(tmp_path: Path, said: str, meant: str) -> None:
+    with pytest.raises(ConfigError, match=rf"license.*'{said}'.*Did you mean {meant}\?"):
+        read_publication_facts(facts_file(tmp_path, license=said))
+    assert read_publication_facts(facts_file(tmp_path, license=meant)).license == meant
+
+
+def test_own_licences_have_the_form_that_spdx_gives_them_and_nothing_alike_is_not_guessed(tmp_path: Path) -> None:
+    assert read_publication_facts(facts_file(tmp_path, license="LicenseRef-institute.2")).license.endswith(
+        "institute.2"
+    )
+    with pytest.raises(ConfigError) as caught:
+        read_publication_facts(facts_file(tmp_path, license="????"))
+    assert "Did you mean" not in str(caught.value)
+
+
+def test_the_list_of_licences_is_that_of_an_independent_library() -> None:
+    from packaging.licenses import canonicalize_license_expression
+
+    names = _identifiers()
+    assert {"CC-BY-4.0", "CC0-1.0", "ODC-By-1.0", "BSD-3-Clause"} <= set(names.values())
+    assert all(canonicalize_license_expression(lower) == name for lower, name in names.items())
 
 
 def test_a_published_folder_is_a_set_that_opens_and_verifies(published: Path) -> None:
