@@ -77,6 +77,9 @@ def png_bytes(figure: Figure) -> bytes:
     """Return the figure as PNG with a palette of its own colours."""
     from PIL import Image
 
+    from diagnostics.page.power_labels import write_powers
+
+    write_powers(figure)
     drawn, stream = io.BytesIO(), io.BytesIO()
     with styled():
         figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)

@@ -34,6 +34,11 @@ def decimal(value: float) -> str:
     return f"{value:.2f}" if math.isfinite(value) else "undefined"
 
 
+def rounded(value: float) -> str:
+    """Return a positive number with two significant digits, never as a power of ten: 0.35, 2.1, 16, 160."""
+    return f"{float(f'{value:.2g}'):g}" if math.isfinite(value) else "undefined"
+
+
 def signed(value: float) -> str:
     """Return a difference with two decimals and its sign; none before zero."""
     text = f"{value:+.2f}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits
+from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.training.detectors import CLASSIFIER, FEWEST_SPECIMENS, INDICATOR, NETWORKS, Detectors
@@ -74,8 +74,8 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None) -> str:
     if size.reached:
         return f"{capitalised(kind)} is found in nine of ten records from {_area_limits(size)}."
     return (
-        f"{capitalised(kind)} of up to {_area(size.largest_mm2)} is not found in nine of ten records ({largest}: "
-        f"{_share(states[largest])})."
+        f"{capitalised(kind)} of up to {_area(size.largest_mm2)} is found in fewer than nine of ten records "
+        f"({largest}: {_share(states[largest])})."
     )
 
 
@@ -86,7 +86,7 @@ def _area_limits(size: FoundSize) -> str:
 
 
 def _area(area_mm2: float) -> str:
-    return f"{area_mm2:.2g}{SPACE}mm²"
+    return f"{rounded(area_mm2)}{SPACE}mm²"
 
 
 def _share(state: StateFound) -> str:
@@ -98,7 +98,8 @@ def _share(state: StateFound) -> str:
 def detector_sentence(found: Detectors, best: Detector) -> str:
     """Name the strongest detector and the others beside it, with their AUC."""
     area = f"AUC {decimal(best.every.value)} ({limits(best.every)})"
-    first = f"All damage together, the strongest is the {_title(best)}: {area}."
+    gearboxes = f"all {counted(best.specimens, 'gearbox')}"
+    first = f"All damage together, the strongest on {gearboxes} is the {_title(best)}: {area}."
     others = []
     for family in (INDICATOR, CLASSIFIER, NETWORKS):
         detector = found.alone.get(family)
@@ -135,8 +136,8 @@ def reference_sentence(found: Detectors) -> str:
             "2` gives more)."
         )
     reached = [f"{kind} from {_area_limits(size)}" for kind, size in beside.sizes.items() if size.reached]
-    sizes = f", nine of ten of {joined(reached)}" if reached else ""
+    sizes = f" Nine of ten records are then found of {joined(reached)}." if reached else ""
     return (
         f"Beside a healthy record of the same gearbox: AUC {decimal(beside.every.value)} ({limits(beside.every)}) by "
-        f"the {beside.title}{sizes}."
+        f"the {beside.title}.{sizes}"
     )

@@ -6,6 +6,7 @@ import math
 
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
+from diagnostics.page.wording import rounded
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize
 from diagnostics.training.detectors import Detectors
@@ -60,7 +61,9 @@ def _size_cell(found: FoundSize | None) -> Cell:
     if found is None:
         return Cell("–", value=math.nan)
     if not found.reached:
-        return Cell("not found", f"up to {found.largest_mm2:.2g}", 1e9)
-    high = f"{found.area_mm2.high:.2g}" if math.isfinite(found.area_mm2.high) else "∞"
+        return Cell("not found", f"up to {rounded(found.largest_mm2)}", 1e9)
+    high = rounded(found.area_mm2.high) if math.isfinite(found.area_mm2.high) else "∞"
     bound = "≤ " if found.is_bound else ""
-    return Cell(f"{bound}{found.area_mm2.value:.2g}", f"{found.area_mm2.low:.2g} … {high}", found.area_mm2.value)
+    return Cell(
+        f"{bound}{rounded(found.area_mm2.value)}", f"{rounded(found.area_mm2.low)} … {high}", found.area_mm2.value
+    )

@@ -102,7 +102,7 @@ def severity_figure(
         axis.plot(position, middle, color="#b01e3c", linewidth=1.8, marker="o", markersize=4)
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
-        axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=8)
+        axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=7)
         state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
@@ -185,7 +185,7 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
                 curve.snr_db, [a.value for a in curve.auc], color=colour, marker=marker, markersize=3, label=label
             )
         axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
-        axis.set_title(name.replace("__", "\n"), loc="left", fontsize=8)
+        axis.set_title(name.replace("__", "\n"), loc="left", fontsize=7)
     for axis in axes.ravel()[len(usable) :]:
         axis.set_visible(False)
     axes[0, 0].set_ylim(-0.03, 1.03)

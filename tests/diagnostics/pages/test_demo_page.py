@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from siggen.checks.loading import load_config
-from tests.diagnostics.pages.published_report import REPORT, ROOT, report_rows
+from tests.diagnostics.pages.published_report import REPORT, ROOT, plain, report_rows
 
 PAGE = (ROOT / "docs" / "start" / "demo.md").read_text(encoding="utf-8")
 STALE = "**Pages of quickstart are of an earlier preset**"
@@ -26,3 +26,9 @@ def test_the_scores_are_those_of_the_published_report() -> None:
         limits = [round(100 * float(number)) for number in accuracy[1].split(" … ")]
         assert [int(value), int(low), int(high)] == [round(100 * float(accuracy[0])), *limits], name
         assert area == f"{macro[0]} ({macro[1].replace(' … ', ' to ')})", name
+
+
+def test_the_answer_is_that_of_the_published_report() -> None:
+    quoted = plain(" ".join(re.findall(r"^> (.*)$", PAGE, re.MULTILINE)))
+    opened = plain(REPORT.split("<b>From which size.</b>")[1].split("</p>")[0])
+    assert quoted == opened.replace("\N{NO-BREAK SPACE}", " ")

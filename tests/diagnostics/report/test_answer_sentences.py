@@ -31,8 +31,14 @@ def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_o
     assert reached == "Pitting is found in nine of ten records from 4 mm² on (2 mm² to beyond the largest)."
     never = said(**{CLASSIFIER: detector(0.8, math.inf)})["From which size"]
     assert never == (
-        "Pitting of up to 8 mm² is not found in nine of ten records (severe: 40 % of records, 30 % to 50 %)."
+        "Pitting of up to 8 mm² is found in fewer than nine of ten records (severe: 40 % of records, 30 % to 50 %)."
     )
+
+
+def test_a_large_area_is_written_in_full_with_two_digits() -> None:
+    spalled = replace(detector(0.8, 164.0), sizes={"pitting": FoundSize(Interval(164.0, 96.0, 1240.0), 1.0, 2000.0)})
+    found = said(**{CLASSIFIER: spalled})["From which size"]
+    assert found == "Pitting is found in nine of ten records from 160 mm² on (96 mm² to 1200 mm²)."
 
 
 def test_the_strongest_on_all_gearboxes_is_named_and_a_network_of_few_never_takes_its_place() -> None:
@@ -40,8 +46,9 @@ def test_the_strongest_on_all_gearboxes_is_named_and_a_network_of_few_never_take
     indicator = replace(detector(0.9, 4.0), title=INDICATOR, basis="rms__lid")
     found = said(**{INDICATOR: indicator, CLASSIFIER: detector(0.8, 4.0), NETWORKS: network})
     assert found["By what"] == (
-        "All damage together, the strongest is the best single indicator (RMS at lid): AUC 0.90 (0.80 to 1.00). "
-        "The logistic regression has 0.80 (0.70 to 0.90). The 1-D network has 1.00 (0.90 to 1.10) on 5 test gearboxes."
+        "All damage together, the strongest on all 24 gearboxes is the best single indicator (RMS at lid): AUC 0.90 "
+        "(0.80 to 1.00). The logistic regression has 0.80 (0.70 to 0.90). The 1-D network has 1.00 "
+        "(0.90 to 1.10) on 5 test gearboxes."
     )
 
 
@@ -50,3 +57,13 @@ def test_few_healthy_records_and_no_detector_at_all_are_said() -> None:
     assert "7 healthy records set no threshold" in said(**{CLASSIFIER: few})["From which size"]
     assert list(said()) == ["No answer"]
     assert "worth is not known: the set has one per gearbox" in said(**{CLASSIFIER: few})["How sure"]
+
+
+def test_a_healthy_record_beside_says_what_is_then_found_in_nine_of_ten() -> None:
+    beside = replace(detector(0.9, 4.0), referenced=True)
+    answers = dict(answer_sentences(Detectors({CLASSIFIER: detector(0.8, 6.0)}, {CLASSIFIER: beside})))
+    sure = answers["How sure"].replace("\xa0", " ")
+    assert sure.endswith(
+        "Beside a healthy record of the same gearbox: AUC 0.90 (0.80 to 1.00) by the logistic regression. Nine of ten "
+        "records are then found of pitting from 4 mm² on (2 mm² to beyond the largest)."
+    )
