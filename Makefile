@@ -29,8 +29,9 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# Files go whole to one of two processes, since their fixtures are sets that all their tests read.
 test: lint
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow
