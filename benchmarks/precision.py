@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.row import Row, duration_text
+from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.shipped import ROOT, shipped
 from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
@@ -32,6 +32,10 @@ from siggen.specimen.motion import specimen_motion
 PRESETS = (ROOT / "configs" / "quickstart.yaml", ROOT / "configs" / "bench.yaml")
 CONTACTS = ("slices", "face")
 REFERENCE_STEPS = 32
+WAYS = (
+    *(("exponential", steps) for steps in (1, 2, 4)),
+    *(("runge_kutta", steps) for steps in (1, 2, 4, 8, 16)),
+)
 SIGNAL_S, LOOP_S, SCIPY_S = 0.3, 1.0, 0.02
 GOAL_S, GOAL_ERROR, GOAL_FACTOR = 0.015, 1e-3, 1.5
 
@@ -81,13 +85,29 @@ def rows(*, quick: bool) -> Iterator[Row]:
     """Yield errors by class with the steps that the tolerance asks for, and work against precision."""
     for contact in CONTACTS:
         yield from _classes(contact, 1 if quick else 6)
-    case = _case(PRESETS[0], "slices", 0, -1)
+    for contact, tilt in (("slices", False), ("face", False), ("face", True)):
+        case = _case(PRESETS[0], contact, 0, -1, tilt=tilt)
+        yield from _work_rows(case, f"severe state, {contact}, {'with' if tilt else 'without'} tilt")
+    yield from _scipy_rows(_case(PRESETS[0], "slices", 0, -1))
+
+
+def _work_rows(case: _Case, what: str) -> Iterator[Row]:
+    """Yield cost against error of both integrators, called in turn, and how much cheaper one is at equal error."""
     fine = case.response("runge_kutta", REFERENCE_STEPS)
-    for integrator, counts in (("exponential", (1, 2, 4)), ("runge_kutta", (1, 2, 4, 8, 16))):
-        for steps in counts:
-            cost, error = case.loop_s(integrator, steps), _error(case.response(integrator, steps), fine)
-            yield Row(f"severe state, slices: {integrator}, {steps} steps", f"{duration_text(cost)}, error {error:.1e}")
-    yield from _scipy_rows(case)
+    errors = {way: _error(case.response(*way), fine) for way in WAYS}
+    rounds = [{way: case.loop_s(*way, rounds=1) for way in WAYS} for _ in range(3)]
+    costs = {way: float(np.median([one[way] for one in rounds])) for way in WAYS}
+    for way in WAYS:
+        yield Row(f"{what}: {way[0]}, {way[1]} steps", f"{duration_text(costs[way])}, error {errors[way]:.1e}")
+    mesh = case.state.mesh
+    own = ("exponential", steps_per_sample(case.config, case.specimen, mesh.structure, mesh.tables))
+    others = sorted((way for way in WAYS if way[0] == "runge_kutta"), key=lambda way: errors[way])
+    logs = np.log([[errors[way], costs[way]] for way in others])
+    equal = float(np.exp(np.interp(np.log(errors[own]), logs[:, 0], logs[:, 1])))
+    yield cost_row(
+        f"{what}: exponential with the steps of the rule ({own[1]})", costs[own],
+        f"Runge-Kutta at its error of {errors[own]:.1e}, between the rows above", equal,
+    )  # fmt: skip
 
 
 def _classes(contact: str, gearboxes: int) -> Iterator[Row]:
@@ -177,8 +197,8 @@ def _error(found: Response, wanted: Response) -> float:
     return float(np.median([_relative(one, other) for one, other in pairs]))
 
 
-def _case(preset: Path, contact: str, gearbox: int, state: int) -> _Case:
-    rigid = ("dynamics.shafts=null",) if contact == "slices" else ()  # slices do not feel a tilt
+def _case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = True) -> _Case:
+    rigid = ("dynamics.shafts=null",) if contact == "slices" or not tilt else ()  # slices do not feel a tilt
     config = shipped(preset, f"dynamics.mesh.contact={contact}", f"duration_s={SIGNAL_S}", *rigid)
     state_id = state % len(config.states)
     record = next(
