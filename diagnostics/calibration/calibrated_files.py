@@ -27,6 +27,20 @@ def data_folder(out: Path) -> Path:
     return out.with_name(f"{out.stem}_data")
 
 
+def check_new(out: Path, inject: Path | None) -> None:
+    """Refuse what would be overwritten: configuration, its folder of data, and the folder of injected recordings.
+
+    Raises
+    ------
+    UsageError
+        If one of them is there already; names it.
+    """
+    places = [(out, "--out a new name"), (data_folder(out), "--out a new name")]
+    for path, how in [*places, *([(inject, "--inject a new folder")] if inject else [])]:
+        if path.exists():
+            raise UsageError(f"{path}: is there already; give {how}")
+
+
 def write_calibration(found: Calibration, out: Path) -> Path:
     """Write configuration and data; return the configuration.
 
@@ -35,10 +49,8 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     UsageError
         If either is there already.
     """
+    check_new(out, None)
     folder = data_folder(out)
-    for path in (out, folder):
-        if path.exists():
-            raise UsageError(f"{path}: is there already; give --out a new name")
     folder.mkdir(parents=True)
     sensors = sensor_axes(found)
     for channel, (name, axis) in zip(found.channels, sensors, strict=True):

@@ -84,7 +84,7 @@ def calibrate(
     """
     import siggen
     from diagnostics.base.extras import require_packages
-    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, write_calibration
+    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
@@ -94,6 +94,7 @@ def calibrate(
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.recordings.measured_recording import RecordingFacts
 
+    check_new(out, inject)
     if compared:
         require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
