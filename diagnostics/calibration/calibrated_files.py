@@ -162,7 +162,8 @@ NOT_IDENTIFIED = (
     "phase of the path: minimum phase is assumed",
     "structure, tip relief, errors of the teeth: as wide as in the rig; give an accuracy class if you know it",
     "torque and its variation: as in the rig, or --torque",
-    "lines at multiples of a shaft's order near a mesh line: they count as its sidebands",
+    "lines at multiples of a shaft's order above the fourth: they count as errors of the teeth, which are simulated, "
+    "so a further stage on one of these shafts is left out",
     "correlation time of the noise's level: 1 to 8 ms",
     "range of the sensor: four times the largest value",
     "other gearboxes of this type: one assembly was measured",

@@ -89,6 +89,18 @@ def test_an_order_and_a_tone_are_told_apart_where_speeds_differ() -> None:
     assert [line.amplitude for line in strong] == pytest.approx([1.0, 0.5], rel=0.05)
 
 
+def test_lines_of_the_teeth_are_left_to_the_simulation_and_low_orders_of_shafts_are_kept() -> None:
+    rng, gear = np.random.default_rng(7), TEETH[0] / TEETH[1]
+    kept, of_teeth = (1.0, 2.0 * gear, 31.45), (7.0, 18.0, 19.0, 31.0, 11.0 * gear, 60.0 * gear)
+    records = []
+    for speed in (30.0, 31.3, 32.9):
+        signal = 0.05 * rng.standard_normal(SAMPLES)
+        signal += sum(np.sin(2 * np.pi * order * speed * TIME_S) for order in (*kept, *of_teeth))
+        records.append(order_record(signal, FS_HZ, block(signal, speed).pulses_s, TEETH))
+    strong = sorted(line.order for line in own_lines(records, TEETH) if line.amplitude > 0.1)
+    assert strong == pytest.approx(sorted(kept), abs=1e-3)
+
+
 def test_noise_alone_gives_hardly_a_line() -> None:
     records = []
     for seed, speed in enumerate((30.0, 31.3, 32.9)):
