@@ -16,14 +16,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
 from diagnostics.calibration.order_record import LINE_BINS, OrderRecord
 
 OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 300, 1.6
 SHAFT_ORDERS = 4
 """Multiples of a shaft's speed up to which its lines are kept; those above are the errors of the teeth."""
 ON_SHAFT_BINS = 0.15
-LEAST_SPREAD = 1.25
-"""Ratio in which a line's amplitude is drawn at least."""
+LEAST_SPREAD, UNKNOWN_SPREAD = 1.25, 2.0
+"""Ratio in which a line's amplitude is drawn at least; the second where too few recordings tell it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +109,8 @@ def _matched(
         taken[number][k] = True
     chosen = np.array([peaks[number][k] for number, k in members])
     where = float(chosen[:, column].mean())
-    return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2])]
+    least = LEAST_SPREAD if len(records) >= FEWEST_RECORDINGS else UNKNOWN_SPREAD
+    return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2], least)]
 
 
 def _on_shaft(line: OwnLine, revolutions: int, gear_order: float) -> OwnLine:
@@ -120,7 +122,7 @@ def _on_shaft(line: OwnLine, revolutions: int, gear_order: float) -> OwnLine:
     return line
 
 
-def _line(order: float, frequency_hz: float, energy: np.ndarray) -> OwnLine:
+def _line(order: float, frequency_hz: float, energy: np.ndarray, least: float) -> OwnLine:
     amplitude = np.sqrt(2.0 * energy)
-    ratio = float(amplitude.max() / amplitude.min()) if amplitude.size > 1 else LEAST_SPREAD
-    return OwnLine(order, frequency_hz, float(np.median(amplitude)), max(math.sqrt(ratio), LEAST_SPREAD))
+    ratio = float(amplitude.max() / amplitude.min())
+    return OwnLine(order, frequency_hz, float(np.median(amplitude)), max(math.sqrt(ratio), least))
