@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.calibration.calibration import Calibration, ChannelFit
-from diagnostics.calibration.jackknife import Fitted
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.noise_fit import NoiseFit
 from diagnostics.calibration.source_library import PLACES
 from siggen.errors import UsageError
@@ -27,6 +27,23 @@ def data_folder(out: Path) -> Path:
     return out.with_name(f"{out.stem}_data")
 
 
+TOO_FEW = f"no interval: fewer than {FEWEST_RECORDINGS} recordings; ranges are wide instead"
+
+
+def check_new(out: Path, inject: Path | None) -> None:
+    """Refuse what would be overwritten: configuration, its folder of data, and the folder of injected recordings.
+
+    Raises
+    ------
+    UsageError
+        If one of them is there already; names it.
+    """
+    places = [(out, "--out a new name"), (data_folder(out), "--out a new name")]
+    for path, how in [*places, *([(inject, "--inject a new folder")] if inject else [])]:
+        if path.exists():
+            raise UsageError(f"{path}: is there already; give {how}")
+
+
 def write_calibration(found: Calibration, out: Path) -> Path:
     """Write configuration and data; return the configuration.
 
@@ -35,10 +52,8 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     UsageError
         If either is there already.
     """
+    check_new(out, None)
     folder = data_folder(out)
-    for path in (out, folder):
-        if path.exists():
-            raise UsageError(f"{path}: is there already; give --out a new name")
     folder.mkdir(parents=True)
     sensors = sensor_axes(found)
     for channel, (name, axis) in zip(found.channels, sensors, strict=True):
@@ -67,7 +82,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
     low, high = found.random_rms
     point = found.operating_point
     lines = [
-        f"# Made by `siggen-diagnostics calibrate` from {found.blocks.recordings} healthy recordings. It differs from",
+        f"# Made by `siggen-diagnostics calibrate` from {len(found.blocks.blocks)} healthy recordings. It differs from",
         "# the rig in what recordings tell; what they leave open is drawn per gearbox. Intervals and what was not",
         f"# identified: {data_folder(out).name}/{FACTS}. Data of your recordings are in it: keep it to yourself.",
         "",
@@ -100,7 +115,7 @@ def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[
     yield f"    path: {{kind: measured, files: [{files}]}}"
     ratio = 10.0 ** (noise.spread_db / 20.0)
     level = noise.level_db
-    yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, 90 % {_interval(level)}"
+    yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, {_interval(level)}"
     yield f"      file: {folder}/noise_{name}.csv"
     yield f"      factor: {_range(1.0 / ratio, ratio, 'loguniform')}"
     depths = {"pinion_depth": noise.pinion_depth, "gear_depth": noise.gear_depth, "level_std": noise.level_std}
@@ -122,7 +137,9 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
         "recordings": [block.name for block in found.blocks.blocks],
         "speed_hz": [block.speed_hz for block in found.blocks.blocks],
         "speed_random_rms": list(found.random_rms),
-        "interval": "90 %, from leaving recordings out (jackknife, Student's t)",
+        "interval": TOO_FEW
+        if len(found.blocks.blocks) < FEWEST_RECORDINGS
+        else "90 %, from leaving recordings out (jackknife, Student's t)",
         "channels": {
             channel.name: {
                 "line_level_db": {
@@ -150,7 +167,8 @@ NOT_IDENTIFIED = (
     "phase of the path: minimum phase is assumed",
     "structure, tip relief, errors of the teeth: as wide as in the rig; give an accuracy class if you know it",
     "torque and its variation: as in the rig, or --torque",
-    "lines at multiples of a shaft's order near a mesh line: they count as its sidebands",
+    "lines at multiples of a shaft's order above the fourth: they count as errors of the teeth, which are simulated, "
+    "so a further stage on one of these shafts is left out",
     "correlation time of the noise's level: 1 to 8 ms",
     "range of the sensor: four times the largest value",
     "other gearboxes of this type: one assembly was measured",
@@ -162,13 +180,13 @@ def _fact(value: Fitted) -> list[float | None]:
 
 
 def _interval(value: Fitted) -> str:
-    return f"[{value.low:.1f}, {value.high:.1f}]" if np.isfinite(value.low) else "unknown from one recording"
+    return f"90 % [{value.low:.1f}, {value.high:.1f}]" if np.isfinite(value.low) else TOO_FEW
 
 
 def _depth(value: Fitted) -> str:
-    """Return the range of a depth: its interval, and at least half and twice its value where that is unknown."""
+    """Return the range of a depth: its interval; where unknown, half to twice its value, up to 0.1 at least."""
     low = max(value.low, 0.0) if np.isfinite(value.low) else 0.5 * value.value
-    high = min(value.high if np.isfinite(value.high) else 2.0 * value.value, 1.0)
+    high = min(value.high if np.isfinite(value.high) else max(2.0 * value.value, 0.1), 1.0)
     return _range(low, max(high, low + 1e-3))
 
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED
+from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, TOO_FEW
 from diagnostics.calibration.calibration import Calibration
-from diagnostics.calibration.jackknife import Fitted
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.likeness import LEVELS, RANGE, Likeness, Sample, band_edges_hz
 from diagnostics.page import html
 from diagnostics.page.html import Cell
@@ -86,7 +86,9 @@ def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> st
 
 def _feature_parts(before: Likeness, after: Likeness) -> list[str]:
     if before.features is None or after.features is None:
-        return [html.paragraph("Recordings are shorter than a second, or sampled below 9.6 kHz: not judged.")]
+        return [
+            html.paragraph("Recordings or gearboxes are shorter than a second, or sampled below 9.6 kHz: not judged.")
+        ]
     earlier = {gap.name: gap for gap in before.features.gaps}
     rows = [
         [Cell(gap.name), *(_number(v) for v in (earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic))]
@@ -133,7 +135,10 @@ def _fitted_table(found: Calibration) -> str:
             [Cell(channel.name), Cell(name), _number(v.value), _number(v.low), _number(v.high)]
             for name, v in facts.items()
         ]
-    caption = "Fitted numbers with limits of 90 % from leaving recordings out."
+    few = len(found.blocks.blocks) < FEWEST_RECORDINGS
+    caption = (
+        f"Fitted numbers; {TOO_FEW}." if few else "Fitted numbers with limits of 90 % from leaving recordings out."
+    )
     return html.table(("Channel", "Quantity", "Value", "Low", "High"), rows, caption=caption, tall=True)
 
 

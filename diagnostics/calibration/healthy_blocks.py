@@ -1,8 +1,11 @@
-"""HealthyBlocks: healthy recordings as blocks that are left out one by one: recordings, or pieces of one or two."""
+"""HealthyBlocks: healthy recordings as blocks that are left out one by one, each whole.
+
+Pieces of a recording have wider lines over a higher floor per line, so levels of weak lines would rise with the number
+of pieces.
+"""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,9 +16,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording, Recordi
 from diagnostics.recordings.shaft_pulses import shaft_pulses
 from siggen.errors import UsageError
 
-FEWEST_RECORDINGS = 3
-"""From so many on each recording is a block; fewer are cut, and their intervals know nothing of other days."""
-BLOCKS, BLOCK_TURNS, FEWEST_TURNS = 4, 20, 10
+FEWEST_TURNS = 10
 PLAUSIBLE_RMS_M_S2 = (1e-4, 1e4)
 LEAST_LINE = 0.3
 """Share of a mesh line's bins above the floor; the strongest of the recording must be that much."""
@@ -25,7 +26,7 @@ Source = tuple[Path, int | None]
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One recording or piece: name, channels (n,) [m/s²], rate and pulse times [s] of the pinion."""
+    """One recording: name, channels (n,) [m/s²], rate and pulse times [s] of the pinion."""
 
     name: str
     channels: Mapping[str, np.ndarray]
@@ -40,12 +41,11 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class HealthyBlocks:
-    """All blocks, the channels' names, how many recordings they come from."""
+    """All blocks, and the channels' names."""
 
     blocks: tuple[Block, ...]
     channels: tuple[str, ...]
     fs_hz: float
-    recordings: int
 
 
 def healthy_blocks(
@@ -65,7 +65,6 @@ def healthy_blocks(
     """
     read = [read_recording(path, channels, replace(facts, row=row)) for path, row in sources]
     _check_alike(read)
-    cut = 1 if len(read) >= FEWEST_RECORDINGS else -(-BLOCKS // len(read))
     found = []
     for recording, (path, row) in zip(read, sources, strict=True):
         pulses = shaft_pulses(recording, teeth, speed_range_hz).times_s
@@ -74,21 +73,8 @@ def healthy_blocks(
                 f"{path}: {pulses.size - 1} whole turns of the pinion; allowed: at least {FEWEST_TURNS}. Record longer"
             )
         name = path.name if row is None else f"{path.name}:{row}"
-        found += _cut(name, recording, pulses, max(1, min(cut, (pulses.size - 1) // BLOCK_TURNS)))
-    return HealthyBlocks(tuple(found), channels, read[0].fs_hz, len(read))
-
-
-def _cut(name: str, recording: MeasuredRecording, pulses: np.ndarray, pieces: int) -> list[Block]:
-    edges = np.linspace(0, pulses.size - 1, pieces + 1).round().astype(int)
-    found = []
-    for k, (first, last) in enumerate(itertools.pairwise(edges)):
-        inside = pulses[first : last + 1]
-        start = 0 if pieces == 1 else int(inside[0] * recording.fs_hz)
-        end = None if pieces == 1 else int(np.ceil(inside[-1] * recording.fs_hz)) + 1
-        signals = {channel: signal[start:end] for channel, signal in recording.channels.items()}
-        label = name if pieces == 1 else f"{name}, piece {k + 1}"
-        found.append(Block(label, signals, recording.fs_hz, inside - start / recording.fs_hz))
-    return found
+        found.append(Block(name, recording.channels, recording.fs_hz, pulses))
+    return HealthyBlocks(tuple(found), channels, read[0].fs_hz)
 
 
 def _check_alike(read: Sequence[MeasuredRecording]) -> None:

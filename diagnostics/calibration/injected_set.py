@@ -48,13 +48,11 @@ def write_injected(
     Raises
     ------
     UsageError
-        If the folder is there already, or no damage could be simulated.
+        If no damage could be simulated.
     """
     import pyarrow as pa
     from pyarrow import parquet
 
-    if folder.exists():
-        raise UsageError(f"{folder}: is there already; give --inject a new folder")
     rows = list(_rows(blocks, mine, gearboxes, seed, advance))
     if all(row["origin"] == "recorded" for row in rows):
         raise UsageError(f"{mine}: no damage could be simulated; see siggen plan {mine}")

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 CONFIDENCE = 0.9
+FEWEST_RECORDINGS = 3
+"""Fewer give no interval: two have one difference, which is small by chance too often to tell a spread."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """A number, and the limits between which it lies with a confidence of 90 %; infinite limits from one recording."""
+    """A number, and limits that hold it with a confidence of 90 %, infinite from fewer than three recordings."""
 
     value: float
     low: float
@@ -35,7 +37,7 @@ def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.
     if not known.size:
         return Fitted(math.nan, -math.inf, math.inf)
     whole = float(statistic(known))
-    if known.size < 2:
+    if known.size < FEWEST_RECORDINGS:
         return Fitted(whole, -math.inf, math.inf)
     without = np.array([statistic(np.delete(known, k)) for k in range(known.size)])
     error = math.sqrt((known.size - 1) / known.size * float(np.square(without - without.mean()).sum()))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnostics.calibration.healthy_blocks import Block
-from diagnostics.calibration.jackknife import Fitted, jackknife
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
 from diagnostics.calibration.order_record import OrderRecord, turns_of
 from diagnostics.signal.asynchronous_part import asynchronous_part, band_signal
 
@@ -22,6 +22,8 @@ NEIGHBOURS = (0.31, 0.37, 0.43, 1.29, 1.37, 1.43, 1.71)
 """Orders beside those of shafts: what they show is the error of the estimate."""
 OVER_FLOOR, REACH = 10.0, 4
 LEAST_SPREAD_DB = 1.0
+UNKNOWN_SPREAD_DB = 3.0
+"""Where too few recordings tell the spread: half to twice the power."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +37,8 @@ class NoiseFit:
     level_db : Fitted
         Level of all noise [dB re 1 unit²].
     spread_db : float
-        Half the range in which a record's level is drawn, at least LEAST_SPREAD_DB.
+        Half the range in which a record's level is drawn: at least LEAST_SPREAD_DB, and UNKNOWN_SPREAD_DB from fewer
+        than three recordings.
     pinion_depth, gear_depth, level_std : Fitted
         As keys of `noise_spectrum.modulation`.
     """
@@ -58,11 +61,12 @@ def noise_fit(records: Sequence[OrderRecord], blocks: Sequence[Block], channel: 
     pairs = zip(blocks, records, strict=True)
     cyclic = np.array([_modulation(block, record, channel, gear_order) for block, record in pairs])
     spread = 1.65 * float(levels.std(ddof=1)) * math.sqrt(1.0 + 1.0 / levels.size) if levels.size > 1 else 0.0
+    least = LEAST_SPREAD_DB if levels.size >= FEWEST_RECORDINGS else UNKNOWN_SPREAD_DB
     return NoiseFit(
         knots,
         np.exp(np.log(densities).mean(axis=0)),
         jackknife(levels),
-        max(spread, LEAST_SPREAD_DB),
+        max(spread, least),
         *(jackknife(column) for column in cyclic.T),
     )
 

@@ -1,4 +1,7 @@
-"""Lines of a channel that are not of the mesh: low orders of shafts, other stages (orders), other machines (tones).
+"""Lines of a channel that are not of the gears: low orders of shafts, other stages (orders), other machines (tones).
+
+Errors of the teeth make lines at every order of either shaft, which the simulation has too. So of these orders only the
+lowest are kept: they are of shafts, unbalance and couplings first of all.
 
 A line stands 10 dB over the floor. It is one of the machine where it returns in at least half of the recordings: at the
 same order, or else at the same frequency. At one speed the two cannot be told apart; then it is called an order.
@@ -13,14 +16,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
 from diagnostics.calibration.order_record import LINE_BINS, OrderRecord
 
 OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 300, 1.6
-OF_THE_MESH = 5.5
-"""Orders beside a mesh line within which lines of the shafts are its sidebands, which the simulation has."""
+SHAFT_ORDERS = 4
+"""Multiples of a shaft's speed up to which its lines are kept; those above are the errors of the teeth."""
 ON_SHAFT_BINS = 0.15
-LEAST_SPREAD = 1.25
-"""Ratio in which a line's amplitude is drawn at least."""
+LEAST_SPREAD, UNKNOWN_SPREAD = 1.25, 2.0
+"""Ratio in which a line's amplitude is drawn at least; the second where too few recordings tell it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +38,9 @@ class OwnLine:
 
 
 def own_lines(records: Sequence[OrderRecord], teeth: tuple[int, int]) -> tuple[OwnLine, ...]:
-    """Return the lines that a channel shows beside the mesh, the strongest first."""
-    peaks = [_peaks(record, teeth[0]) for record in records]
+    """Return the lines that a channel shows beside those of the gears, the strongest first."""
+    gear_order = teeth[0] / teeth[1]
+    peaks = [_peaks(record, gear_order) for record in records]
     needed = max(1, math.ceil(0.5 * len(records)))
     found, taken = [], [np.zeros(len(one), dtype=bool) for one in peaks]
     for by_order in (True, False):
@@ -43,25 +48,36 @@ def own_lines(records: Sequence[OrderRecord], teeth: tuple[int, int]) -> tuple[O
             for k in range(len(rows)):
                 if not taken[start][k]:
                     found += _matched(peaks, taken, (start, k), by_order, needed, records)
-    found = [_on_shaft(line, records[0].revolutions, teeth[0] / teeth[1]) for line in found]
+    found = [_on_shaft(line, records[0].revolutions, gear_order) for line in found]
     return tuple(sorted(found, key=lambda line: -line.amplitude)[:MOST_LINES])
 
 
-def _peaks(record: OrderRecord, teeth: int) -> np.ndarray:
-    """Return order, frequency and mean square of the lines that are not of the mesh, (lines, 3)."""
+def _peaks(record: OrderRecord, gear_order: float) -> np.ndarray:
+    """Return order, frequency and mean square of the lines that are not of the gears, (lines, 3)."""
     from scipy.ndimage import maximum_filter1d
 
-    orders = np.arange(record.power.size) / record.revolutions
-    beside = np.abs(orders - np.maximum(np.round(orders / teeth), 1.0) * teeth) > OF_THE_MESH
-    top = (record.power == maximum_filter1d(record.power, 2 * LINE_BINS + 1)) & (record.free | beside)
+    top = record.power == maximum_filter1d(record.power, 2 * LINE_BINS + 1)
     top[: 2 * LINE_BINS] = False
     places = np.flatnonzero(top & (record.power > OVER_FLOOR * record.floor * math.log(2.0)))
     places = places[record.power[places] > OVER_FLOOR * record.floor[places]]
     places = places[(places > LINE_BINS) & (places + LINE_BINS < record.power.size)]
     order = (places + _beside(record.power, places)) / record.revolutions
+    order = order[~_of_teeth(order, record.revolutions, gear_order)]
     energy = np.array([record.line(one)[0] for one in order.tolist()])
     known = np.isfinite(energy)
     return np.stack([order[known], order[known] * record.speed_hz, energy[known]], axis=1).reshape(-1, 3)
+
+
+def _of_teeth(order: np.ndarray, revolutions: int, gear_order: float) -> np.ndarray:
+    """Return which orders (lines,) are not told from a shaft's multiple, and from no low one: errors of the teeth."""
+    told, low = SAME_BINS / revolutions, np.zeros(order.size, dtype=bool)
+    multiple = low.copy()
+    for step in (1.0, gear_order):
+        number = np.round(order / step)
+        on = np.abs(order - number * step) < told
+        low |= on & (number <= SHAFT_ORDERS)
+        multiple |= on
+    return np.asarray(multiple & ~low)
 
 
 def _beside(power: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -93,7 +109,8 @@ def _matched(
         taken[number][k] = True
     chosen = np.array([peaks[number][k] for number, k in members])
     where = float(chosen[:, column].mean())
-    return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2])]
+    least = LEAST_SPREAD if len(records) >= FEWEST_RECORDINGS else UNKNOWN_SPREAD
+    return [_line(where if by_order else 0.0, 0.0 if by_order else where, chosen[:, 2], least)]
 
 
 def _on_shaft(line: OwnLine, revolutions: int, gear_order: float) -> OwnLine:
@@ -105,7 +122,7 @@ def _on_shaft(line: OwnLine, revolutions: int, gear_order: float) -> OwnLine:
     return line
 
 
-def _line(order: float, frequency_hz: float, energy: np.ndarray) -> OwnLine:
+def _line(order: float, frequency_hz: float, energy: np.ndarray, least: float) -> OwnLine:
     amplitude = np.sqrt(2.0 * energy)
-    ratio = float(amplitude.max() / amplitude.min()) if amplitude.size > 1 else LEAST_SPREAD
-    return OwnLine(order, frequency_hz, float(np.median(amplitude)), max(math.sqrt(ratio), LEAST_SPREAD))
+    ratio = float(amplitude.max() / amplitude.min())
+    return OwnLine(order, frequency_hz, float(np.median(amplitude)), max(math.sqrt(ratio), least))

@@ -84,16 +84,18 @@ def calibrate(
     """
     import siggen
     from diagnostics.base.extras import require_packages
-    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, write_calibration
+    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, TOO_FEW, check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
     from diagnostics.calibration.healthy_blocks import healthy_blocks
     from diagnostics.calibration.injected_set import write_injected
+    from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.recordings.measured_recording import RecordingFacts
 
+    check_new(out, inject)
     if compared:
         require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
@@ -116,6 +118,8 @@ def calibrate(
             f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
             f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
         )
+    if len(blocks.blocks) < FEWEST_RECORDINGS:
+        typer.echo(f"recordings: {len(blocks.blocks)}; {TOO_FEW}", err=True)
     for text in NOT_IDENTIFIED:
         typer.echo(f"not identified: {text}", err=True)
     typer.echo(str(out))

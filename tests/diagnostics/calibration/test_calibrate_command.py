@@ -112,6 +112,16 @@ def test_a_call_that_cannot_work_says_why(
     assert said in text
 
 
+@pytest.mark.parametrize("taken", ["x.yaml", "x_data", "set"])
+def test_what_is_there_already_is_refused_before_anything_is_read(tmp_path: Path, taken: str) -> None:
+    (tmp_path / taken).mkdir()
+    # neither rig nor recording exist: whoever read first would speak of them
+    options = ["--fs", "25600", "--out", str(tmp_path / "x.yaml"), "--inject", str(tmp_path / "set")]
+    result = CliRunner().invoke(app, ["calibrate", "no_rig.yaml", "none.csv", *options])
+    assert isinstance(result.exception, UsageError)
+    assert f"{taken}: is there already" in str(result.exception)
+
+
 def test_noise_without_mesh_lines_and_a_wrong_unit_are_refused(
     tmp_path: Path, recordings: list[Path], calibrated: tuple[Path, Path, str]
 ) -> None:

@@ -110,7 +110,7 @@ def test_controls_keep_the_energy_and_the_shuffled_one_every_line(simulated: tup
 
 def test_every_row_says_what_it_was_made_of(mine: Path, simulated: tuple[Block, Difference], tmp_path: Path) -> None:
     block, _ = simulated
-    blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ, 1)
+    blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ)
     table = pq.read_table(write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None))
     rows = table.select(["recording", "origin", "state", "specimen_id", "difference_db"]).to_pylist()
     assert [row["origin"] for row in rows] == ["recorded", "injected"]
