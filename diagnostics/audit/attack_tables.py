@@ -6,11 +6,12 @@ import math
 
 from diagnostics.audit.audit import ALONE, UNPAIRED, WITH_REFERENCE, Audit
 from diagnostics.audit.card_section import verdict_words
+from diagnostics.audit.chance_sentence import chance_sentence
 from diagnostics.audit.detectability import Detection
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import capitalised, counted
+from diagnostics.page.wording import capitalised
 
 HOW = (
     "Attackers learn on some gearboxes and are judged on others. Each band, direction and weight is chosen on the "
@@ -31,13 +32,7 @@ def attack_parts(audit: Audit) -> list[str]:
     """Return the tables of the attackers; nothing where none could judge."""
     if not audit.states:
         return []
-    limit = ""
-    if audit.chance and math.isfinite(audit.chance.auc):
-        limit = (
-            f" With permuted states the strongest of {counted(audit.chance.attackers, 'attacker')} stays below "
-            f"{audit.chance.auc:.2f} in 95 % of {audit.chance.permutations} permutations."
-        )
-    return [html.paragraph(HOW + limit), _strongest_table(audit), _every_table(audit)]
+    return [html.paragraph(f"{HOW} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
 
 
 def _strongest_table(audit: Audit) -> str:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 
 from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import Detection, in_order
+from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detection, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
+from diagnostics.audit.gearboxes_needed import gearboxes_needed
 from diagnostics.audit.reference_comparison import ReferenceComparison
 
 SINGLE = "the best single indicator"
@@ -69,6 +70,16 @@ class Audit:
     best: dict[str, BestIndicator] = field(default_factory=dict)
     chance: ChanceLimit | None = None
     reference: ReferenceComparison | None = None
+
+    @property
+    def gearboxes_needed(self) -> int | None:
+        """The least number of gearboxes that may tell, where chance alone looks like damage; else None."""
+        return gearboxes_needed(self.chance, self.specimens)
+
+    @property
+    def tells_too_little(self) -> bool:
+        """Whether the gearboxes are too few for a set without traps to have passed."""
+        return self.specimens < FEWEST_SPECIMENS or self.gearboxes_needed is not None
 
     def probes(self, state: str) -> dict[str, float]:
         """Return the AUC on unseen gearboxes of everything that looked for a state, by its name."""

@@ -23,15 +23,17 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
         "channels": audit.channels,
         "seed": audit.seed,
         "verdict": audit.verdict,
+        "too_few_gearboxes": audit.tells_too_little,
+        "gearboxes_needed": audit.gearboxes_needed,
         "summary": audit_summary(audit),
         "findings": [asdict(finding) for finding in audit.findings],
         "realism": _realism_numbers(audit.realism) if audit.realism else None,
         "reference": asdict(audit.reference) | {"discriminator_auc": _number(audit.reference.discriminator_auc)}
         if audit.reference
         else None,
-        "detectability": {name: _entries_numbers(entries) for name, entries in audit.detections.items()},
+        "detectability": {name: _entries_numbers(entries, audit) for name, entries in audit.detections.items()},
         "strongest": {
-            name: _entries_numbers(audit.ladder(referenced=side))
+            name: _entries_numbers(audit.ladder(referenced=side), audit)
             for name, side in ((ALONE, False), (WITH_REFERENCE, True))
         },
         "chance": asdict(audit.chance) | {"auc": _number(audit.chance.auc)} if audit.chance else None,
@@ -49,7 +51,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
     }
 
 
-def _entries_numbers(entries: list[Detection]) -> dict[str, Any]:
+def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
     return {
         "states": [
             {
@@ -65,7 +67,8 @@ def _entries_numbers(entries: list[Detection]) -> dict[str, Any]:
         ],
         "profile_length_mm_at_auc": {
             str(target): {
-                fault: asdict(reached) if reached else None for fault, reached in length_at(entries, target).items()
+                fault: asdict(reached) if reached and not audit.gearboxes_needed else None
+                for fault, reached in length_at(entries, target).items()
             }
             for target in TARGETS
         },

@@ -88,7 +88,7 @@ def audit_set(
     specimens = int(np.unique(measured.labels["specimen_id"]).size)
     return Audit(
         findings=tuple(findings),
-        verdict=verdict(findings, specimens),
+        verdict=verdict(findings, specimens, chance),
         realism=compared,
         detections=found,
         notes=tuple(_notes(measured, found, with_realism)),

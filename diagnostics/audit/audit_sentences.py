@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from diagnostics.audit.attack_tables import shown_ladders
 from diagnostics.audit.audit import Audit
 from diagnostics.audit.card_section import lost_below
+from diagnostics.audit.chance_sentence import chance_sentence
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.reference_tables import reference_sentences
@@ -18,7 +17,12 @@ def audit_summary(audit: Audit) -> list[str]:
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
     found += reference_sentences(audit.reference) if audit.reference else []
-    return [audit.verdict, *found, *_hardest_sentence(audit), *_size_sentence(shown_ladders(audit))]
+    return [
+        audit.verdict,
+        *found,
+        *_hardest_sentence(audit),
+        *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),
+    ]
 
 
 def basis_sentence(audit: Audit) -> str:
@@ -63,9 +67,10 @@ def _hardest_sentence(audit: Audit) -> list[str]:
     text = f"{which}. {_strongest_words(audit, hardest)}"
     if hardest != easiest:
         text += f" The state {easiest} is the easiest. {_strongest_words(audit, easiest)}"
-    lost = [state for state in reached if reached[state] < lost_below(audit)]
+    lost = [state for state in reached if reached[state] < lost_below(audit) and not audit.gearboxes_needed]
     failed = f"These failed: {joined(list(audit.probes(lost[0])))}." if lost else ""
-    return [text, *_chance_sentence(audit), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]
+    chance = chance_sentence(audit)
+    return [text, *([chance] if chance else []), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]
 
 
 def _strongest_words(audit: Audit, state: str) -> str:
@@ -78,15 +83,6 @@ def _strongest_words(audit: Audit, state: str) -> str:
         return f"{tried}, chosen among {counted(audit.best[state].tried, 'column')}: AUC {decimal(probes[name])}."
     basis = f", most often {entry.basis} among {counted(entry.tried, 'column')}" if entry.basis else ""
     return f"{tried}: AUC {decimal(entry.auc.value)} ({limits(entry.auc)}){basis}."
-
-
-def _chance_sentence(audit: Audit) -> list[str]:
-    if audit.chance is None or not math.isfinite(audit.chance.auc):
-        return []
-    return [
-        f"By chance the strongest of {counted(audit.chance.attackers, 'attacker')} stays below an AUC of "
-        f"{decimal(audit.chance.auc)} in 95 % of {audit.chance.permutations} permutations of the states."
-    ]
 
 
 def _size_sentence(detections: dict[str, list[Detection]]) -> list[str]:

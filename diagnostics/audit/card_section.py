@@ -73,7 +73,9 @@ def verdict_words(audit: Audit, state: str) -> str:
     if not probes:
         return "not judged"
     best = max(probes, key=lambda name: probes[name])
-    if probes[best] >= TEACHABLE_AUC:
+    if audit.gearboxes_needed:
+        return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
+    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit)):
         return f"can be found, best by {best} ({_auc(probes[best])})"
     tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
     if probes[best] < lost_below(audit):

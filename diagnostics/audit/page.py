@@ -43,7 +43,7 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
     parts = [html.heading(title, 1), *html.summary(audit_summary(audit)), html.heading("Traps")]
-    parts.append(_findings_table(audit) if audit.findings else html.paragraph("No trap was found."))
+    parts.append(_findings_table(audit) if audit.findings else html.paragraph(audit.verdict))
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
     if audit.reference:
@@ -52,7 +52,7 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     parts += attack_parts(audit)
     if audit.best:
         parts += [html.paragraph(HOW_SINGLE), _best_table(audit)]
-    parts += [_detection_table(name, found) for name, found in shown_ladders(audit).items()]
+    parts += [_detection_table(name, found, audit) for name, found in shown_ladders(audit).items()]
     if "detectability" in drawn:
         parts.append(html.figure_grid([html.figure_block(drawn["detectability"], SIZE_CAPTION)]))
     parts += [html.heading("Notes"), *html.notes((*audit.notes, provenance(dataset, audit.seed)))]
@@ -118,7 +118,7 @@ def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
     ]
 
 
-def _detection_table(name: str, entries: list[Detection]) -> str:
+def _detection_table(name: str, entries: list[Detection], audit: Audit) -> str:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [
@@ -136,6 +136,7 @@ def _detection_table(name: str, entries: list[Detection]) -> str:
         f"{fault}: AUC {target:g} {_reached(length)}"
         for target in TARGETS
         for fault, length in length_at(entries, target).items()
+        if not audit.gearboxes_needed
     ]
     return (
         html.heading(title, 3)

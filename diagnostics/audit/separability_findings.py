@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.condition_traps import condition_traps
 from diagnostics.audit.damage_phase import damage_phase
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
 from diagnostics.audit.error_draws import error_draws
 from diagnostics.audit.finding import Finding
+from diagnostics.audit.gearboxes_needed import gearboxes_needed
 from diagnostics.audit.healthy_sidebands import healthy_sidebands
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.noise_copies import noise_copies
@@ -16,7 +18,7 @@ from diagnostics.audit.shared_specimens import shared_specimens
 from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.solver_settings import solver_settings
 from diagnostics.audit.state_ties import state_ties
-from diagnostics.page.wording import counted
+from diagnostics.page.wording import counted, decimal
 
 TRIVIAL = (
     "healthy_without_sidebands",
@@ -45,12 +47,18 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
     return named or condition_traps(measured, seed)
 
 
-def verdict(findings: Sequence[Finding], specimens: int) -> str:
-    """Return what the findings mean for scores on a set of so many specimens."""
+def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None) -> str:
+    """Return what the findings mean for scores on a set of so many specimens, beside what chance reaches there."""
     if not findings and specimens < FEWEST_SPECIMENS:
         return (
             f"No trap was found. Few traps can be found with {counted(specimens, 'gearbox')}. Scores on this set say "
             "nothing about other gearboxes."
+        )
+    needed = gearboxes_needed(chance, specimens)
+    if not findings and chance and needed:
+        return (
+            f"There are too few gearboxes to tell: chance reaches an AUC of {decimal(chance.auc)}. Use at least "
+            f"{counted(needed, 'gearbox')} in place of {specimens}."
         )
     if not findings:
         return (

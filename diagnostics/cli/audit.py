@@ -22,7 +22,12 @@ def audit(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
     ],
-    strict: Annotated[bool, typer.Option("--strict", help="End with exit code 4 if a trap was found.")] = False,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict", help="End with exit code 4 unless passed: after a trap, or with too few gearboxes to tell."
+        ),
+    ] = False,
     realism: Annotated[
         bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
     ] = False,
@@ -58,7 +63,7 @@ def audit(
 
     A trap is a property of the set that makes scores meaningless.
 
-    Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found.
+    Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found or gearboxes are too few to tell.
 
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
@@ -99,3 +104,5 @@ def audit(
         siggen.write_card_section(directory, card_section(found))
     if strict and found.findings:
         raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")
+    if strict and found.tells_too_little:
+        raise VerificationError(f"{directory}: not passed (--strict). {found.verdict}")

@@ -15,7 +15,7 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.chosen_records import chosen_records
 from diagnostics.explore.missing_parts import missing_parts
 from diagnostics.explore.payload import page_payload, set_source
-from diagnostics.explore.predictions import predicted_labels
+from diagnostics.explore.predictions import predicted_labels, seen_sentence
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
 from diagnostics.records.state_classes import HEALTHY
@@ -34,7 +34,7 @@ SET_COLUMNS = (
     *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),
 )
 SET_FILTERS = (("state", "State"), ("split", "Split"), ("speed_hz", "Speed [Hz]"), ("torque_nm", "Load [N m]"))
-NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"))
+NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"), ("seen", "Seen"))
 NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
 IN_SCRIPT: dict[str, str | int | None] = {
@@ -108,7 +108,7 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
     labels = dataset.labels(columns=["record_id", "specimen_id"])
     with stage("indicators", labels.num_rows) as advance:
         table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
-    said = predicted_labels(table, options.model, options.own) if options.model else {}
+    said = predicted_labels(table, _identity(dataset), options.model, options.own) if options.model else {}
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
     rows = chosen_records(specimens, options.limit)
     payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)
@@ -119,13 +119,18 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
     return page, np.asarray(labels.column("record_id"))[rows]
 
 
+def _identity(dataset: Dataset) -> str:
+    return str(dataset.manifest.get("identity", ""))
+
+
 def _facts(dataset: Dataset, payload: dict[str, Any], records: int, options: ExplorerOptions) -> dict[str, Any]:
     """Return what the template says in words."""
     labels = {name: np.asarray([row[name] for row in payload["records"]]) for name in ("fault", "specimen_id")}
     internals = bool(payload["quantities"])
     return {
         "name": str(dataset.manifest.get("name") or dataset.path.name),
-        "identity": str(dataset.manifest.get("identity", ""))[:12],
+        "identity": _identity(dataset)[:12],
+        "seen": seen_sentence([row["seen"] for row in payload["records"]]) if options.model else "",
         "records": records,
         "healthy": int(np.count_nonzero(labels["fault"] == HEALTHY)),
         "missing": missing_parts(

@@ -48,6 +48,7 @@ def write_recordings_page(
     facts = {
         "name": name,
         "identity": "",
+        "seen": "",
         "records": len(shown),
         "healthy": healthy,
         "missing": missing_sentences(healthy),

@@ -9,20 +9,29 @@ import numpy as np
 
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable
+from diagnostics.page.wording import counted
 from diagnostics.prediction.released_model import load_model
 from diagnostics.records.state_classes import HEALTHY, class_names
+from diagnostics.training.splits import TEST
 from siggen.errors import UsageError
 
 RIGHT, WRONG = "rightly", "wrongly"
+SEEN, UNSEEN = "seen in training", "no"
 
 
-def predicted_labels(table: RecordTable, folder: Path, own: Sequence[OwnIndicator] = ()) -> dict[str, np.ndarray]:
-    """Return columns `class`, `predicted` and `named`, (records,) each, by the logistic regression of a model folder.
+def predicted_labels(
+    table: RecordTable, identity: str, folder: Path, own: Sequence[OwnIndicator] = ()
+) -> dict[str, np.ndarray]:
+    """Return columns `class`, `predicted`, `named`, `seen`, (records,) each, by a model folder's logistic regression.
+
+    A record is seen where its split is one that the model learnt from or was chosen on, of the very set.
 
     Parameters
     ----------
     table : RecordTable
         Indicators of the whole set.
+    identity : str
+        Of the set.
     folder : Path
         What `siggen-diagnostics train` wrote, or the folder of a report, which holds one as `models`.
     own : sequence of OwnIndicator
@@ -34,7 +43,8 @@ def predicted_labels(table: RecordTable, folder: Path, own: Sequence[OwnIndicato
         If the folder holds no model, or one of other channels.
     """
     inside = folder / "models"
-    model = load_model(inside if inside.is_dir() else folder, own).classifier
+    released = load_model(inside if inside.is_dir() else folder, own)
+    model = released.classifier
     labels, present = table.labels(), set(table.names())
     if lost := [name for name in model.features if name not in present]:
         raise UsageError(
@@ -46,4 +56,22 @@ def predicted_labels(table: RecordTable, folder: Path, own: Sequence[OwnIndicato
     healthy = labels["fault"] == HEALTHY
     known = [name for name in np.unique(labels["state"][healthy]).tolist() if name in model.classes]
     truth = class_names(labels, known[0] if known else None)
-    return {"class": truth, "predicted": predicted, "named": np.where(predicted == truth, RIGHT, WRONG)}
+    seen = (labels["split"] != TEST) & (released.facts.identity == identity)
+    return {
+        "class": truth,
+        "predicted": predicted,
+        "named": np.where(predicted == truth, RIGHT, WRONG),
+        "seen": np.where(seen, SEEN, UNSEEN),
+    }
+
+
+def seen_sentence(seen: Sequence[str]) -> str:
+    """Say how many of the records the model has learnt from; empty where none."""
+    count = sum(one == SEEN for one in seen)
+    if count == 0:
+        return ""
+    return (
+        f"{count} of {counted(len(seen), 'record')} are of the gearboxes that the model was trained or chosen on: they "
+        f"are marked \N{LEFT DOUBLE QUOTATION MARK}{SEEN}\N{RIGHT DOUBLE QUOTATION MARK}. That these are rightly named "
+        "says nothing about other gearboxes."
+    )

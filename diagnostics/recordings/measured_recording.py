@@ -94,7 +94,7 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
     fs_hz = _rate(path, found, facts.fs_hz)
     mapping = _mapping(path, found, names, facts.columns)
     signals = {name: found.values[column] for name, column in mapping.items()}
-    problems = {name: signal_problem(signal) for name, signal in signals.items()}
+    problems = {name: signal_problem(signal, mapping[name]) for name, signal in signals.items()}
     if any(problems.values()):
         listed = "\n".join(f"  channel {name}: {text}" for name, text in problems.items() if text)
         raise UsageError(f"{path}: cannot be used\n{listed}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 import numpy as np
 
 from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
@@ -10,8 +12,12 @@ LARGEST = 1e12
 """No recorder gives such a number, in whatever unit; from the damaged file that does, the squares would overflow."""
 
 
-def signal_problem(signal: np.ndarray) -> str:
-    """Return why a channel (n,) cannot be used, or nothing: not finite, impossibly large, constant, clipped."""
+PULSE_SHARE = 0.5
+"""A vibration that stands at its ends for more than half the time is none; pulses do so nearly always."""
+
+
+def signal_problem(signal: np.ndarray, column: str) -> str:
+    """Return why a channel (n,) of a column cannot be used, or nothing: not finite, too large, constant, clipped."""
     broken = int(np.count_nonzero(~np.isfinite(signal)))
     if broken:
         return f"{broken} of {signal.size} samples are not finite; cut the recording to where it is whole"
@@ -23,6 +29,11 @@ def signal_problem(signal: np.ndarray) -> str:
             f"received values up to {largest:.3g}, allowed: up to {LARGEST:g}; the file is damaged, or its unit wrong"
         )
     share = clipped_share(signal)
+    if share > PULSE_SHARE:
+        return (
+            f"{share:.2%} of the samples stand at {signal.min():g} or {signal.max():g}, as pulses do; if these are "
+            f"those of the tacho, say so: --tacho {shlex.quote(column)}; else name the channels: --channel NAME=COLUMN"
+        )
     if share > LARGEST_CLIPPED_SHARE:
         return (
             f"{share:.2%} of the samples stand clipped at {signal.min():g} or {signal.max():g}, up to "

@@ -32,6 +32,8 @@ def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
             f"nor what attackers on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
             "this report again."
         )
+    if audit.get("too_few_gearboxes"):
+        return str(audit.get("verdict"))
     states = audit.get("strongest", {}).get(ALONE, {}).get("states", [])
     reached = [
         f"{state['state']} {decimal(state['auc']['value'])}"

@@ -4,8 +4,10 @@ Near 1 the bootstrap is too narrow: where every damaged record lies above every 
 resample. So its limits are widened to those of Clopper and Pearson for a proportion among as many independent gearboxes
 as the resamples' variance stands for, and not fewer than there are. Source: Clopper and Pearson 1934, with the
 effective sample size of Korn and Graubard (Survey Methodology 24, 1998, 193-201); its least value, the gearboxes of the
-smaller class, since the variance of an AUC is at most A(1 - A)/min(m, n): Birnbaum and Klose 1957. No AUC gets a higher
-lower limit than 1 itself would, which is 0.025^(1/n). The combination is derived; its coverage is tested.
+smaller class, since the variance of an AUC is at most A(1 - A)/min(m, n): Birnbaum and Klose 1957. Where the resamples
+scatter less than that, more gearboxes count than there are, since each is compared with all of the other class; so
+limits between the ends may be narrower than those of the gearboxes counted. No AUC gets a higher lower limit than 1
+itself would, which is 0.025^(1/n). The combination is derived; its coverage is tested.
 """
 
 from __future__ import annotations

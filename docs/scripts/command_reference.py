@@ -24,7 +24,7 @@ shows the same in a terminal.
 | 1 | unexpected error; run again with `SIGGEN_TRACEBACK=1` for details |
 | 2 | wrong usage or configuration |
 | 3 | done, but some records failed; the set is usable and the manifest names them |
-| 4 | `verify` found a difference, or `audit --strict` found a trap |
+| 4 | `verify` found a difference, or `audit --strict` found a trap or too few gearboxes |
 | 130 | interrupted; the same command goes on where it stopped |
 """
 

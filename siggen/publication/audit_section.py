@@ -10,6 +10,7 @@ from typing import Any
 from siggen.errors import UsageError
 
 AUDIT = "audit.json"
+TOO_FEW = "What attackers reached is not quoted: there are too few gearboxes to tell it from chance.\n"
 UNAUDITED = """## Audit
 
 Nobody has looked for what makes this set trivially separable: no audit was found when it was published. Do not take a
@@ -32,6 +33,7 @@ def audit_section(identity: str, file: Path | None) -> str:
         of, best = found["identity"], found["best_single_indicator"]
         sentences = _sentences(found["verdict"], found["summary"])
         attackers = _strongest(found["strongest"]) if "strongest" in found else _attackers(best)
+        attackers = TOO_FEW if found.get("too_few_gearboxes") else attackers
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{file}: is no {AUDIT} of siggen-diagnostics ({error!r}); run the audit again") from error
     if of != identity:

@@ -177,6 +177,9 @@ def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(t
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "strongest": {"alone": {"states": [entry]}}}))
     publish(KEPT, tmp_path / "again", facts_file(tmp_path), tmp_path)
     assert "| alone | severe | a band | 0.990 | 410 |" in (tmp_path / "again/README.md").read_text()
+    (tmp_path / "audit.json").write_text(json.dumps({**audit, "too_few_gearboxes": True}))
+    publish(KEPT, tmp_path / "few", facts_file(tmp_path), tmp_path)
+    assert "0.980" not in (tmp_path / "few/README.md").read_text()
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "identity": "0" * 64}))
     with pytest.raises(UsageError, match="audit of another set"):
         publish(KEPT, tmp_path / "other", facts_file(tmp_path), tmp_path)

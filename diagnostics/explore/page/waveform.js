@@ -11,8 +11,9 @@ Explore.wave = (row, packed) => {
 Explore.overlaid = (own, other) => {
   const series = [Explore.line("record", "record")];
   if (!other || other.turning !== own.turning) return { series, data: [own.x, own.y] };
-  series.unshift(Explore.line("healthy", "healthy", { alpha: 0.75 }));
-  return { series, data: uPlot.join([[other.x, other.y], [own.x, own.y]]) };
+  // on top and half transparent: a healthy signal is the smaller one, and would be hidden behind the record
+  series.push(Explore.line("healthy", "healthy", { alpha: 0.6 }));
+  return { series, data: uPlot.join([[own.x, own.y], [other.x, other.y]]) };
 };
 
 Explore.angleLabel = (own) => (own.turning ? "pinion revolutions since the first pulse" : "time [s]");

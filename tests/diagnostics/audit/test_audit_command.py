@@ -85,6 +85,26 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
     assert len(json.loads((tmp_path / "audit.json").read_text())["realism"]["quantities"]) == 13
 
 
+def test_too_few_gearboxes_do_not_pass_and_no_file_names_a_length(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    few = planted(Plant(specimens=4, points=1))
+    monkeypatch.setattr(reading, "open", lambda path: few)
+    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict") == 4
+    shown = capsys.readouterr()
+    assert shown.out.startswith("There are too few gearboxes to tell: chance reaches an AUC of ")
+    assert "not passed (--strict)" in shown.err
+    page, numbers = (tmp_path / "audit.html").read_text(), json.loads((tmp_path / "audit.json").read_text())
+    assert numbers["findings"] == []
+    assert numbers["gearboxes_needed"] > 10  # 4 (0.4 / 0.25)^2
+    for text in (shown.out, page, json.dumps(numbers)):
+        assert "No trap was found" not in text
+        assert "is reached from" not in text
+        assert "Interpolated length" not in text
+    lengths = [entries["profile_length_mm_at_auc"] for entries in numbers["strongest"].values()]
+    assert {length for by_auc in lengths for faults in by_auc.values() for length in faults.values()} <= {None}
+
+
 def test_a_folder_without_a_set_is_a_usage_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

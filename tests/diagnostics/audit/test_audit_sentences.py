@@ -13,6 +13,7 @@ from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.card_section import verdict_words
 from diagnostics.audit.detectability import Detection
+from diagnostics.audit.gearboxes_needed import gearboxes_needed
 from diagnostics.audit.separability_findings import verdict
 from diagnostics.statistics.evaluation import Interval
 
@@ -53,6 +54,29 @@ def test_one_gearbox_is_said_to_be_too_few() -> None:
     assert "1\xa0gearbox" in verdict([], 1)
     assert "2\xa0gearboxes" in verdict([], 2)
     assert "As far as the audit can see" in verdict([], 4)
+
+
+def test_where_chance_reaches_what_a_trap_is_accused_of_nothing_is_said_to_be_found() -> None:
+    chance = ChanceLimit(1.0, 8, 100)
+    few = replace(AUDIT, specimens=6, chance=chance, verdict=verdict([], 6, chance))
+    found = audit_summary(few)
+    assert found[0].startswith("There are too few gearboxes to tell: chance reaches an AUC of 1.00.")
+    assert found[0].endswith("Use at least 24\xa0gearboxes in place of 6.")
+    assert not any("is reached from" in sentence or "No attacker found" in sentence for sentence in found)
+    assert verdict_words(few, "severe") == "too few gearboxes to tell (0.95 by the best single indicator)"
+    assert few.tells_too_little
+    told = replace(few, chance=replace(chance, auc=0.89))
+    assert not told.tells_too_little
+    assert "is reached from" in audit_summary(told)[-1]
+
+
+@pytest.mark.parametrize(
+    ("auc", "specimens", "needed"), [(1.0, 6, 24), (0.9, 8, 21), (0.89, 8, None), (math.nan, 8, None)]
+)
+def test_gearboxes_needed_grow_with_the_square_of_what_chance_reaches(
+    auc: float, specimens: int, needed: int | None
+) -> None:
+    assert gearboxes_needed(ChanceLimit(auc, 8, 100), specimens) == needed
 
 
 @pytest.mark.parametrize("auc", [math.nan, 0.9])

@@ -25,6 +25,7 @@ from diagnostics.explore.server import page_server
 from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.indicators.table import record_table
 from diagnostics.release.saved_models import save_models
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
@@ -132,9 +133,14 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
     assert {record["named"] for record in records} <= {"rightly", "wrongly"}
     assert all((record["named"] == "rightly") == (record["predicted"] == record["state"]) for record in records)
     assert 'data-filter="predicted"' in text
+    assert all((record["seen"] == "seen in training") == (record["split"] != "test") for record in records)
+    seen = sum(record["split"] != "test" for record in records)
+    assert f"{seen} of {len(records)}\N{NO-BREAK SPACE}records are of the gearboxes that the model was trained" in text
+    table = record_table(dataset)
+    assert set(predicted_labels(table, "another set", tmp_path / "report")["seen"]) == {"no"}
     other = SimpleNamespace(labels=dict, names=lambda: ("rms__elsewhere",), channels=("elsewhere",))
     with pytest.raises(UsageError, match="columns that the set does not have"):
-        predicted_labels(other, tmp_path / "report")  # type: ignore[arg-type]
+        predicted_labels(other, "", tmp_path / "report")  # type: ignore[arg-type]
 
 
 @pytest.mark.skipif(not BROWSER, reason="needs a browser")

@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from diagnostics.audit.audit import ALONE
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
@@ -55,6 +56,10 @@ def test_an_audit_of_another_set_is_none_of_this_one(dataset: Any, tmp_path: Pat
     assert audit_beside(beside) is None
     audit.write_text(json.dumps({"identity": dataset.manifest["identity"], "verdict": "No trap was found."}))
     assert audit_sentence(beside, audit_beside(beside)) == "No trap was found."
+    reached = {ALONE: {"states": [{"state": "severe", "auc": {"value": 1.0}}]}}
+    few = {"verdict": "Too few.", "too_few_gearboxes": True, "strongest": reached}
+    assert audit_sentence(beside, few) == "Too few."
+    assert "severe 1.00" in audit_sentence(beside, {**few, "too_few_gearboxes": False})
 
 
 def test_meaning_changes_once_gears_have_errors() -> None:

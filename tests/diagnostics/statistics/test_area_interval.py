@@ -56,3 +56,16 @@ def test_the_lower_limit_lies_below_the_true_area_in_95_percent(gearboxes: int, 
     samples = [areas(gearboxes, area, shared, seed) for seed in range(TRIALS)]
     assert np.mean([area_interval(found, gearboxes).low <= area for found in samples]) >= 0.92
     assert np.mean([interval(found, gearboxes).low <= area for found in samples]) < 0.92
+
+
+@pytest.mark.parametrize("gearboxes", [8, 24])
+@pytest.mark.parametrize("shared", [-0.5, 0.0, 0.6])
+def test_both_limits_of_a_mixed_area_hold_where_more_gearboxes_count_than_there_are(
+    gearboxes: int, shared: float
+) -> None:
+    """0.90 of 150: three standard errors of a share of 0.95."""
+    area = 0.8
+    samples = [areas(gearboxes, area, shared, seed) for seed in range(TRIALS)]
+    found = [area_interval(one, gearboxes) for one in samples]
+    assert np.mean([one.low <= area <= one.high for one in found]) >= 0.90
+    assert np.mean([effective_size(one[0], one[1:], gearboxes) > gearboxes for one in samples]) > 0.5
