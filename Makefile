@@ -31,7 +31,7 @@ lint: $(STAMP)
 
 # Files go whole to one of two processes, since their fixtures are sets that all their tests read.
 test: lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow

@@ -19,9 +19,9 @@ from siggen.planning.specimen import Specimen
 SMOOTH, KINKED = (1.4, 50.0), (1.1, 66.0)
 """Radians of the mesh's vibration in one step, and steps per base pitch, of contact across the face and of slices.
 
-At 1.84 rad and 39 steps per pitch the worst of 16 records of quickstart, `contact: face`, erred by 1.3e-3 in a delivered
-channel (`siggen verify DIR --physics 16`); the square of the step and a quarter in hand give these. Slices touch one by
-one, so their force has corners: at the same step the worst of 24 motions erred by 2.7e-3.
+At 1.84 rad and 39 steps per pitch the worst of 16 records of quickstart, `contact: face`, erred by 1.3e-3 in a
+delivered channel (`siggen verify DIR --physics 16`); the square of the step and a quarter in hand give these. Slices
+touch one by one, so their force has corners: at the same step the worst of 24 motions erred by 2.7e-3.
 """
 USUAL_TOLERANCE = 1e-3
 MESH_SHARE = 0.05
