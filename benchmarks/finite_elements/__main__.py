@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks.finite_elements import comparison, coupling, face_kernel, face_losses, single_pair
+from benchmarks.finite_elements import comparison, coupling, face_kernel, face_losses, neighbour_face, single_pair
 
 TABLES = {
     "models": comparison.model_table,
@@ -21,6 +21,7 @@ TABLES = {
     "face": face_kernel.kernel_table,
     "face_losses": face_losses.loss_table,
     "misalignment": face_losses.misalignment_table,
+    "neighbour_face": neighbour_face.neighbour_face_table,
     "single_pair": single_pair.single_pair_table,
 }
 
