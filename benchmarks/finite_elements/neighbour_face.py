@@ -65,7 +65,11 @@ def neighbour_face_table() -> Iterator[str]:
     """Lines of how the neighbour moves across the face: ends over mean, and its tilt over that of the loaded tooth."""
     pair = bench_pair()
     width = pair.face_width_m / pair.pinion.module_m
-    heads = ("mean, neighbour / loaded tooth", "neighbour: one end, middle, other end / mean", "tilt, neighbour / loaded")
+    heads = (
+        "mean, neighbour / loaded tooth",
+        "neighbour: one end, middle, other end / mean",
+        "tilt, neighbour / loaded",
+    )
     yield f"| z | load | {' | '.join(heads)} |"
     yield "|---|---|---|---|---|"
     places = np.cos(np.pi * np.arange(MODES) * np.array([[0.0], [0.5], [1.0]])) * np.where(np.arange(MODES), 2.0, 1.0)
