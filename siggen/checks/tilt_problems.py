@@ -80,9 +80,8 @@ def _tilts_over_places_rad(
     """Return tilts (4,) [rad] of one gear at equally likely places on its shaft, all other numbers in their middle."""
     shafts: Any = dynamics.shafts
     shaft: Shaft = getattr(shafts, which)
-    halves = {"bearing_span_mm": at(shaft.bearing_span_mm, 0.5), "diameter_mm": at(shaft.diameter_mm, 0.5)}
-    if diameter_mm is not None:
-        halves["diameter_mm"] = diameter_mm
+    thickness = at(shaft.diameter_mm, 0.5) if diameter_mm is None else diameter_mm
+    halves = {"bearing_span_mm": at(shaft.bearing_span_mm, 0.5), "diameter_mm": thickness}
     middle = _in_the_middle(dynamics, which)
     tilts = []
     for place in (0.125, 0.375, 0.625, 0.875):
@@ -105,18 +104,15 @@ def _in_the_middle(dynamics: Dynamics, which: str) -> Dynamics:
     return dynamics.model_copy(update={which: rotor, "casing": casing})
 
 
-def static_tilts_rad(
-    dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float, diameter_mm: float | None = None
-) -> tuple[float, float]:
+def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float) -> tuple[float, float]:
     """Return least and largest tilt [rad] of one gear under a motor torque, over the bounds of shaft and bearings."""
     shaft: Shaft = getattr(dynamics.shafts, which)
     rotor: Rotor = getattr(dynamics, which)
     caps = dynamics.casing.caps
     along = {"vertical": np.cos(pair.working_pressure_angle_rad), "horizontal": np.sin(pair.working_pressure_angle_rad)}
     bearings = {"vertical": rotor.bearing_stiffness_y_n_per_m, "horizontal": rotor.bearing_stiffness_x_n_per_m}
-    diameters = bounds(shaft.diameter_mm) if diameter_mm is None else (diameter_mm,)
     found = []
-    for span, place, thick in product(bounds(shaft.bearing_span_mm), bounds(shaft.gear_position), diameters):
+    for span, place, thick in product(*map(bounds, (shaft.bearing_span_mm, shaft.gear_position, shaft.diameter_mm))):
         beam = Beam(1e-3 * span, place, 1e-3 * thick, pair.youngs_modulus_pa, pair.poisson_ratio, 0.0)
         each = []
         for axis, share in along.items():
