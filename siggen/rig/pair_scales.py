@@ -20,8 +20,8 @@ Two = tuple[float, float]
 class PairScales(NamedTuple):
     """Factors; those that are two belong to pinion and gear, or to input and output.
 
-    `gear_order` is that of the gear shaft's turns per turn of the pinion, `size` that of the centre distance, `load` that of
-    the tooth force.
+    `gear_order` is that of the gear shaft's turns per turn of the pinion, `size` that of the centre distance, `load`
+    that of the tooth force.
     """
 
     module: float
