@@ -103,7 +103,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
             "floor.machines_n_per_sqrt_hz": scales.load,
             "shafts.coupling_stiffness_n_per_um": scales.load,
             "shafts.rotor_mass_kg": mass,
-            "second_stage.order": scales.teeth,
+            "second_stage.order": scales.gear_order,
         },
     }
 

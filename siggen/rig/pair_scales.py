@@ -20,12 +20,13 @@ Two = tuple[float, float]
 class PairScales(NamedTuple):
     """Factors; those that are two belong to pinion and gear, or to input and output.
 
-    `teeth` is that of the pinion's number, `size` that of the centre distance, `load` that of the tooth force.
+    `gear_order` is that of the gear shaft's turns per turn of the pinion, `size` that of the centre distance, `load`
+    that of the tooth force.
     """
 
     module: float
     face_width: float
-    teeth: float
+    gear_order: float
     torque: float
     load: float
     size: float
@@ -60,7 +61,7 @@ def _ratios(before: Rig, after: Rig, torque: float) -> PairScales:
     return PairScales(
         after.module_mm / before.module_mm,
         after.face_width_mm / before.face_width_mm,
-        after.teeth[0] / before.teeth[0],
+        after.teeth[0] / after.teeth[1] / (before.teeth[0] / before.teeth[1]),
         torque,
         new.load_share / old.load_share,
         new.scale / old.scale,

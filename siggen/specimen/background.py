@@ -32,7 +32,7 @@ from siggen.specimen.structure import casing_numbers, structure
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
 ENTRIES = ("second_stage", "auxiliary_drive")
-"""Sources that press on the housing at a place of their own."""
+"""Sources that press on the flexible housing at a place of their own."""
 AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
 MACHINES = {"motor": "pinion", "load": "gear"}
@@ -91,7 +91,7 @@ def specimen_background(
         bolts = bolt_elements(casing, pair.working_pressure_angle_rad)
         assembled = on_base(assembled, bolts, _base(section.base))
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
-    directions = _directions(assembled, section, uniform)
+    directions = _directions(assembled, section, uniform, pair.pinion.base_radius_m + pair.gear.base_radius_m)
     shafts = _shafts(config.background, uniform)
     if not directions:
         return SpecimenBackground(section, shafts, (), {})
@@ -127,7 +127,9 @@ def _base(section: BaseSection) -> Base:
     )
 
 
-def _directions(assembled: Structure, section: Background, uniform: Callable[[str], float]) -> dict[str, FloatArray]:
+def _directions(
+    assembled: Structure, section: Background, uniform: Callable[[str], float], arm_m: float
+) -> dict[str, FloatArray]:
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
     if section.rubbing is not None or section.floor is not None:
@@ -141,10 +143,20 @@ def _directions(assembled: Structure, section: Background, uniform: Callable[[st
             rows = _on_rotor(assembled, shaft) - _on_base(assembled)
             found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
-    for name in ENTRIES:
-        if getattr(section, name) is not None:
-            found[name] = _turned(_moved(assembled, ("x_c", "y_c")), _angle(uniform, name))
+    if section.second_stage is not None:
+        found["second_stage"] = _couple(assembled, arm_m)
+    if section.auxiliary_drive is not None:
+        found["auxiliary_drive"] = _turned(_moved(assembled, ("x_c", "y_c")), _angle(uniform, "auxiliary_drive"))
     return found
+
+
+def _couple(assembled: Structure, arm_m: float) -> FloatArray:
+    """Return what a mesh inside does to the housing: equal and opposite forces on the seats of both shafts.
+
+    Their sum is nothing, their moment is the force times the distance of both lines of action, the sum of the base
+    radii. That of the stage simulated stands for the other one's.
+    """
+    return np.array([arm_m if name == "phi_c" else 0.0 for name in assembled.coordinates])
 
 
 def _on_seat(assembled: Structure, name: str) -> FloatArray:

@@ -116,6 +116,23 @@ def test_adding_a_sensor_leaves_the_bytes_of_the_others() -> None:
     assert alone.tobytes() == both.tobytes()
 
 
+def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
+    # a mesh inside presses on two seats with equal and opposite forces: far above all modes a = F arm x / I
+    places = (0.0, 100.0, -200.0)
+    lids = [{**LID, "name": f"lid{k}", "position_mm": [x, 0.0]} for k, x in enumerate(places)]
+    config = loaded(*lids, background={"second_stage": {"order": 4.13}})
+    specimen = draw_specimen(config, 0)
+    background = specimen_instrument(config, specimen).background
+    assert background is not None
+    assert background.inputs == ("second_stage",)
+    gears, casing = config.gears, config.dynamics.casing
+    centre_mm = 0.5 * gears.module_mm * (gears.pinion.teeth + gears.gear.teeth)
+    arm_m = 1e-3 * centre_mm * np.cos(np.radians(gears.pressure_angle_deg))
+    for k, x in enumerate(places):
+        expected = 1e-3 * x * arm_m / float(casing.inertia_kg_m2)
+        assert background.responses[f"lid{k}_vertical"][0, -1].real == pytest.approx(expected, rel=0.05, abs=1e-4)
+
+
 def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
     config = loaded(background=ALL)
     for record_id, found in zip([0, 1], simulate_specimen(config, [0, 1]), strict=True):
