@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from siggen.sets.extension import extend
     from siggen.sets.generation import generate
     from siggen.sets.parts import generate_part, merge
+    from siggen.sets.recorded_set import write_recorded_set
     from siggen.views.stiffness_curves import mesh_stiffness_curves, mesh_stiffness_meaning
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "plan",
     "simulate",
     "write_card_section",
+    "write_recorded_set",
 ]
 
 _HOMES = {
@@ -46,6 +48,7 @@ _HOMES = {
     "plan": ("siggen.planning.plan", "plan"),
     "simulate": ("siggen.record.simulation", "simulate"),
     "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
+    "write_recorded_set": ("siggen.sets.recorded_set", "write_recorded_set"),
 }
 
 

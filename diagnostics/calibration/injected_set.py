@@ -1,27 +1,43 @@
-"""A table of healthy recordings and of the same with injected damage, with the origin of every row."""
+"""A set of healthy recordings and of the same with injected damage, with the origin of every row.
+
+Where a generated set has a gearbox (`specimen_id`) it has a recording: all rows of one are on one side of the split.
+"""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+import pyarrow as pa
 
-from diagnostics.base.seeding import Purpose, generator
-from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
-from diagnostics.calibration.injection import SPARE_TURNS, Difference, injected, simulated_differences
+import siggen
+from diagnostics.calibration.healthy_blocks import HealthyBlocks
+from diagnostics.calibration.injected_rows import RECORDED, injected_rows
 from siggen.errors import UsageError
 
-TABLE, FACTS, README = "injected.parquet", "injected.json", "README.md"
-KEPT = ("state", "fault", "severity", "faulty_gear", "damaged_area_mm2", "damage_profile_length_mm", "torque_nm")
+ORIGIN = pa.schema(
+    {
+        "recording": pa.string(),
+        "origin": pa.string(),
+        "simulated_gearbox": pa.int64(),
+        "path_number": pa.int64(),
+        "identity": pa.string(),
+        "difference_db": pa.float64(),
+        "difference_torque_nm": pa.float64(),
+    }
+)
 TEXT = """# Recordings with injected damage
 
 Rows with `origin` recorded are your healthy recordings. Rows with `origin` injected are the same recordings plus the
 simulated difference between a damaged and a healthy gearbox, at the recording's own course of speed. `recording` names
-the file; `specimen_id`, `path_number`, `identity` and `difference_db` (energy of the difference over that of the
-recording) say what was added. All rows of a recording belong on one side of any split.
+the file; `simulated_gearbox`, `path_number`, `identity`, `difference_torque_nm` and `difference_db` (energy of the
+difference over that of the recording) say what was added; -1 stands for nothing.
+
+`specimen_id` is the number of the recording, so all rows of a recording are on one side of the split: the last fifth,
+one at least, is the test. Recordings are cut to the length of the shortest. `torque_nm` is the middle of the
+configuration's range in all rows: a recording does not say it. `siggen-diagnostics train` reads this folder; it needs
+two recordings for training and one for the test.
 
 **Your recordings are in this folder. `siggen publish` refuses it.** Whether a detector gains by such rows is open:
 `docs/scripts/transfer_control.py` compares them with shuffled phases and white noise.
@@ -31,7 +47,7 @@ recording) say what was added. All rows of a recording belong on one side of any
 def write_injected(
     blocks: HealthyBlocks, mine: Path, gearboxes: int, folder: Path, seed: int, advance: Callable[[], None]
 ) -> Path:
-    """Write the table into a new folder; return its file.
+    """Write the set into a new folder; return the folder.
 
     Parameters
     ----------
@@ -50,58 +66,22 @@ def write_injected(
     UsageError
         If no damage could be simulated.
     """
-    import pyarrow as pa
-    from pyarrow import parquet
-
-    rows = list(_rows(blocks, mine, gearboxes, seed, advance))
-    if all(row["origin"] == "recorded" for row in rows):
+    config = siggen.load_config(mine)
+    rows = list(injected_rows(blocks, mine, gearboxes, seed, advance))
+    if all(row["origin"] == RECORDED for row in rows):
         raise UsageError(f"{mine}: no damage could be simulated; see siggen plan {mine}")
-    folder.mkdir(parents=True)
-    table = pa.Table.from_pylist(rows).replace_schema_metadata({"fs_hz": repr(blocks.fs_hz), "siggen.injected": "1"})
-    parquet.write_table(table, folder / TABLE)
+    _complete(rows, config)
     facts = {"kind": "injected", "configuration": mine.name, "recordings": [block.name for block in blocks.blocks]}
-    (folder / FACTS).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
-    (folder / README).write_text(TEXT, encoding="utf-8")
-    return folder / TABLE
+    return siggen.write_recorded_set(config, folder, rows, ORIGIN, facts, TEXT)
 
 
-def _rows(
-    blocks: HealthyBlocks, mine: Path, gearboxes: int, seed: int, advance: Callable[[], None]
-) -> Iterator[dict[str, Any]]:
-    for number, block in enumerate(blocks.blocks):
-        yield _row(block, dict(block.channels), None, 0)
-        for k in range(gearboxes):
-            gearbox = number * gearboxes + k
-            start = int(generator(seed, Purpose.PATHS, 0, 1 + gearbox).integers(SPARE_TURNS))
-            for difference in simulated_differences(mine, block, gearbox):
-                yield _row(block, injected(block, difference, start), difference, gearbox)
-            advance()
-
-
-def _row(block: Block, channels: dict[str, np.ndarray], difference: Difference | None, gearbox: int) -> dict[str, Any]:
-    signals = {f"accel_{name}_m_s2": signal.astype(np.float32) for name, signal in channels.items()}
-    if difference is None:
-        labels: dict[str, Any] = dict.fromkeys(KEPT) | {"state": "healthy", "fault": "healthy", "severity": "healthy"}
-        return {"recording": block.name, "origin": "recorded", **labels, **_nothing(), **signals, **_pulses(block)}
-    added = sum(float(np.mean(signal**2)) for signal in difference.channels.values())
-    own = sum(float(np.var(signal)) for signal in block.channels.values())
-    numbers = [value for name, value in difference.labels.items() if name.startswith("path_number_")]
-    return {
-        "recording": block.name,
-        "origin": "injected",
-        **{name: difference.labels[name] for name in KEPT},
-        "specimen_id": gearbox,
-        "path_number": int(numbers[0]) if numbers else 0,
-        "identity": difference.identity,
-        "difference_db": 10.0 * float(np.log10(max(added, 1e-30) / own)),
-        **signals,
-        **_pulses(block),
-    }
-
-
-def _nothing() -> dict[str, Any]:
-    return dict.fromkeys(("specimen_id", "path_number", "identity", "difference_db"))
-
-
-def _pulses(block: Block) -> dict[str, Any]:
-    return {"tacho_s": block.pulses_s}
+def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
+    """Add what rows of one set have in common: numbers of the states, teeth, the torque that is assumed."""
+    torque = config.canonical()["operating_points"][0]["torque_nm"]
+    drawn = torque.get("values") or (torque["low"], torque["high"]) if isinstance(torque, dict) else (torque,)
+    torque_nm = 0.5 * (min(drawn) + max(drawn))
+    states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
+    numbers = {state: number for number, state in enumerate(states)}
+    for row in rows:
+        row["state_id"], row["torque_nm"] = numbers[row["state"]], float(torque_nm)
+        row |= {"teeth_pinion": config.gears.pinion.teeth, "teeth_gear": config.gears.gear.teeth}

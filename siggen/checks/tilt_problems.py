@@ -36,7 +36,8 @@ def tilt_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Ite
         return
     for pair in pairs:
         tilts = flank_tilts(sections, pair)
-        if tilts.median_rad > tilts.limit_rad:
+        # half of the gearboxes tilt no farther than the one at all bounds
+        if tilts.largest_rad > tilts.limit_rad and median_tilt_rad(sections, pair) > tilts.limit_rad:
             yield _problem(sections["dynamics"], pair, tilts)
             return
 
@@ -48,8 +49,6 @@ class FlankTilts(NamedTuple):
     limit_rad: float
     ranges_rad: dict[str, tuple[float, float]]
     """Least and largest tilt of pinion and gear, with signs."""
-    median_rad: float
-    """Size of the sum over both gears that half of the gearboxes exceed."""
 
     @property
     def largest_rad(self) -> float:
@@ -61,12 +60,21 @@ class FlankTilts(NamedTuple):
 def flank_tilts(sections: Mapping[str, Any], pair: GearPair) -> FlankTilts:
     """Return the tilts of a pair under the largest torque of all operating points, over the bounds of the numbers."""
     dynamics, points = sections["dynamics"], sections["operating_points"]
-    torque_nm = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
+    torque_nm = _largest_torque_nm(sections)
     options = face_options(dynamics, largest_force_n(points, pair))
     solver = table_solver(pair, stiffness_options(sections["stiffness"]), options, np.zeros(1))
     ranges = {which: static_tilts_rad(dynamics, which, pair, torque_nm) for which in MEMBERS}
-    median_rad = _median_rad(*(_tilts_over_places_rad(dynamics, which, pair, torque_nm) for which in MEMBERS))
-    return FlankTilts(torque_nm, largest_tilt_rad(solver), ranges, median_rad)
+    return FlankTilts(torque_nm, largest_tilt_rad(solver), ranges)
+
+
+def median_tilt_rad(sections: Mapping[str, Any], pair: GearPair) -> float:
+    """Return the size of the flanks' tilt that half of the gearboxes exceed under the largest torque."""
+    dynamics, torque_nm = sections["dynamics"], _largest_torque_nm(sections)
+    return _median_rad(*(_tilts_over_places_rad(dynamics, which, pair, torque_nm) for which in MEMBERS))
+
+
+def _largest_torque_nm(sections: Mapping[str, Any]) -> float:
+    return float(max(abs(limit) for point in sections["operating_points"] for limit in bounds(point.torque_nm)))
 
 
 def _median_rad(pinion_rad: NDArray[np.float64], gear_rad: NDArray[np.float64]) -> float:

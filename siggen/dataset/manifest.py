@@ -20,6 +20,8 @@ CARD = "README.md"
 RUN = "run.json"
 PHYSICS = "physics.json"
 """What `siggen verify --physics` found last; beside the set, in no manifest."""
+INJECTED = "injected.json"
+"""In a set of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 METADATA_FOLDER = "metadata"
 DAMAGE_FOLDER = "damage"
 SPLITS = ("train", "validation", "test")

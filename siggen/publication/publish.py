@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from siggen.config.path import MeasuredPath
 from siggen.dataset.card import TAGS
-from siggen.dataset.manifest import CARD, MANIFEST
+from siggen.dataset.manifest import CARD, INJECTED, MANIFEST
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
@@ -30,8 +30,6 @@ from siggen.publication.published_card import published_card
 if TYPE_CHECKING:
     from siggen.config import Config
 
-INJECTED = "injected.json"
-"""In a folder of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 CROISSANT, DATACITE, PREVIEWS = "croissant.json", "datacite.json", "previews"
 
 

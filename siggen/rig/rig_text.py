@@ -12,6 +12,7 @@ PLACES_MM = (
     (100.0, -20.0, "horizontal"),
 )
 """Of sensors on the casing of bench; further sensors take the same again a little lower."""
+BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
 SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
 SECOND_STAGE_TEETH = range(17, 29)
@@ -42,7 +43,7 @@ def _head(rig: Rig, name: str, base: str, numbers: RigNumbers) -> str:
 # Made by `siggen init`. What stands here differs from the preset {base}; all else is its own.
 # `siggen plan` says what follows from it and what is implausible. Numbers that you know better: change them here.
 
-name: {name}
+name: {_quoted(name)}
 extends: {base}
 specimens: 40                 # gearboxes; more only add records
 fs_hz: {numbers.fs_hz:g}              # carries ten mesh harmonics
@@ -115,6 +116,8 @@ def _rotor(name: str, rotor: RotorNumbers) -> str:
 
 def _states(rig: Rig) -> str:
     m = rig.module_mm
+    skew = 0.15 * min(1.0, (m / rig.face_width_mm) / (BENCH_MODULE_MM / BENCH_FACE_MM))
+    skews = f"{{kind: uniform, low: {-skew:.3g}, high: {skew:.3g}}}"
     radius = f"{{kind: uniform, low: {0.007 * m:.2g}, high: {min(0.07 * m, 0.2):.2g}}}"
     return f"""\
 states:                       # on one tooth of the pinion; sizes grow with the module
@@ -128,6 +131,8 @@ states:                       # on one tooth of the pinion; sizes grow with the 
       profile_length_mm: {0.2 * m:.3g}
       face_share: 0.25
       edge_radius_mm: {radius}
+      leading_skew_mm_per_10mm: {skews}
+      trailing_skew_mm_per_10mm: {skews}
   - name: moderate
     damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
   - name: severe
@@ -192,3 +197,8 @@ def _number(value: float) -> str:
     """Return three digits, without an exponent where four or five places do."""
     rounded = float(f"{value:.3g}")
     return f"{rounded:.0f}" if 100.0 <= rounded < 1e5 else f"{rounded:g}"
+
+
+def _quoted(name: str) -> str:
+    """Return a name as YAML reads it as a text: one that begins with a digit may pass for a number."""
+    return f'"{name}"' if name[:1].isdigit() else name

@@ -18,6 +18,7 @@ from siggen.dataset.environment import environment
 from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
+    INJECTED,
     MANIFEST,
     METADATA_FOLDER,
     PHYSICS,
@@ -141,6 +142,8 @@ def verify(
 def why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
     """Return why no record of a set can be compared with a new simulation, or an empty string."""
     made_by, schema = simulation_version(manifest), manifest.get("schema_version")
+    if INJECTED in manifest.get("files", ()):
+        return f"{HASHES_ALONE}: its rows hold recordings, which no simulation makes again"
     head = f"{HASHES_ALONE}; {counted(min(sample, manifest.get('rows', sample)), 'record')} not simulated again: "
     if schema not in READ_VERSIONS:
         return f"{head}its files have schema version {schema}, this siggen reads {' and '.join(READ_VERSIONS)}"

@@ -17,6 +17,7 @@ RIGS = {
     "fine": ["--teeth", "19,19", "--module", "0.8", "--face-width", "8", "--speed", "50", "--torque", "1"],
     "at the band": ["--teeth", "20,40", "--module", "0.8", "--face-width", "8", "--speed", "50", "--torque", "1"],
     "large": ["--teeth", "21,83", "--module", "8", "--face-width", "100", "--speed", "10,25", "--torque", "1000,3000"],
+    "wide": ["--teeth", "17,80", "--module", "10", "--face-width", "100", "--speed", "10,20", "--torque", "5000"],
     "28/28": ["--teeth", "28,28", "--module", "3.175", "--face-width", "6.35", "--speed", "23", "--torque", "160"],
 }
 
@@ -33,6 +34,13 @@ def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: 
     assert implausible(config) == ()
     assert len(config.channels) == 3
     assert [state.severity for state in config.states] == ["healthy", "healthy", "slight", "moderate", "severe"]
+
+
+def test_a_load_that_is_light_for_the_errors_of_the_gears_is_told(tmp_path: Path) -> None:
+    """The reach of a tilt grows with the load, errors of the teeth do not."""
+    fine = ["--teeth", "18,47", "--module", "0.8", "--face-width", "8", "--speed", "20,30", "--torque"]
+    found = [run(*fine, torque, "--out", str(tmp_path / f"{torque}.yaml")).output for torque in ("1", "4")]
+    assert ["outside_model" in text for text in found] == [True, False]
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
 
+import siggen
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
+from diagnostics.calibration.injected_rows import splits_of
 from diagnostics.calibration.injected_set import write_injected
 from diagnostics.calibration.injection import (
     SHUFFLED,
@@ -21,6 +22,7 @@ from diagnostics.calibration.injection import (
     injected,
     simulated_differences,
 )
+from siggen.sets.verification import verify
 
 SPEED_HZ, FS_HZ = 34.0, 25_600.0
 SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 1.5, "face_share": 1.0}
@@ -108,18 +110,36 @@ def test_controls_keep_the_energy_and_the_shuffled_one_every_line(simulated: tup
     np.testing.assert_allclose(np.abs(np.fft.rfft(shuffled))[1:-1], power[1:-1], rtol=1e-6, atol=1e-9 * power.max())
 
 
-def test_every_row_says_what_it_was_made_of(mine: Path, simulated: tuple[Block, Difference], tmp_path: Path) -> None:
+def test_every_row_says_what_it_was_made_of_and_a_recording_is_on_one_side(
+    mine: Path, simulated: tuple[Block, Difference], tmp_path: Path
+) -> None:
     block, _ = simulated
-    blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ)
-    table = pq.read_table(write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None))
-    rows = table.select(["recording", "origin", "state", "specimen_id", "difference_db"]).to_pylist()
-    assert [row["origin"] for row in rows] == ["recorded", "injected"]
-    assert rows[1]["recording"] == "run"
+    rng = np.random.default_rng(1)
+    longer = {name: np.append(rng.permutation(signal), signal[:100]) for name, signal in block.channels.items()}
+    blocks = HealthyBlocks((block, Block("other", longer, FS_HZ, block.pulses_s)), tuple(block.channels), FS_HZ)
+    found = siggen.open(write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None))
+    rows = found.labels(columns=["recording", "origin", "state", "split", "specimen_id", "difference_db"]).to_pylist()
+    assert [row["origin"] for row in rows] == ["recorded", "injected"] * 2
+    assert [(row["recording"], row["split"], row["specimen_id"]) for row in rows[::2]] == [
+        ("run", "train", 0),
+        ("other", "test", 1),
+    ]
     assert rows[1]["state"] == "severe"
     assert np.isfinite(rows[1]["difference_db"])
-    recorded = np.asarray(table["accel_lid_vertical_m_s2"][0].values)
-    np.testing.assert_allclose(recorded, block.channels["lid_vertical"], rtol=1e-6)
-    assert json.loads((tmp_path / "set" / "injected.json").read_text())["recordings"] == ["run"]
+    for number, own in ((0, block.channels), (2, longer)):
+        recorded = found.record(number)
+        np.testing.assert_allclose(recorded["accel_lid_vertical_m_s2"], own["lid_vertical"][:15_360], rtol=1e-6)
+    assert json.loads((tmp_path / "set" / "injected.json").read_text())["recordings"] == ["run", "other"]
+    assert verify(tmp_path / "set", sample=1).mismatches == ()
+
+
+@pytest.mark.parametrize("recordings", range(1, 12))
+def test_two_recordings_train_and_the_last_is_the_test(recordings: int) -> None:
+    splits = splits_of(recordings)
+    assert len(splits) == recordings
+    assert list(splits) == sorted(splits, key=("train", "validation", "test").index)
+    assert recordings == 1 or splits[-1] == "test"
+    assert recordings < 3 or splits.count("train") >= 2
 
 
 def test_publishing_injected_recordings_is_refused(

@@ -1,0 +1,157 @@
+"""A set whose rows hold recordings: the files of a generated set, so that every reader of sets takes it.
+
+Where a generated set has gearboxes (`specimen_id`), it may have recordings; ids, labels and splits are those of the
+rows. No simulation makes such rows again, so `siggen verify` compares hashes alone, and it is never published.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+from siggen.columns.column import list_of
+from siggen.columns.record import TACHO_COLUMN, channels, damage_schema, record_schema, schema_metadata
+from siggen.dataset.environment import environment
+from siggen.dataset.folder import config_bytes
+from siggen.dataset.manifest import (
+    CARD,
+    CONFIG,
+    DAMAGE_FOLDER,
+    INJECTED,
+    MANIFEST,
+    METADATA_FOLDER,
+    SPLITS,
+    build_manifest,
+)
+from siggen.dataset.seal import json_bytes, sealed
+from siggen.dataset.shard import FileFacts, write_table
+from siggen.dataset.sidecar import Sidecar, data_name, id_ranges, put_sidecar
+from siggen.dataset.storage import LocalFolder
+from siggen.errors import DatasetError
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+IDS = ("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split")
+LABELS = (
+    *("fault", "severity", "faulty_gear", "damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm"),
+    *("mesh_stiffness_loss", "teeth_pinion", "teeth_gear", "speed_hz", "torque_nm"),
+)
+GROUP_ROWS = 16
+
+Row = Mapping[str, Any]
+
+
+def write_recorded_set(
+    config: Config, folder: Path, rows: Sequence[Row], origin: pa.Schema, facts: Mapping[str, Any], card: str
+) -> Path:
+    """Write rows with signals into a new folder that `siggen.open` reads; return the folder.
+
+    Parameters
+    ----------
+    config : Config
+        Gives channels, rate and the types of the labels.
+    folder : Path
+        New or empty.
+    rows : sequence of mapping
+        By ascending `record_id`, those of a split together: IDS, LABELS, the columns of `origin`, `signals` with one
+        (n,) [m/s²] per channel, and `tacho_s`. Signals are cut to the shortest.
+    origin : pyarrow.Schema
+        Further columns, which say where a row comes from.
+    facts : mapping
+        What `injected.json` says.
+    card : str
+        README.md.
+
+    Raises
+    ------
+    DatasetError
+        If the folder is not empty.
+    """
+    storage = LocalFolder(folder)
+    if storage.names():
+        raise DatasetError(f"{folder}: is not empty; give a new folder")
+    samples = min(len(signal) for row in rows for signal in row["signals"])
+    identity = _identity(rows, config.identity)
+    schema = _schema(config, origin, samples)
+    shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
+    sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
+    tables = [table for sidecar in sidecars for table in _write_tables(storage, config, schema, sidecar, shares)]
+    storage.put(CONFIG, config_bytes(config))
+    storage.put(CARD, card.encode())
+    storage.put(INJECTED, json_bytes(facts))
+    about = {
+        "name": f"{config.name}_recorded",
+        "identity": identity,
+        "seed": config.seed,
+        "specimens": len({row["specimen_id"] for row in rows}),
+        "fs_hz": float(config.fs_hz),
+        "duration_s": samples / float(config.fs_hz),
+        "channels": [asdict(channel) for channel in channels(config)],
+    }
+    storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, INJECTED])))
+    return folder
+
+
+def _identity(rows: Sequence[Row], configuration: str) -> str:
+    digest = hashlib.sha256(configuration.encode())
+    for row in rows:
+        for signal in row["signals"]:
+            digest.update(signal.astype(np.float32).tobytes())
+    return digest.hexdigest()
+
+
+def _schema(config: Config, origin: pa.Schema, samples: int) -> pa.Schema:
+    """Return the columns, those that a generated set has too as they are there."""
+    own = record_schema(config)
+    signals = [own.field(channel.column).with_type(list_of(pa.float32(), samples)) for channel in channels(config)]
+    metadata = {**schema_metadata(config), "duration_s": repr(samples / float(config.fs_hz))}
+    labels = [own.field(name) for name in (*IDS, *LABELS)]
+    return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)
+
+
+def _write_rows(storage: LocalFolder, schema: pa.Schema, split: str, identity: str, rows: Sequence[Row]) -> Sidecar:
+    """Write the shard of a split and commit it."""
+    key, states = f"{split}-00000", [row["state"] for row in rows]
+    sidecar = Sidecar(
+        shard=key,
+        split=split,
+        identity=identity,
+        data=write_table(storage, data_name(key), schema, _batches(rows, schema), GROUP_ROWS),
+        specimens=id_ranges(sorted({row["specimen_id"] for row in rows})),
+        records=id_ranges(row["record_id"] for row in rows),
+        rows_per_state={state: states.count(state) for state in dict.fromkeys(states)},
+        failures=(),
+        environment=environment(),
+    )
+    put_sidecar(storage, sidecar)
+    return sidecar
+
+
+def _batches(rows: Sequence[Row], schema: pa.Schema) -> Iterator[pa.RecordBatch]:
+    fields = [field for field in schema if pa.types.is_fixed_size_list(field.type)]
+    samples, duration_s = fields[0].type.list_size, float(schema.metadata[b"duration_s"])
+    for row in rows:
+        signals = zip(fields, row["signals"], strict=True)
+        cut = {field.name: signal[:samples].astype(np.float32) for field, signal in signals}
+        inside = row[TACHO_COLUMN.name][row[TACHO_COLUMN.name] < duration_s]
+        yield pa.RecordBatch.from_pylist([{**row, **cut, TACHO_COLUMN.name: inside}], schema=schema)
+
+
+def _write_tables(
+    storage: LocalFolder, config: Config, schema: pa.Schema, sidecar: Sidecar, shares: Mapping[str, Sequence[Row]]
+) -> Iterable[FileFacts]:
+    """Write the labels of a split, and its table of damage, which is empty: labels say what was simulated."""
+    fields = [field for field in schema if not pa.types.is_list(field.type) | pa.types.is_fixed_size_list(field.type)]
+    names = pa.schema(fields, metadata=schema.metadata)
+    labels = [{name: row[name] for name in names.names} for row in shares[sidecar.split]]
+    batch = pa.RecordBatch.from_pylist(labels, schema=names)
+    yield write_table(storage, f"{METADATA_FOLDER}/{sidecar.split}.parquet", names, [batch], GROUP_ROWS)
+    name = f"{DAMAGE_FOLDER}/{sidecar.split}.parquet"
+    yield write_table(storage, name, damage_schema(config), [], GROUP_ROWS)
