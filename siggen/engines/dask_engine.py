@@ -9,9 +9,9 @@ from functools import partial
 from typing import Any
 
 from siggen.engines.orphan import end_with
-from siggen.engines.processes import WINDOW_PER_WORKER
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
+from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
 from siggen.errors import EngineError, UsageError
 
@@ -56,22 +56,15 @@ class DaskEngine:
         """
         from distributed import wait
 
-        source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
         call = answer if self.address is not None else partial(_child_answer, os.getpid())
         with self._client() as client:
-            while True:
-                while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
-                    try:
-                        task = next(source)
-                    except StopIteration:
-                        break
-                    opened[client.submit(call, function, task, pure=False)] = (taken, task)
-                    taken += 1
-                if not opened:
-                    return
-                for future in wait(list(opened), return_when="FIRST_COMPLETED").done:
-                    index, task = opened.pop(future)
-                    yield index, _value(future, task)
+            yield from windowed(
+                tasks,
+                self.workers,
+                submit=lambda task: client.submit(call, function, task, pure=False),
+                finished=lambda opened: wait(opened, return_when="FIRST_COMPLETED").done,
+                value=_value,
+            )
 
     @contextmanager
     def _client(self) -> Iterator[Any]:

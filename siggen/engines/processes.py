@@ -10,11 +10,9 @@ from typing import Any
 
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
+from siggen.engines.window import WINDOW_PER_WORKER
 from siggen.engines.worker import DONE, RAISED, READY, Worker
 from siggen.errors import EngineError, UsageError
-
-WINDOW_PER_WORKER = 4
-"""Tasks that may be ahead of the oldest unfinished one, per worker: enough for uneven tasks, and bounded memory."""
 
 TASK_ATTEMPTS = 3
 START_ATTEMPTS = 3

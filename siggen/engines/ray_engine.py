@@ -10,12 +10,14 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stdout
+from functools import partial
 from typing import Any
 
 from siggen.engines.orphan import end_with
-from siggen.engines.processes import TASK_ATTEMPTS, WINDOW_PER_WORKER
+from siggen.engines.processes import TASK_ATTEMPTS
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
+from siggen.engines.window import windowed
 from siggen.engines.worker import ONE_THREAD, RAISED, answer
 from siggen.errors import EngineError, UsageError
 
@@ -62,25 +64,17 @@ class RayEngine:
         EngineError
             If a task raised, its workers died too often, or the cluster cannot be reached.
         """
-        source, opened, taken = iter(tasks), dict[Any, tuple[int, Any]](), 0
+        call = answer if self.address is not None else _child_answer
         with self._cluster() as ray:
-            run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(
-                answer if self.address is not None else _child_answer
-            )
+            run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(call)
             everywhere = ray.put(function)
-            while True:
-                while taken < min((i for i, _ in opened.values()), default=taken) + WINDOW_PER_WORKER * self.workers:
-                    try:
-                        task = next(source)
-                    except StopIteration:
-                        break
-                    opened[run.remote(everywhere, task)] = (taken, task)
-                    taken += 1
-                if not opened:
-                    return
-                for reference in ray.wait(list(opened), num_returns=1)[0]:
-                    index, task = opened.pop(reference)
-                    yield index, _value(ray, reference, task)
+            yield from windowed(
+                tasks,
+                self.workers,
+                submit=lambda task: run.remote(everywhere, task),
+                finished=lambda opened: ray.wait(opened, num_returns=1)[0],
+                value=partial(_value, ray),
+            )
 
     @contextmanager
     def _cluster(self) -> Iterator[Any]:

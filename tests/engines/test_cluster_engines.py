@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from siggen.dataset.reading import open as open_set
-from siggen.engines.processes import WINDOW_PER_WORKER
 from siggen.engines.registry import engine_of
+from siggen.engines.window import WINDOW_PER_WORKER
 from siggen.errors import EngineError
 from siggen.sets.generation import generate
 from tests.dataset.fake_set import fake_config, fake_physics, file_bytes, simulate_and_die_once, write_fake_set

@@ -7,10 +7,11 @@ from contextlib import closing
 
 import pytest
 
-from siggen.engines.processes import WINDOW_PER_WORKER, ProcessEngine, default_workers
+from siggen.engines.processes import ProcessEngine, default_workers
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.engines.serial import SerialEngine
+from siggen.engines.window import WINDOW_PER_WORKER
 from siggen.errors import EngineError, UsageError
 from tests.engines.tasks import fail_at_three, slow_at_first, square
 

@@ -1,0 +1,43 @@
+"""The files of a set that must not depend on how it was made, and what is wrong with those of a disturbed one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+
+from siggen.dataset.storage import LEFTOVER_SUFFIX, Storage
+
+PER_RUN = "run.json"
+"""Says when and with which processes a set was made."""
+
+
+def set_files(storage: Storage) -> dict[str, bytes]:
+    """Return name -> content of all files but the one of the run."""
+    return {name: storage.get(name) for name in storage.names() if name != PER_RUN}
+
+
+def digest(files: Mapping[str, bytes]) -> str:
+    """Return the SHA-256 of names and contents."""
+    total = hashlib.sha256()
+    for name in sorted(files):
+        total.update(f"{name} {hashlib.sha256(files[name]).hexdigest()}\n".encode())
+    return total.hexdigest()
+
+
+def whole_set_problems(folder: Path, found: Mapping[str, bytes], reference: Mapping[str, bytes]) -> list[str]:
+    """Return what is lost, added or changed in a finished set, and what was left half written."""
+    names = [name for name in sorted(found.keys() | reference.keys()) if found.get(name) != reference.get(name)]
+    return names + [path.name for path in folder.rglob(f"*{LEFTOVER_SUFFIX}")]
+
+
+def committed_shards(found: Mapping[str, bytes]) -> list[str]:
+    """Return the shards whose sidecar is there: what a killed run has promised."""
+    return [Path(name).stem for name in found if name.startswith("shards/")]
+
+
+def committed_problems(found: Mapping[str, bytes], reference: Mapping[str, bytes]) -> list[str]:
+    """Return the files of committed shards that are not those of an undisturbed set."""
+    keys = committed_shards(found)
+    names = [name for name in reference if Path(name).stem in keys and not name.startswith(("metadata/", "damage/"))]
+    return [name for name in names if found.get(name) != reference[name]]

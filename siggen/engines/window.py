@@ -1,0 +1,49 @@
+"""Results of tasks that a cluster runs: handed in as room opens in the window, given as they finish."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
+from typing import Any
+
+from siggen.engines.protocol import Result, Results, Task
+
+WINDOW_PER_WORKER = 4
+"""Tasks that may be ahead of the oldest unfinished one, per worker: enough for uneven tasks, and bounded memory."""
+
+
+def windowed(
+    tasks: Iterable[Task],
+    workers: int,
+    submit: Callable[[Task], Any],
+    finished: Callable[[Sequence[Any]], Iterable[Any]],
+    value: Callable[[Any, Task], Result],
+) -> Results[Result]:
+    """Yield (position, result) as tasks complete; see `Engine.map`.
+
+    Parameters
+    ----------
+    tasks : iterable
+        Taken one by one.
+    workers : int
+        The window is `WINDOW_PER_WORKER` times as wide.
+    submit : callable
+        Task -> what the cluster calls it, which can be a key of a mapping.
+    finished : callable
+        Open ones -> those that are finished, at least one; waits for it.
+    value : callable
+        (finished one, its task) -> its result, or what went wrong is raised.
+    """
+    source: Iterator[tuple[int, Task]] = enumerate(tasks)
+    opened: dict[Any, tuple[int, Task]] = {}
+    taken = 0
+    while True:
+        oldest = min((index for index, _ in opened.values()), default=taken)
+        for index, task in islice(source, max(0, oldest + WINDOW_PER_WORKER * workers - taken)):
+            opened[submit(task)] = (index, task)
+            taken = index + 1
+        if not opened:
+            return
+        for one in finished(list(opened)):
+            index, task = opened.pop(one)
+            yield index, value(one, task)
