@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.faults.bit_flips import SET_FILES, flipped_in_model, flipped_in_set
 from benchmarks.faults.hostile_files import hostile_files, refusal
 from benchmarks.faults.mutated_configurations import judged, mutated
-from benchmarks.faults.mutated_recordings import mutated_recordings
+from benchmarks.faults.mutated_recordings import FS_HZ, channels, mutated_recordings, recordings
+from benchmarks.faults.recorder_files import recorder_files
 from benchmarks.faults.victims import small_model, small_set
 from benchmarks.row import Row, duration_text
 
@@ -29,7 +30,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         yield _mutated_row(200 if quick else CONFIGURATIONS, folder)
-        yield _recordings_row(45 if quick else RECORDINGS, folder)
+        for whole in (recordings(folder), recorder_files(folder, channels(), FS_HZ)):
+            yield _recordings_row(45 if quick else RECORDINGS, whole)
         yield from (_hostile_row(what, file) for what, file in hostile_files(folder).items())
         victim = small_set(folder / "set")
         flips = 10 if quick else FLIPS_PER_KIND
@@ -61,12 +63,13 @@ def _mutated_row(count: int, folder: Path) -> Row:
     return Row(f"{count} mutated configurations", measured, others, None, "no other", ended == count)
 
 
-def _recordings_row(count: int, folder: Path) -> Row:
-    outcomes = Counter(case.outcome for case in mutated_recordings(count, folder))
+def _recordings_row(count: int, whole: Sequence[Path]) -> Row:
+    kinds = ", ".join(dict.fromkeys(path.suffix for path in whole))
+    outcomes = Counter(case.outcome for case in mutated_recordings(count, whole))
     measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} with indicators"
     others = f"tracebacks: {outcomes['traceback']}, hangs: {outcomes['hang']}"
     met = outcomes["accepted"] + outcomes["refused"] == count
-    return Row(f"{count} mutated recordings", measured, others, None, "no other", met)
+    return Row(f"{count} mutated recordings ({kinds})", measured, others, None, "no other", met)
 
 
 def _hostile_row(what: str, file: Path) -> Row:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from random import Random
 
@@ -21,16 +21,22 @@ KINDS = ("csv", "mat", "mat", "wav", "wav", "npy", "npz", "parquet", "parquet")
 LIMIT_S = 60
 
 
-def recordings(folder: Path) -> list[Path]:
-    """Write one whole recording of each kind: mesh lines with sidebands and a line of the shaft, on two channels."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-    from scipy.io import savemat, wavfile
-
+def channels() -> dict[str, np.ndarray]:
+    """Return two channels: mesh lines with sidebands and a line of the shaft, and noise."""
     rng, time_s = np.random.default_rng(5), np.arange(SAMPLES) / FS_HZ
     turns = 2 * np.pi * 20.0 * time_s
     mesh = sum(np.sin(20 * k * turns) * (1 + 0.3 * np.cos(turns)) / k for k in (1, 2, 3)) + 0.5 * np.cos(turns)
     first, second = 0.1 * rng.standard_normal((2, SAMPLES)) + mesh
+    return {"a": first, "b": second}
+
+
+def recordings(folder: Path) -> list[Path]:
+    """Write one whole recording of each kind that needs no library of a recorder's format."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+    from scipy.io import savemat, wavfile
+
+    first, second = channels().values()
     both = np.stack([first, second], axis=1)
     np.savetxt(folder / "0.csv", both, delimiter=",", header="a,b", comments="", fmt="%.6g")
     savemat(folder / "1.mat", {"a": first, "b": second, "s": {"x": 1.0, "y": "text"}}, do_compression=True)
@@ -74,9 +80,9 @@ def _change(content: bytearray, place: int, chance: Random) -> None:
         content[place : place + 16] = content[:16]
 
 
-def mutated_recordings(count: int, folder: Path, seed: int = 0) -> Iterator[Case]:
-    """Yield what comes of each of `count` mutated recordings, kind after kind."""
-    chance, whole = Random(seed), recordings(folder)
+def mutated_recordings(count: int, whole: Sequence[Path], seed: int = 0) -> Iterator[Case]:
+    """Yield what comes of each of `count` mutations of whole recordings, one after the other; they are overwritten."""
+    chance = Random(seed)
     contents = [path.read_bytes() for path in whole]
     for number in range(count):
         path = whole[number % len(whole)]

@@ -20,6 +20,7 @@ from siggen.cli.path import path
 from siggen.cli.plan import plan
 from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
+from siggen.cli.run_report import run_report
 from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
@@ -31,7 +32,7 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (
-    *(init, plan, generate, merge, extend, verify, publish, show, simulate, export_model),
+    *(init, plan, generate, merge, extend, verify, run_report, publish, show, simulate, export_model),
     *(tvms, flank, pressure, errors, modes, path, schema),
 )
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from siggen.cli.engine_options import Address, EngineName
+from siggen.cli.run_display import LogJson, run_shown
 
 
 def extend(
@@ -21,6 +22,7 @@ def extend(
     ] = None,
     engine: EngineName = None,
     address: Address = None,
+    log_json: LogJson = None,
 ) -> None:
     """Add gearboxes to a finished set; the same command continues an interrupted extension.
 
@@ -32,15 +34,16 @@ def extend(
 
     Example: siggen extend sets/quickstart --specimens +100
     """
-    from siggen.cli.generate import progress_shown, report
+    from siggen.cli.generate import report
     from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.extension import extend as extend_set
 
     runner = engine if address is None else engine_of(engine, workers, address)
-    with progress_shown() as show:
-        generation = extend_set(folder, specimens, workers if runner is engine else None, show, engine=runner)
-    report(generation)
+    count = workers if runner is engine else None
+    with run_shown(log_json) as shown:
+        generation = extend_set(folder, specimens, count, shown.progress, engine=runner, events=shown.events)
+    report(generation, say=shown.say)
     typer.echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)

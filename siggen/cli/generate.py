@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from siggen.cli.engine_options import Address, EngineName
+from siggen.cli.run_display import LogJson, run_shown
+from siggen.errors import counted
 
 if TYPE_CHECKING:
     from siggen.sets.set_run import Generation
@@ -35,6 +37,7 @@ def generate(
         str | None,
         typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
     ] = None,
+    log_json: LogJson = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
@@ -59,79 +62,42 @@ def generate(
     from siggen.sets.parts import generate_part, part_of
 
     loaded = load_config(config, overrides or ())
-    for sentence in implausible(loaded):
-        typer.echo(f"implausible: {sentence}", err=True)
-    if told := compilation_text(loaded, default_workers() if workers is None else workers):
-        typer.echo(told, err=True)
     chosen = None if part is None else part_of(part)
-    runner = engine if address is None else engine_of(engine, workers, address)
-    count = workers if runner is engine else None
-    with progress_shown() as show:
+    with run_shown(log_json) as shown:
+        for sentence in implausible(loaded):
+            shown.say(f"implausible: {sentence}")
+        if told := compilation_text(loaded, default_workers() if workers is None else workers):
+            shown.say(told)
+        runner = engine if address is None else engine_of(engine, workers, address)
+        count, progress, events = workers if runner is engine else None, shown.progress, shown.events
         if chosen is None:
-            generation = generate_set(loaded, out, count, show, engine=runner)
+            generation = generate_set(loaded, out, count, progress, engine=runner, events=events)
         else:
-            generation = generate_part(loaded, out, chosen, count, show, engine=runner)
-    report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}")
+            generation = generate_part(loaded, out, chosen, count, progress, engine=runner, events=events)
+    report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}", shown.say)
     typer.echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)
 
 
-@contextmanager
-def progress_shown() -> Iterator[Callable[[int, int], None] | None]:
-    """Show records, rate and time left on stderr; nothing where stderr is not a terminal."""
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield None
-        return
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    columns = (
-        TextColumn("records"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(compact=True),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("records", total=None, rate="")
-
-        def show(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
-            speed = bar.tasks[0].speed
-            bar.update(task, rate=f"{speed:.3g}/s" if speed else "")
-
-        yield show
-
-
-def report(generation: Generation, what: str = "the set") -> None:
-    """Say on stderr what was done and what failed."""
-    from siggen.errors import counted
-
+def report(generation: Generation, what: str = "the set", say: Callable[[str], None] | None = None) -> None:
+    """Say, on stderr unless told otherwise, what was done and what failed."""
+    say = say or partial(typer.echo, err=True)
     if generation.was_finished:
-        typer.echo(
-            f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)", err=True
-        )
+        say(f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)")
     else:
-        rate = generation.records_made / max(generation.seconds, 1e-9)
-        taken = generation.shards_taken_over
-        taken_over = f", {counted(taken, 'shard was', 'shards were')} there" if taken else ""
-        made = f"{counted(generation.records_made, 'record')} in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
-        typer.echo(f"{counted(generation.rows, 'record')} in {what}; this run: {made}", err=True)
+        say(_made(generation, what))
     for failure in generation.failures[:LISTED_FAILURES]:
-        typer.echo(f"record {failure.record_id} failed: {failure.status} ({failure.reason})", err=True)
+        say(f"record {failure.record_id} failed: {failure.status} ({failure.reason})")
     if generation.failures:
         failed = counted(len(generation.failures), "record")
         verdict = "the set is usable" if generation.rows else "the set has no rows"
-        typer.echo(f"{failed} could not be simulated; {verdict}, manifest.json names what failed", err=True)
+        say(f"{failed} could not be simulated; {verdict}, manifest.json names what failed")
+
+
+def _made(generation: Generation, what: str) -> str:
+    rate = generation.records_made / max(generation.seconds, 1e-9)
+    taken = generation.shards_taken_over
+    taken_over = f", {counted(taken, 'shard was', 'shards were')} there" if taken else ""
+    made = f"{counted(generation.records_made, 'record')} in {generation.seconds:.1f} s ({rate:.3g}/s){taken_over}"
+    return f"{counted(generation.rows, 'record')} in {what}; this run: {made}"

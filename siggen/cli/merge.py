@@ -23,12 +23,13 @@ def merge(
 
     Example: siggen merge parts/1 parts/2 parts/3 --out sets/quickstart
     """
-    from siggen.cli.generate import progress_shown, report
+    from siggen.cli.generate import report
+    from siggen.cli.run_display import run_shown
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.parts import merge as merge_parts
 
-    with progress_shown() as show:
-        generation = merge_parts(parts, out, show)
+    with run_shown() as shown:
+        generation = merge_parts(parts, out, shown.progress)
     report(generation)
     typer.echo(str(generation.path))
     if generation.failures:

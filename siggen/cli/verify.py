@@ -36,7 +36,7 @@ def verify(
     import json
     from dataclasses import asdict
 
-    from siggen.cli.generate import progress_shown
+    from siggen.cli.run_display import run_shown
     from siggen.errors import EXIT_MISMATCH, counted
     from siggen.sets.precision import measure_precision, precision_lines
     from siggen.sets.verification import HASHES_ALONE, problem_lines
@@ -46,8 +46,8 @@ def verify(
         found = verify_set(folder, sample)
     precision = None
     if physics and not found.mismatches:
-        with progress_shown() as show:
-            precision = measure_precision(folder, physics, show)
+        with run_shown() as shown:
+            precision = measure_precision(folder, physics, shown.progress)
     ok = not found.mismatches and (precision is None or precision.within)
     if as_json:
         measured = {} if precision is None else {"physics": asdict(precision)}

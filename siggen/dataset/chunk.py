@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -12,6 +12,7 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_batch
 from siggen.columns.record import Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
+from siggen.stage_times import collected, stage
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -33,11 +34,15 @@ class Chunk:
 
 @dataclass(frozen=True, slots=True)
 class ChunkResult:
-    """Rows as an Arrow IPC stream, the records that failed, and the internal quantities of a set that stores some."""
+    """Rows as an Arrow IPC stream, the records that failed, and the internal quantities of a set that stores some.
+
+    `cpu_s` is the CPU time that the chunk took, by stage.
+    """
 
     rows: bytes
     failures: tuple[RecordFailure, ...]
     internals: bytes | None = None
+    cpu_s: Mapping[str, float] = field(default_factory=dict, compare=False)
 
     def batch(self) -> pa.RecordBatch:
         """Return the rows without copying them; there may be none."""
@@ -75,6 +80,11 @@ class ChunkSimulation:
         EngineError
             If the simulation raises anything (a failure of the solver is a result, not an exception); names the record.
         """
+        with collected("other") as times:
+            rows, failures, internals = self._made(chunk)
+        return ChunkResult(rows, failures, internals, times.seconds)
+
+    def _made(self, chunk: Chunk) -> tuple[bytes, tuple[RecordFailure, ...], bytes | None]:
         records: list[Record] = []
         failures: list[RecordFailure] = []
         for result in self._simulated(chunk.records):
@@ -84,11 +94,11 @@ class ChunkSimulation:
                 failures.append(RecordFailure(result.planned.record_id, "not_finite", reason))
             else:
                 records.append(result)
-        rows = _stream(record_batch(self.config, records))
-        if not self.quantities:
-            return ChunkResult(rows, tuple(failures))
-        internals = _stream(internals_batch(self.config, self.quantities, records))
-        return ChunkResult(rows, tuple(failures), internals)
+        with stage("rows"):
+            rows = _stream(record_batch(self.config, records))
+            if not self.quantities:
+                return rows, tuple(failures), None
+            return rows, tuple(failures), _stream(internals_batch(self.config, self.quantities, records))
 
     def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
         try:

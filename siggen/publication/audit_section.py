@@ -42,8 +42,10 @@ def audit_section(identity: str, file: Path | None) -> str:
 
 
 def _sentences(verdict: object, summary: object) -> str:
-    texts = summary if isinstance(summary, list) else [summary]
-    return " ".join(str(text) for text in (f"Verdict: {verdict}.", *texts))
+    """Return the verdict and the findings of the summary, of which the verdict may be the first."""
+    said = str(verdict).rstrip(".")
+    texts = [str(text) for text in (summary if isinstance(summary, list) else [summary])]
+    return " ".join([f"Verdict: {said}.", *(text for text in texts if text.rstrip(".") != said)])
 
 
 def _strongest(sides: Mapping[str, Mapping[str, Any]]) -> str:

@@ -24,6 +24,7 @@ from siggen.publication.audit_section import AUDIT, audit_section
 from siggen.publication.croissant import FOLDERS, croissant
 from siggen.publication.datacite import datacite_fields
 from siggen.publication.dataset_info import dataset_info
+from siggen.publication.isa_phm import ISA_PHM, isa_phm
 from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
 from siggen.publication.published_card import published_card
 
@@ -188,7 +189,12 @@ def _texts(
         CARD: card.encode(),
         CROISSANT: _json(croissant(facts, description, TAGS, schemas, limits)),
         DATACITE: _json(datacite_fields(facts, description, TAGS, size)),
+        ISA_PHM: _json(isa_phm(config, facts, description, dataset.manifest["channels"], _signal_files(dataset))),
     }
+
+
+def _signal_files(dataset: Dataset) -> list[str]:
+    return [str(shard["file"]) for shard in dataset.manifest["shards"]]
 
 
 def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:

@@ -36,6 +36,7 @@ from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
+from siggen.stage_times import stage
 
 __all__ = [
     "damage_rows",
@@ -149,19 +150,21 @@ def record_response(
     steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
-        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
-        response = response_of(
-            motion,
-            driven.rotation,
-            fs_hz=config.fs_hz,
-            samples=config.samples,
-            steps_per_sample=steps,
-            internals=internals,
-            bearing_forces=internals or needs_forces(config),
-            excitation=driven.excitation,
-            settle_s=_settle_s(config, motion),
-            history_s=history_s(config),
-        )
+        with stage("inputs"):
+            motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
+        with stage("loop"):
+            response = response_of(
+                motion,
+                driven.rotation,
+                fs_hz=config.fs_hz,
+                samples=config.samples,
+                steps_per_sample=steps,
+                internals=internals,
+                bearing_forces=internals or needs_forces(config),
+                excitation=driven.excitation,
+                settle_s=_settle_s(config, motion),
+                history_s=history_s(config),
+            )
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
@@ -182,10 +185,11 @@ def _simulated(
     config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
 ) -> Record:
     with_internals = has_internals(config, planned)
-    with refused_as("outside_model"):
+    with refused_as("outside_model"), stage("inputs"):
         driven = _driven(config, specimen, state, planned)
     response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
-    channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
+    with stage("sensing"):
+        channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     with refused_as("outside_model"):
         operating = operating_labels(state.pair, point, response, state.static)
     labels = {
@@ -203,18 +207,25 @@ def _simulated(
 
 
 def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:
-    config = gearbox_config(whole, records[0].specimen_id)
-    specimen = draw_specimen(whole, records[0].specimen_id)
-    family = gearbox_labels(whole, specimen)
-    instrument = specimen_instrument(config, specimen)
-    gears = MadeGears(config, specimen)
-    state_of = lru_cache(maxsize=1)(lambda state_id: specimen_state(config, specimen, state_id, gears))
+    with stage("plan"):
+        config = gearbox_config(whole, records[0].specimen_id)
+        specimen = draw_specimen(whole, records[0].specimen_id)
+        family = gearbox_labels(whole, specimen)
+        gears = MadeGears(config, specimen)
+    with stage("sensing"):
+        instrument = specimen_instrument(config, specimen)
+    state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(config, specimen, state_id, gears))
     for record in records:
         try:
             made = _simulated(config, specimen, instrument, state_of(record.state_id), record)
             yield replace(made, labels={**made.labels, **family}) if family else made
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)
+
+
+def _staged_state(config: Config, specimen: Specimen, state_id: int, gears: MadeGears) -> SpecimenState:
+    with stage("tables"):
+        return specimen_state(config, specimen, state_id, gears)
 
 
 def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
@@ -234,7 +245,8 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record 
     ValueError
         If the records belong to more than one specimen.
     """
-    records = [planned_record(config, i) for i in record_ids]
+    with stage("plan"):
+        records = [planned_record(config, i) for i in record_ids]
     if len({r.specimen_id for r in records}) != 1:
         raise ValueError(
             f"records of one specimen expected, received specimens {sorted({r.specimen_id for r in records})}"

@@ -14,6 +14,7 @@ from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.errors import ConfigError, DatasetError, UsageError
 from siggen.sets.interruption import Interruption
+from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def extend(
     progress: Progress | None = None,
     *,
     engine: Engine | str | None = None,
+    events: Events | None = None,
 ) -> Generation:
     """Add specimens to a finished set, or continue an extension that was interrupted.
 
@@ -40,7 +42,7 @@ def extend(
         A finished set.
     specimens : int or str
         How many it shall have in all, or '+N' for N more.
-    workers, progress, engine
+    workers, progress, engine, events
         As for `generate`.
 
     Raises
@@ -67,7 +69,7 @@ def extend(
         storage.delete_leftovers()
         earlier = [*(count for count in read_extensions(storage) if count < there), there]
         with Interruption() as interruption:
-            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, earlier)
+            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, earlier, events)
             _check_shards(run, there)
             put_extensions(storage, [*earlier, wanted])
             return run.finish()

@@ -11,6 +11,7 @@ from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.sets.interruption import Interruption
+from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, set_run, unchanged
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def generate(
     progress: Progress | None = None,
     *,
     engine: Engine | str | None = None,
+    events: Events | None = None,
 ) -> Generation:
     """Generate a data set, or continue one that was interrupted; the files do not depend on `workers` nor on stops.
 
@@ -39,6 +41,8 @@ def generate(
     engine : Engine or str, optional
         'serial', 'processes' (the default), 'dask', 'ray', or an object with `map` and `workers` as
         `siggen.engines.protocol` has it.
+    events : callable, optional
+        Called with every event of the run as a mapping: `siggen.sets.run_journal.EVENTS` has their fields.
 
     Raises
     ------
@@ -54,9 +58,9 @@ def generate(
     storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
-            return unchanged(storage)
+            return unchanged(storage, events)
         storage.delete_leftovers()
         chosen = engine_of(engine, workers)
         with Interruption() as interruption:
             earlier = earlier_specimens(storage, config)
-            return set_run(config, storage, chosen, progress, interruption, earlier).finish()
+            return set_run(config, storage, chosen, progress, interruption, earlier, events).finish()

@@ -21,6 +21,7 @@ from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.sets.interruption import Interruption
+from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def generate_part(
     progress: Progress | None = None,
     *,
     engine: Engine | str | None = None,
+    events: Events | None = None,
 ) -> Generation:
     """Make the shards of one part of a set in a folder of its own; the same call continues an interrupted one.
 
@@ -64,7 +66,7 @@ def generate_part(
     ----------
     part : (int, int)
         Number of the part, from 1, and count of all parts. A part may have no shard, where there are fewer than parts.
-    config, out, workers, progress, engine
+    config, out, workers, progress, engine, events
         As for `generate`.
 
     Raises
@@ -76,10 +78,10 @@ def generate_part(
     storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
-            return unchanged(storage)
+            return unchanged(storage, events)
         storage.delete_leftovers()
         with Interruption() as interruption:
-            run = set_run(config, storage, engine_of(engine, workers), progress, interruption)
+            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, events=events)
             return run.finish_some(run.planned[chosen.number - 1 :: chosen.of])
 
 

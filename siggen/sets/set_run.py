@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass, field
-from datetime import UTC, datetime
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
-from siggen.columns.record import RecordFailure, channels, record_schema
+from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.card import card
-from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
-from siggen.dataset.environment import environment, host_facts, peak_memory_bytes
+from siggen.dataset.environment import environment
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.label_tables import write_damage, write_metadata
@@ -34,6 +31,9 @@ from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group, shard
 from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
+from siggen.sets.manifest_facts import manifest_facts
+from siggen.sets.run_facts import run_facts
+from siggen.sets.run_journal import Events, RunJournal
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -84,13 +84,17 @@ def set_run(
     progress: Progress | None,
     interruption: Interruption,
     earlier: Sequence[int] = (),
+    events: Events | None = None,
 ) -> SetRun:
     """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
-    physics = contents.physics()
-    quantities = physics.stored(config)
-    planned = planned_shards(config, earlier)
-    run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned)
+    journal = RunJournal(events)
+    with journal.driver.during("planning"):
+        physics = contents.physics()
+        quantities = physics.stored(config)
+        planned = planned_shards(config, earlier)
+    run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned, journal)
     run.total = sum(shard.record_count for shard in planned)
+    journal.start(config, str(storage.location), engine, run.total, len(planned))
     return run
 
 
@@ -117,11 +121,12 @@ class SetRun:
     progress: Progress
     interruption: Interruption
     planned: Sequence[ShardPlan]
-    started_s: float = field(default_factory=time.perf_counter)
+    journal: RunJournal = field(default_factory=RunJournal)
     environment: dict[str, str] = field(default_factory=environment)
     sidecars: dict[str, Sidecar] = field(default_factory=dict)
     done: int = 0
     made: int = 0
+    shards_made: int = 0
     total: int = 0
 
     def finish(self) -> Generation:
@@ -132,13 +137,11 @@ class SetRun:
         InterruptionError
             After SIGINT or SIGTERM.
         """
-        try:
+        with self._told():
             if not self.storage.exists(CONFIG):
                 self.storage.put(CONFIG, config_bytes(self.config))
             taken_over = self.make(self.planned)
             return self.conclude(taken_over)
-        except KeyboardInterrupt:
-            raise InterruptionError(self._how_to_continue()) from None
 
     def finish_some(self, wanted: Sequence[ShardPlan]) -> Generation:
         """Make some shards and nothing else; `rows` and `failures` are theirs.
@@ -148,12 +151,10 @@ class SetRun:
         InterruptionError
             After SIGINT or SIGTERM.
         """
-        try:
+        with self._told():
             if not self.storage.exists(CONFIG):
                 self.storage.put(CONFIG, config_bytes(self.config))
             taken_over = self.make(wanted)
-        except KeyboardInterrupt:
-            raise InterruptionError(self._how_to_continue()) from None
         sidecars = [self.sidecars[shard.key] for shard in wanted]
         return Generation(
             path=self.storage.path,
@@ -161,14 +162,15 @@ class SetRun:
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
             shards_taken_over=taken_over,
-            seconds=time.perf_counter() - self.started_s,
+            seconds=self.journal.seconds,
         )
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
         self.total = sum(shard.record_count for shard in wanted)
         self._advance(0)
-        self.take_over(wanted)
+        with self.journal.driver.during("taking over"):
+            self.take_over(wanted)
         taken_over = len(self.sidecars)
         self._make([shard for shard in wanted if shard.key not in self.sidecars])
         return taken_over
@@ -176,14 +178,15 @@ class SetRun:
     def conclude(self, taken_over: int) -> Generation:
         """Write tables, card and manifest over all shards, which are there."""
         sidecars = [self.sidecars[shard.key] for shard in self.planned]
-        manifest = self._conclude(sidecars, taken_over)
+        with self.journal.driver.during("closing"):
+            manifest = self._conclude(sidecars, taken_over)
         return Generation(
             path=self.storage.path,
             rows=manifest["rows"],
             failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
             records_made=self.made,
             shards_taken_over=taken_over,
-            seconds=time.perf_counter() - self.started_s,
+            seconds=self.journal.seconds,
         )
 
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:
@@ -194,19 +197,22 @@ class SetRun:
             if sidecar is not None:
                 self.sidecars[shard.key] = sidecar
                 self._advance(sum(last - first + 1 for first, last in sidecar.records))
+                self.journal.taken_over(sidecar, self.done, self.total)
 
     def _make(self, missing: Sequence[ShardPlan]) -> None:
         """Simulate and write shards one after the other, from one stream of chunks."""
         tasks = (chunk for shard in missing for chunk in self._chunks(shard))
         if missing and isinstance(self.engine, ProcessEngine):
-            self._compile(self.engine)
+            with self.journal.driver.during("compiling"):
+                self._compile(self.engine)
         function = ChunkSimulation(self.config, self.physics.simulate, self.quantities)
-        with running(self.engine, function, tasks) as results:
-            ordered = in_order(results)
+        with self.journal.driver.during("engine"), running(self.engine, function, tasks) as results:
+            ordered = self.journal.waiting(in_order(results))
             for shard in missing:
                 # cut once more rather than kept: chunks of all shards would fill memory before the first is made
                 chunked = self._chunks(shard)
-                self._write(shard, zip(chunked, islice(ordered, len(chunked)), strict=True))
+                with self.journal.driver.during("writing"):
+                    self._write(shard, zip(chunked, islice(ordered, len(chunked)), strict=True))
 
     def _compile(self, engine: ProcessEngine) -> None:
         """Compile once for all workers, which would compile the same side by side."""
@@ -224,6 +230,7 @@ class SetRun:
 
     def _write(self, shard: ShardPlan, results: Iterator[tuple[Chunk, ChunkResult]]) -> None:
         """Write the rows of a shard as they come, then commit it with its sidecar."""
+        begun_s = self.journal.seconds
         failures: list[RecordFailure] = []
         rows_per_state = dict.fromkeys((state.name for state in self.config.states), 0)
         with self._data(shard) as data, self._internals(shard) as internals:
@@ -231,6 +238,8 @@ class SetRun:
                 self.interruption.check()
                 batch = result.batch()
                 failures.extend(result.failures)
+                self.journal.add(result.cpu_s)
+                self.journal.failed(shard.key, result.failures)
                 for state in batch.column("state").to_pylist():
                     rows_per_state[state] += 1
                 data.add(batch)
@@ -253,6 +262,9 @@ class SetRun:
             environment=self.environment,
         )
         put_sidecar(self.storage, self.sidecars[shard.key])
+        self.shards_made += 1
+        seconds = self.journal.seconds - begun_s
+        self.journal.shard_done(self.sidecars[shard.key], seconds, self.made, self.done, self.total)
 
     def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
         schema, rows = record_schema(self.config), rows_per_group(self.config)
@@ -277,26 +289,25 @@ class SetRun:
             self.interruption.check()
         self.storage.put(CARD, card(self.config, sidecars, self.quantities).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
-        manifest = build_manifest(self.storage, _facts(self.config, self.quantities), sidecars, tables, written)
-        self.storage.put(RUN, sealed(self._run_facts(taken_over)))
+        manifest = build_manifest(self.storage, manifest_facts(self.config, self.quantities), sidecars, tables, written)
+        counts = {"made": self.made, "taken_over": taken_over}
+        facts = run_facts(self.config, self.engine, sidecars, self.journal, **counts, environment=self.environment)
+        self.storage.put(RUN, sealed(facts))
         self.storage.put(MANIFEST, sealed(manifest))
         return manifest
 
-    def _run_facts(self, taken_over: int) -> dict[str, Any]:
-        seconds = time.perf_counter() - self.started_s
-        return {
-            "finished_at": datetime.now(UTC).isoformat(timespec="seconds"),
-            "seconds": round(seconds, 3),
-            "workers": self.engine.workers,
-            "records_made": self.made,
-            "records_per_s": round(self.made / seconds, 3),
-            "signal_s_per_s": round(self.made * self.config.duration_s / seconds, 3),
-            "shards_taken_over": taken_over,
-            "bytes": sum(file.bytes for sidecar in self.sidecars.values() for file in sidecar.files),
-            "peak_memory_bytes": peak_memory_bytes(),
-            "host": host_facts(),
-            "environment": self.environment,
-        }
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Tell how the run ended; a signal is put into words."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self.journal.end("interrupted", self._how_to_continue(), self.made, len(self.sidecars) - self.shards_made)
+            raise InterruptionError(self._how_to_continue()) from None
+        except Exception as error:
+            self.journal.end("failed", str(error), self.made, len(self.sidecars) - self.shards_made)
+            raise
+        self.journal.end("done", "", self.made, len(self.sidecars) - self.shards_made)
 
     def _how_to_continue(self) -> str:
         return (
@@ -320,23 +331,9 @@ def in_order(results: Iterator[tuple[int, ChunkResult]]) -> Iterator[ChunkResult
             following += 1
 
 
-def _facts(config: Config, quantities: Sequence[Column]) -> dict[str, Any]:
-    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in quantities]
-    return {
-        **({"internals": internals} if internals else {}),
-        "name": config.name,
-        "identity": config.identity,
-        "seed": config.seed,
-        "specimens": config.specimens,
-        "fs_hz": float(config.fs_hz),
-        "duration_s": float(config.duration_s),
-        "channels": [asdict(channel) for channel in channels(config)],
-        **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
-    }
-
-
-def unchanged(storage: Storage) -> Generation:
+def unchanged(storage: Storage, events: Events | None = None) -> Generation:
     """Return what a call did that found the set finished."""
     manifest = read_manifest(storage)
     failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
+    RunJournal(events).end("finished before", "", 0, 0)
     return Generation(storage.path, manifest["rows"], failures, was_finished=True)

@@ -32,9 +32,9 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     """Let the command generate with a stand-in for the physics, in this process."""
     chosen = SimpleNamespace(function=simulate)
 
-    def stand_in(loaded, out, workers, progress, *, engine):
+    def stand_in(loaded, out, workers, progress, *, engine, events):
         assert (workers in (None, 1), engine) == (True, None)
-        return write_fake_set(out, loaded, simulation=chosen.function)
+        return write_fake_set(out, loaded, simulation=chosen.function, events=events)
 
     monkeypatch.setattr(siggen.sets.generation, "generate", stand_in)
     return chosen

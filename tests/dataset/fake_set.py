@@ -21,6 +21,7 @@ from siggen.planning import plan
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.sets import physics
 from siggen.sets.generation import generate
+from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation
 from siggen.sets.verification import Verification, verify
 
@@ -224,12 +225,18 @@ def fake_physics(simulation: Any = simulate) -> Iterator[None]:
 
 
 def write_fake_set(
-    path: Path, config: Config | None = None, *, workers: int = 0, simulation: Any = simulate, engine: str | None = None
+    path: Path,
+    config: Config | None = None,
+    *,
+    workers: int = 0,
+    simulation: Any = simulate,
+    engine: str | None = None,
+    events: Events | None = None,
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
     # row groups of 2: several chunks per shard
     with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
-        return generate(config or fake_config(), path, workers, engine=engine)
+        return generate(config or fake_config(), path, workers, engine=engine, events=events)
 
 
 def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: Any = simulate) -> Verification:

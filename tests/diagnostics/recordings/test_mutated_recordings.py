@@ -17,7 +17,7 @@ from siggen.errors import UsageError
 
 
 def test_every_mutated_recording_is_read_or_refused_in_words(tmp_path: Path) -> None:
-    cases = list(mutated_recordings(27, tmp_path, seed=3))
+    cases = list(mutated_recordings(27, recordings(tmp_path), seed=3))
     assert {case.outcome for case in cases} == {"accepted", "refused"}, [c for c in cases if c.outcome == "traceback"]
     assert all(case.message.startswith(str(tmp_path)) for case in cases if case.outcome == "refused")
 

@@ -1,0 +1,29 @@
+"""`siggen run-report`: where the time of the run that finished a set went."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def run_report(
+    folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print run.json itself.")] = False,
+) -> None:
+    """Print how long the run that finished a set took, and what every stage had of it.
+
+    The facts stand in run.json beside the set. It is no part of what the manifest promises: it may be left out when a
+    set is passed on. A set that was interrupted has the facts of its last run alone; --log-json has those of all.
+
+    Exit codes: 0 done, 2 no run.json.
+
+    Example: siggen run-report sets/quickstart
+    """
+    import json
+
+    from siggen.sets.run_report import read_run, run_text
+
+    facts = read_run(folder)
+    typer.echo(json.dumps(facts, indent=1) if as_json else run_text(facts))

@@ -1,0 +1,135 @@
+"""What a run tells while it goes on: events for a log, and the time of every stage."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import TYPE_CHECKING, TypeVar
+
+from siggen.columns.record import RecordFailure
+from siggen.dataset.sidecar import Sidecar
+from siggen.engines.protocol import Engine
+from siggen.stage_times import StageTimes
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+Events = Callable[[Mapping[str, object]], None]
+"""Called with every event of a run, in the process that drives it; what it raises ends the run."""
+
+LOG_VERSION = 1
+
+STAMP = ("time", "event")
+EVENTS: dict[str, tuple[str, ...]] = {
+    "run_started": (*("log_version", "siggen", "name", "identity", "path", "engine", "workers", "records", "shards"),),
+    "shard_taken_over": ("shard", "rows", "failures", "records_done", "records_total"),
+    "record_failed": ("shard", "record_id", "status", "reason"),
+    "shard_done": (
+        *("shard", "rows", "failures", "bytes", "seconds"),
+        *("records_done", "records_total", "records_per_s", "left_s"),
+    ),
+    "run_ended": ("outcome", "message", "records_made", "shards_taken_over", "failures", "seconds", "stages"),
+    "said": ("sentence",),
+}
+"""Event -> its fields beside those of STAMP; fields may be added, never renamed. Units stand in docs/reference."""
+
+T = TypeVar("T")
+
+
+@dataclass(slots=True)
+class RunJournal:
+    """Where a run notes what it does.
+
+    Attributes
+    ----------
+    driver
+        Wall seconds of the process that drives the run, by stage.
+    worker_cpu_s
+        CPU seconds of the workers by stage, summed over all of them.
+    failures
+        Records of this run that could not be simulated.
+    """
+
+    events: Events | None = None
+    started_s: float = field(default_factory=time.perf_counter)
+    driver: StageTimes = field(default_factory=StageTimes)
+    worker_cpu_s: dict[str, float] = field(default_factory=dict)
+    failures: int = 0
+    shard_started_s: float = 0.0
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the run began."""
+        return time.perf_counter() - self.started_s
+
+    def start(self, config: Config, path: str, engine: Engine, records: int, shards: int) -> None:
+        """Tell that a run begins, with the records and shards of the whole set."""
+        facts = {"log_version": LOG_VERSION, "siggen": version("siggen"), "name": config.name}
+        who = {"engine": type(engine).__name__, "workers": engine.workers}
+        facts |= {"identity": config.identity, "path": path, **who, "records": records, "shards": shards}
+        self._tell("run_started", facts)
+
+    def taken_over(self, sidecar: Sidecar, done: int, total: int) -> None:
+        """Tell of a shard that an earlier run made."""
+        self._tell("shard_taken_over", {**_content(sidecar), "records_done": done, "records_total": total})
+
+    def failed(self, shard: str, failures: Sequence[RecordFailure]) -> None:
+        """Tell of records that could not be simulated, as soon as that is known."""
+        self.failures += len(failures)
+        for failure in failures:
+            self._tell("record_failed", {"shard": shard, **asdict(failure)})
+
+    def shard_done(self, sidecar: Sidecar, seconds: float, made: int, done: int, total: int) -> None:
+        """Tell of a shard that is committed, and of the pace of this run, which has made `made` records.
+
+        What a run does once, as compiling or looking for earlier shards, is no part of its pace.
+        """
+        working = self.driver.so_far()
+        rate = made / max(working.get("waiting", 0.0) + working.get("writing", 0.0), 1e-9)
+        facts = {**_content(sidecar), "bytes": sum(file.bytes for file in sidecar.files), "seconds": round(seconds, 3)}
+        facts |= {"records_done": done, "records_total": total, "records_per_s": round(rate, 3)}
+        self._tell("shard_done", {**facts, "left_s": round((total - done) / rate, 1) if rate else None})
+
+    def end(self, outcome: str, message: str, made: int, taken_over: int) -> None:
+        """Tell that the run is over: done, interrupted, failed (with the message), or finished before."""
+        facts: dict[str, object] = {"outcome": outcome, "message": message, "records_made": made}
+        facts |= {"shards_taken_over": taken_over, "failures": self.failures, "seconds": round(self.seconds, 3)}
+        self._tell("run_ended", {**facts, "stages": self.stages()})
+
+    def _tell(self, event: str, facts: Mapping[str, object]) -> None:
+        if self.events is None:
+            return
+        self.events(stamped(event, facts))
+
+    def add(self, worker_cpu_s: Mapping[str, float]) -> None:
+        """Add what a worker spent on a chunk."""
+        for stage, seconds in worker_cpu_s.items():
+            self.worker_cpu_s[stage] = self.worker_cpu_s.get(stage, 0.0) + seconds
+
+    def waiting(self, results: Iterator[T]) -> Iterator[T]:
+        """Yield results; the time until each is there counts as waiting for workers."""
+        while True:
+            with self.driver.during("waiting"):
+                try:
+                    result = next(results)
+                except StopIteration:
+                    return
+            yield result
+
+    def stages(self) -> dict[str, dict[str, float]]:
+        """Return seconds by stage: of the driver, and CPU seconds of the workers."""
+        found = {"driver_s": self.driver.so_far(), "worker_cpu_s": self.worker_cpu_s}
+        return {side: {stage: round(value, 3) for stage, value in times.items()} for side, times in found.items()}
+
+
+def stamped(event: str, facts: Mapping[str, object]) -> dict[str, object]:
+    """Return an event with the time of now in UTC, its fields in the order of `EVENTS`."""
+    now = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return {"time": now, "event": event, **{name: facts[name] for name in EVENTS[event]}}
+
+
+def _content(sidecar: Sidecar) -> dict[str, object]:
+    return {"shard": sidecar.shard, "rows": sidecar.data.rows, "failures": len(sidecar.failures)}

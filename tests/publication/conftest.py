@@ -1,0 +1,51 @@
+"""A set of an earlier version, published, and what siggen reads of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import siggen
+from siggen.publication.publish import publish
+
+KEPT = Path(__file__).parents[1] / "sets" / "schema_2"
+SIGNAL = "accel_lid_vertical_m_s2"
+FACTS: dict[str, Any] = {
+    "license": "cc-by-4.0",
+    "title": "Two gearboxes",
+    "version": "1.0.0",
+    "published": "2026-11-30",
+    "publisher": "Zenodo",
+    "url": "https://example.org/two",
+    "citation": "Author, A. (2026). Two gearboxes.",
+    "authors": [{"name": "Author, An", "orcid": "0000-0002-1825-0097", "affiliation": "An institute"}],
+}
+
+
+def facts_file(folder: Path, **changes: Any) -> Path:
+    path = folder / "publication.yaml"
+    path.write_text(yaml.safe_dump({**FACTS, **changes}))
+    return path
+
+
+@pytest.fixture(scope="module")
+def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("published")
+    publish(KEPT, folder / "set", facts_file(folder))
+    return folder / "set"
+
+
+@pytest.fixture(scope="module")
+def expected() -> dict[str, Any]:
+    """Return what siggen reads of the set itself: signals (n, samples), record ids, states."""
+    records = [siggen.open(KEPT).record(i) for i in range(4)]
+    return {
+        "signals": np.stack([record[SIGNAL] for record in records]),
+        "state": [record["state"] for record in records],
+        "tacho_s": [record["tacho_s"].tolist() for record in records],
+        "speed_hz": [record["speed_hz"] for record in records],
+    }

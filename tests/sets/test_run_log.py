@@ -1,0 +1,173 @@
+"""What a run tells: events with the documented fields, whatever the engine, and where its time went."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from siggen.cli.run_display import run_shown
+from siggen.dataset.seal import unsealed
+from siggen.errors import DatasetError, EngineError, UsageError
+from siggen.sets.run_journal import EVENTS
+from siggen.sets.run_report import DRIVER, WORKERS, read_run
+from siggen.stage_times import StageTimes, collected, stage
+from tests.dataset.fake_set import simulate_with_a_bug, simulate_with_failures, write_fake_set
+
+ROOT = Path(__file__).parents[2]
+Told = list[Mapping[str, Any]]
+
+
+def told(path: Path, **how: Any) -> Told:
+    events: Told = []
+    write_fake_set(path, events=events.append, **how)
+    return events
+
+
+def of(events: Told, name: str) -> Told:
+    return [event for event in events if event["event"] == name]
+
+
+def test_a_run_tells_its_start_every_shard_every_failure_and_its_end(tmp_path: Path) -> None:
+    events = told(tmp_path, simulation=simulate_with_failures)
+    assert (events[0]["event"], events[-1]["event"]) == ("run_started", "run_ended")
+    assert {key: events[0][key] for key in ("name", "records", "shards", "workers")} == {
+        "name": "fake",
+        "records": 30,
+        "shards": 5,
+        "workers": 1,
+    }
+    assert [(event["record_id"], event["status"]) for event in of(events, "record_failed")] == [
+        *((3, "diverged"), (8, "diverged"), (10, "not_finite")),
+    ]
+    done = of(events, "shard_done")
+    assert [event["records_done"] for event in done] == [6, 12, 18, 24, 30]
+    assert [event["rows"] + event["failures"] for event in done] == [6] * 5
+    assert done[-1]["left_s"] == 0.0
+    ended = events[-1]
+    assert [ended[key] for key in ("outcome", "records_made", "failures")] == ["done", 30, 3]
+
+
+def test_every_event_has_the_documented_fields_and_is_json(tmp_path: Path) -> None:
+    events = told(tmp_path, simulation=simulate_with_failures)
+    (tmp_path / "manifest.json").unlink()
+    events += told(tmp_path)
+    assert {event["event"] for event in events} == set(EVENTS) - {"said"}
+    page = (ROOT / "docs/reference/run_log.md").read_text()
+    for event in events:
+        assert json.loads(json.dumps(event)) == event
+        row = re.search(rf"^\| `{event['event']}` \| (.*) \|$", page, re.MULTILINE)
+        assert row is not None
+        documented = tuple(re.findall(r"`(\w+)`", row[1]))
+        assert documented == EVENTS[event["event"]] == tuple(event)[2:]
+
+
+@pytest.mark.parametrize(
+    ("engine", "workers"),
+    [
+        ("serial", 0),
+        ("processes", 2),
+        pytest.param("dask", 2, marks=pytest.mark.slow),
+        pytest.param("ray", 2, marks=pytest.mark.slow),
+    ],
+)
+@pytest.mark.filterwarnings("ignore")
+def test_every_engine_tells_the_same(tmp_path: Path, engine: str, workers: int) -> None:
+    for package, name in (("distributed", "dask"), ("ray", "ray")):
+        if engine == name and importlib.util.find_spec(package) is None:
+            pytest.skip(f"{package} is not installed")
+    events = told(tmp_path, engine=engine, workers=workers, simulation=simulate_with_failures)
+    serial = told(tmp_path.with_name(f"{tmp_path.name}_serial"), simulation=simulate_with_failures)
+    timing = {"time", "seconds", "records_per_s", "left_s", "stages", "path", "engine", "workers"}
+    kept = [[{key: value for key, value in e.items() if key not in timing} for e in run] for run in (events, serial)]
+    assert kept[0] == kept[1]
+    assert set(events[-1]["stages"]["worker_cpu_s"]) == {"other", "rows"}
+
+
+def test_a_run_that_goes_on_tells_what_it_took_over_and_a_finished_set_that_there_is_nothing_to_do(
+    tmp_path: Path,
+) -> None:
+    with pytest.raises(EngineError):
+        told(tmp_path, simulation=simulate_with_a_bug)
+    events = told(tmp_path)
+    assert [event["shard"] for event in of(events, "shard_taken_over")] == ["train-00000"]
+    assert (events[-1]["outcome"], events[-1]["shards_taken_over"]) == ("done", 1)
+    assert [event["outcome"] for event in told(tmp_path)] == ["finished before"]
+
+
+def test_a_run_that_fails_says_why_in_its_last_event(tmp_path: Path) -> None:
+    events: Told = []
+    with pytest.raises(EngineError):
+        write_fake_set(tmp_path, simulation=simulate_with_a_bug, events=events.append)
+    assert events[-1]["outcome"] == "failed"
+    assert "record 8 raised ZeroDivisionError" in str(events[-1]["message"])
+
+
+def test_a_log_holds_one_object_per_line_is_added_to_and_never_ends_a_run(tmp_path: Path, capsys: Any) -> None:
+    log = tmp_path / "run.log"
+    for _ in range(2):
+        with run_shown(str(log)) as shown:
+            shown.events({"event": "record_failed", "reason": "line\nbreak"})
+            assert shown.failures == 1
+    assert [json.loads(line)["reason"] for line in log.read_text().splitlines()] == ["line\nbreak"] * 2
+    with run_shown("-") as shown:
+        shown.say("a sentence")
+    assert json.loads(capsys.readouterr().err)["sentence"] == "a sentence"
+    with run_shown("/dev/full") as shown:
+        shown.events({"event": "run_started"})
+        shown.events({"event": "run_ended"})
+    assert capsys.readouterr().err.count("the run goes on") == 1
+    with pytest.raises(UsageError, match=r"--log-json: .* cannot be written"), run_shown(str(tmp_path)):
+        pass
+
+
+def test_stages_of_the_driver_add_up_to_the_run(tmp_path: Path) -> None:
+    write_fake_set(tmp_path)
+    facts = unsealed("run.json", (tmp_path / "run.json").read_bytes())
+    assert set(facts["stages"]["driver_s"]) <= set(DRIVER)
+    # what is left out: opening the folder, and rounding of six stages to a millisecond
+    assert sum(facts["stages"]["driver_s"].values()) == pytest.approx(facts["seconds"], abs=0.1)
+
+
+def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path: Path) -> None:
+    write_fake_set(tmp_path / "set")
+    result = CliRunner().invoke(app, ["run-report", str(tmp_path / "set")])
+    assert "30 records, 0 failed in " in result.stdout
+    assert all(f"\n{name} " in result.stdout for name in ("planning", "writing", "closing", "rows", "sum"))
+    assert CliRunner().invoke(app, ["run-report", str(tmp_path / "set"), "--json"]).stdout.startswith('{\n "')
+    with pytest.raises(DatasetError, match=r"has no run\.json"):
+        read_run(tmp_path)
+
+
+def test_only_the_innermost_stage_is_charged() -> None:
+    clock = iter([0.0, 1.0, 3.0, 7.0])
+    times = StageTimes(lambda: next(clock))
+    with times.during("outer"), times.during("inner"):
+        pass
+    assert times.seconds == {"outer": 5.0, "inner": 2.0}
+
+
+def test_nothing_is_charged_where_nobody_collects() -> None:
+    with stage("loop"):
+        pass
+    with collected("other") as times, stage("loop"):
+        sum(range(100_000))
+    assert times.seconds["loop"] > 0.0
+    assert set(times.seconds) < set(WORKERS)
+
+
+def test_a_simulated_record_charges_the_stages_of_the_physics() -> None:
+    from siggen.checks.loading import load_config
+    from siggen.record.simulation import simulate_specimen
+
+    config = load_config(ROOT / "tests/sets/schema_2/config.yaml")
+    with collected("other") as times:
+        simulate_specimen(config, [0])
+    assert set(times.seconds) == set(WORKERS) - {"rows"}
