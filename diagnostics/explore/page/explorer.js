@@ -52,14 +52,16 @@ Explore.draw = () => {
 
 Explore.begin = () => {
   Explore.listen();
-  const asked = Explore.address();
   Explore.buildScatter(document.getElementById("scatter"));
+  const asked = Explore.address();
+  Explore.chooseScatter();
   document.getElementById("channel").addEventListener("change", Explore.draw);
   document.getElementById("overlay").addEventListener("change", Explore.draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
   addEventListener("resize", Explore.resize);
   addEventListener("hashchange", () => {
     const row = Explore.address();
+    Explore.chooseScatter();
     const shown = Explore.visible();
     if (row >= 0) Explore.open(row);
     else if (shown.length) Explore.open(Number(shown[0].dataset.row));

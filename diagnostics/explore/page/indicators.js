@@ -133,3 +133,7 @@ Explore.buildScatter = (section) => {
     controls.append(label);
   });
 };
+
+// Brings the choices above the scatter in line with what it shows.
+Explore.chooseScatter = () =>
+  document.querySelectorAll("#scatter .controls select").forEach((select, axis) => (select.value = Explore.pair[axis]));
