@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench reports pages reference docs clean
+.PHONY: demo test test-slow lint bench pages reference docs clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -39,12 +39,9 @@ test-slow: $(STAMP) $(VENV)/.documented
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks
 
-reports: $(STAMP)
-	$(BIN)/python docs/scripts/report_pages.py
-
-# With 20 gearboxes each, beside quickstart.
+# SETS=DIR takes sets from there instead of generating them.
 pages: $(STAMP)
-	$(BIN)/python docs/scripts/report_pages.py quickstart bench_20 industrial_20 rig
+	$(BIN)/python docs/scripts/report_pages.py $(if $(SETS),--sets $(SETS))
 
 # The pages that are printed by a script; tests compare them with what it prints.
 reference: $(STAMP)

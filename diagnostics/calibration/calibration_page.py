@@ -45,6 +45,10 @@ def write_calibration_page(
         *html.summary(_sentences(before, after, held_out)),
         _likeness_table(found, before, after),
         html.figure_grid(figures),
+        html.paragraph(
+            "Recordings and simulated records over each other, once a set is generated: `siggen-diagnostics explore "
+            "RECORDING... --teeth Z1,Z2 --beside SET`."
+        ),
         html.heading("What gives the set away"),
         *_feature_parts(before, after),
         html.heading("Lines, floors, modulation and tails"),

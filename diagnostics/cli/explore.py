@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.base.beside import beside
+from diagnostics.base.beside import beside as path_beside
 from diagnostics.cli.opened import Open, opened
 from diagnostics.cli.recording_options import (
     Channel,
@@ -76,6 +76,15 @@ def explore(
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0,
     show: Open = False,
     workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    beside: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="SET",
+            help="A finished set, such as one that `calibrate` led to: recordings and its records on one page, laid "
+            "over each other.",
+            show_default=False,
+        ),
+    ] = None,
     healthy: Annotated[
         list[str] | None,
         typer.Option(metavar="FILE", help="A healthy recording to lay others over. May be given several times."),
@@ -97,11 +106,11 @@ def explore(
 
     Example: siggen-diagnostics explore data/quickstart --out quickstart.html
 
-    Options from --healthy on describe recordings without a machine.
+    Options from --beside on are for recordings; those from --healthy on describe recordings without a machine.
 
     Example: siggen-diagnostics explore data/quickstart --model data/quickstart_report --serve --open
 
-    Example: siggen-diagnostics explore rig january.csv february.csv august.csv
+    Example: siggen-diagnostics explore rig january.csv february.csv august.csv --beside data/mine
     """
     first, path = Path(targets[0]), out
     if out and out.is_dir():
@@ -115,7 +124,10 @@ def explore(
             teeth, speed_range, fs, channel, unit, sensitivity, full_scale, tacho, tacho_pulses
         )
         place = first.with_suffix("") if first.is_file() else first
-        path = _recordings_page(targets, healthy or [], facts, out or beside(place, "_explore.html"), full)
+        page = out or path_beside(place, "_explore.html")
+        path = _recordings_page(targets, healthy or [], facts, page, beside, (limit, full, workers))
+    elif beside is not None:
+        raise UsageError(f"--beside {beside}: for recordings only; name them before it, or leave it out")
     elif len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
     else:
@@ -149,13 +161,18 @@ def _set_page(
     if serving[0]:
         _serve(*explorer_of(dataset, options, terminal_stage), dataset, *serving[1:])
         return None
-    return write_explorer(dataset, out or beside(dataset.path, "_explore.html"), options, terminal_stage)
+    return write_explorer(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage)
 
 
 def _recordings_page(
-    targets: list[str], healthy: list[str], said: RecordingDescription, path: Path, full: bool
+    targets: list[str],
+    healthy: list[str],
+    said: RecordingDescription,
+    path: Path,
+    simulated: Path | None,
+    amount: tuple[int, bool, int],
 ) -> Path:
-    """Write the page of recordings, of a machine or of files that the user describes."""
+    """Write the page of recordings, of a machine or of described files; beside a set where one is named."""
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.cli.shown_recordings import of_files, of_machine
     from diagnostics.explore.measured_page import write_recordings_page
@@ -169,7 +186,15 @@ def _recordings_page(
             raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
         shown = of_files(targets, healthy, two_gears(said.teeth), said.facts(), said.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in targets[:3])
-    return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
+    limit, full, workers = amount
+    if simulated is None:
+        return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
+    from diagnostics.explore.beside_page import write_beside_page
+    from diagnostics.explore.explorer import ExplorerOptions
+    from siggen.dataset.reading import open as open_set
+
+    options = ExplorerOptions(limit=limit, full=full, workers=workers)
+    return write_beside_page(name, shown, open_set(simulated), path, options, terminal_stage)
 
 
 def _serve(page: str, records: object, dataset: object, port: int, show: bool) -> None:

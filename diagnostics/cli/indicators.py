@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from diagnostics.cli.opened import Open, opened
 from diagnostics.cli.recording_options import (
     Channel,
     FullScale,
@@ -24,6 +25,8 @@ from diagnostics.cli.recording_options import (
 )
 from diagnostics.cli.training_options import OwnIndicators
 from siggen.errors import UsageError
+
+EXPLORER = "explorer.html"
 
 if TYPE_CHECKING:
     from diagnostics.recordings.measured_recording import RecordingFacts
@@ -71,6 +74,10 @@ def indicators(
     leave_out: Annotated[
         bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
     ] = False,
+    explore: Annotated[
+        bool, typer.Option("--explore", help="Also write explorer.html, to which numbers of the page then lead.")
+    ] = False,
+    show: Open = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
     teeth: Teeth = None,
     fs: Rate = None,
@@ -93,7 +100,7 @@ def indicators(
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
         from diagnostics.recordings.measured_recording import RecordingFacts
 
-        of_sets = {"--indicator": indicator, "--state": state, "--leave-out": leave_out}
+        of_sets = {"--indicator": indicator, "--state": state, "--leave-out": leave_out, "--explore": explore}
         if ignored := [option for option, given in of_sets.items() if given]:
             raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
         columns = dict(named_column(said) for said in channel or ())
@@ -130,7 +137,15 @@ def indicators(
     table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)
     folder = out or beside(dataset.path, "_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
-    typer.echo(str(write_indicator_report(dataset, table, folder, judged, terminal_stage)))
+    explorer = EXPLORER if explore else ""
+    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=explorer)
+    if explore:
+        from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+
+        write_explorer(dataset, folder / EXPLORER, ExplorerOptions(workers=workers, own=own), terminal_stage)
+    typer.echo(str(path))
+    if show:
+        opened(path)
 
 
 def _of_recordings(

@@ -79,10 +79,16 @@ def report(
     )
     if explore:
         from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+        from diagnostics.report.examples import reported_gearboxes
 
         model = folder / "models"
         known = model if (model / "model.json").is_file() else None
-        write_explorer(dataset, folder / EXPLORER, ExplorerOptions(model=known, own=own), terminal_stage)
+        write_explorer(
+            dataset,
+            folder / EXPLORER,
+            ExplorerOptions(model=known, own=own, first=reported_gearboxes(dataset)),
+            terminal_stage,
+        )
     typer.echo(str(path))
     if show:
         opened(path)

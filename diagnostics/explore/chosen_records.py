@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from diagnostics.records.state_classes import HEALTHY
 
 
-def chosen_records(labels: Mapping[str, np.ndarray], limit: int) -> np.ndarray:
+def chosen_records(labels: Mapping[str, np.ndarray], limit: int, first: Sequence[int] = ()) -> np.ndarray:
     """Return the rows of whole gearboxes, spread evenly over the set, that stay within the limit.
 
     Of a set whose first gearbox alone has more records, rows spread evenly over it come back.
@@ -20,16 +20,29 @@ def chosen_records(labels: Mapping[str, np.ndarray], limit: int) -> np.ndarray:
         Column `specimen_id`.
     limit : int
         Most records.
+    first : sequence of int
+        Gearboxes that come before all others, in this order, as far as the limit allows.
     """
     specimens, counts = np.unique(labels["specimen_id"], return_counts=True)
     if labels["specimen_id"].size <= limit:
         return np.arange(labels["specimen_id"].size)
-    for wanted in range(specimens.size, 0, -1):
-        place = np.unique(np.linspace(0, specimens.size - 1, wanted).round().astype(np.int64))
-        if counts[place].sum() <= limit:
-            return np.flatnonzero(np.isin(labels["specimen_id"], specimens[place]))
+    size = dict(zip(specimens.tolist(), counts.tolist(), strict=True))
+    kept = _first_within([number for number in dict.fromkeys(first) if number in size], size, limit)
+    rest = np.array([number for number in specimens.tolist() if number not in kept])
+    left = limit - sum(size[number] for number in kept)
+    for wanted in range(rest.size, -1, -1):
+        place = np.unique(np.linspace(0, rest.size - 1, wanted).round().astype(np.int64))
+        found = [*kept, *rest[place].tolist()]
+        if found and sum(size[number] for number in rest[place].tolist()) <= left:
+            return np.flatnonzero(np.isin(labels["specimen_id"], found))
     rows = np.flatnonzero(labels["specimen_id"] == specimens[0])
     return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, limit).round().astype(np.int64))])
+
+
+def _first_within(wanted: Sequence[int], size: Mapping[int, int], limit: int) -> list[int]:
+    """Return the gearboxes, in order, until the next would exceed the limit."""
+    total = np.cumsum([size[number] for number in wanted])
+    return [number for number, records in zip(wanted, total, strict=True) if records <= limit]
 
 
 def overlaid_records(labels: Mapping[str, np.ndarray]) -> list[int | None]:

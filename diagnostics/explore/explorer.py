@@ -33,7 +33,13 @@ SET_COLUMNS = (
     *(("record_id", "Record"), ("state", "State"), ("damaged_area_mm2", "Area [mm²]"), ("speed_hz", "Speed [Hz]")),
     *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),
 )
-SET_FILTERS = (("state", "State"), ("split", "Split"), ("speed_hz", "Speed [Hz]"), ("torque_nm", "Load [N m]"))
+SET_FILTERS = (
+    ("state", "State"),
+    ("split", "Split"),
+    ("speed_hz", "Speed [Hz]"),
+    ("torque_nm", "Load [N m]"),
+    ("specimen_id", "Gearbox"),
+)
 NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"), ("seen", "Seen"))
 NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
 # What could end the script element, open a comment in it, or end a line of JSON for older readers.
@@ -64,6 +70,8 @@ class ExplorerOptions:
         Folder of a model that names every record.
     own : sequence of OwnIndicator
         The user's indicators.
+    first : sequence of int
+        Gearboxes that the page shows before all others.
     """
 
     limit: int = LIMIT
@@ -72,6 +80,7 @@ class ExplorerOptions:
     workers: int = 1
     model: Path | None = None
     own: Sequence[OwnIndicator] = ()
+    first: Sequence[int] = ()
 
 
 def write_explorer(
@@ -110,7 +119,7 @@ def explorer_of(dataset: Dataset, options: ExplorerOptions, stage: Stage) -> tup
         table = record_table(dataset, own=options.own, workers=options.workers, advance=advance)
     said = predicted_labels(table, _identity(dataset), options.model, options.own) if options.model else {}
     specimens = {"specimen_id": np.asarray(labels.column("specimen_id"))}
-    rows = chosen_records(specimens, options.limit)
+    rows = chosen_records(specimens, options.limit, options.first)
     payload = page_payload(set_source(dataset, table, rows), stage, full=options.full)
     for place, record in enumerate(payload["records"]):
         record.update({name: str(values[rows[place]]) for name, values in said.items()})

@@ -34,6 +34,11 @@ def packed_floats(values: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(values, "<f4").tobytes()).decode("ascii")
 
 
+def unpacked_floats(data: str) -> np.ndarray:
+    """Return what `packed_floats` packed."""
+    return np.frombuffer(base64.b64decode(data), "<f4")
+
+
 def packed_places(values: np.ndarray) -> dict[str, Any]:
     """Return ascending whole numbers (n,) as differences: `{"bits": 16 or 32, "data": base 64}`, the first from 0."""
     steps = np.diff(values, prepend=0)

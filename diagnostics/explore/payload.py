@@ -57,6 +57,8 @@ class PageSource:
         Returns these by record, for a detail and the stretches that are kept whole.
     measured : bool
         Whether these are recordings of one machine.
+    beside : list of int or None, optional
+        Row of the other side that each can be laid over, where there are recordings and simulated records.
     """
 
     labels: dict[str, np.ndarray]
@@ -71,6 +73,7 @@ class PageSource:
     quantities: list[dict[str, str]]
     internals: Callable[[Detail, list[tuple[int, int]]], list[dict[str, Any]]]
     measured: bool = False
+    beside: list[int | None] | None = None
 
 
 def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSource:
@@ -131,6 +134,7 @@ def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, A
         "quantities": source.quantities,
         "internals": source.internals(axes.detail, fine),
         "measured": source.measured,
+        "beside": source.beside,
     }
 
 
@@ -148,7 +152,7 @@ def _plain(value: Any) -> Any:
 
 def _axes(source: PageSource, *, full: bool) -> PageAxes:
     labels = source.labels
-    samples, teeth = round(source.fs_hz * source.duration_s), labels["teeth_pinion"]
+    samples, teeth = round(source.fs_hz * source.duration_s), labels["teeth_pinion"].astype(np.int64)
     both = int((teeth + labels["teeth_gear"]).max())
     detail = page_detail(teeth.size * (len(source.channels) + len(source.quantities)), samples, both, full=full)
     revolutions = int(labels["speed_hz"].max() * source.duration_s)
@@ -203,6 +207,8 @@ def _signals(source: PageSource, axes: PageAxes, stage: Stage) -> list[dict[str,
         for record in source.records():
             row = place.get(int(record.labels["record_id"]))
             if row is not None:
-                found[row] = record_views(record, axes, None if starts is None else float(starts[row]))
+                found[row] = record_views(
+                    record, axes, None if starts is None or starts[row] is None else float(starts[row])
+                )
                 advance()
     return found

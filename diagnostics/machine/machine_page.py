@@ -46,6 +46,7 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) 
             caption="Newest checks.",
             text=True,
         ),
+        html.paragraph(_look(folder, checks)),
         *(_moved_table(check) for check in checks if check.moved),
         html.heading("References"),
         html.table(
@@ -61,6 +62,15 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check]) 
     page = folder / PAGE
     page.write_text(html.page(f"Machine {folder.name}", parts), encoding="utf-8")
     return page
+
+
+def _look(folder: Path, checks: Sequence[Check]) -> str:
+    """Say how to look at the recordings themselves."""
+    files = " ".join(dict.fromkeys(check.recording.partition(":")[0] for check in checks))
+    return (
+        f"The recordings themselves, over healthy ones: `siggen-diagnostics explore {folder.name} {files}` with the "
+        "files of healthy recordings. `--beside SET` adds a simulated set of this machine (`calibrate`)."
+    )
 
 
 def _headline(checks: Sequence[Check]) -> str:

@@ -150,13 +150,16 @@ def inline(text: str) -> str:
     return re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found)
 
 
-def figure_block(png: bytes, caption: str) -> str:
-    """Return a figure with its caption, the picture inside the page and its size known before it is drawn."""
+def figure_block(png: bytes, caption: str, behind: str = "") -> str:
+    """Return a figure with its caption, the picture inside the page and its size known before it is drawn.
+
+    Below the caption stands `behind`, a line that leads to records, or nothing.
+    """
     source = base64.b64encode(png).decode("ascii")
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))  # of the header of a PNG
     return (
         f'<figure><img alt="{attribute(caption)}" width="{width}" height="{height}" '
-        f'src="data:image/png;base64,{source}"><figcaption>{inline(caption)}</figcaption></figure>'
+        f'src="data:image/png;base64,{source}"><figcaption>{inline(caption)}{behind}</figcaption></figure>'
     )
 
 

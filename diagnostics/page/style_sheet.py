@@ -20,7 +20,8 @@ border-radius:0 6px 6px 0;max-width:none}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,430px),1fr));gap:1.2rem;align-items:start;margin-top:1.2rem}
 figure{margin:0;border:1px solid var(--line);border-radius:8px;padding:.6rem;background:#fff}
 figure img{display:block;width:100%;height:auto}
-figcaption{margin-top:.4rem}
+figcaption{margin-top:.4rem}.behind{margin:.3rem 0 0}
+td a{color:inherit;text-decoration-color:var(--soft)}
 .scroll{overflow-x:auto;border:1px solid var(--line);border-radius:8px}
 .scroll:focus-visible,button:focus-visible{outline:2px solid var(--accent);outline-offset:1px}
 .tall{max-height:34rem;overflow-y:auto}

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, table
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
@@ -16,13 +17,17 @@ from diagnostics.statistics.separability import Separability
 from diagnostics.training.training import Training
 
 
-def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
-    """Return records by state and split, and specimens by split."""
+def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...], explorer: str = "") -> str:
+    """Return records by state and split, and specimens by split; counts lead to their records."""
     splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
     rows = [
         [
             Cell(state),
-            *(Cell(str(int(((labels["state"] == state) & (labels["split"] == name)).sum()))) for name in splits),
+            *(
+                linked_cell(Cell(str(count), value=float(count)), explorer if count else "", state=state, split=name)
+                for name in splits
+                for count in (int(((labels["state"] == state) & (labels["split"] == name)).sum()),)
+            ),
         ]
         for state in classes
     ]
@@ -95,13 +100,16 @@ def strength_text(name: str, strength: float) -> str:
     return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"
 
 
-def separability_html(found: list[Separability], named: Callable[[str], Cell]) -> str:
-    """Return all features, strongest first, each in the cell that names it."""
+def separability_html(found: list[Separability], named: Callable[[str], Cell], explorer: str = "") -> str:
+    """Return all features, strongest first, each in the cell that names it; an AUC leads to its records."""
     states = list(dict.fromkeys(state for entry in found for state in entry.auc))
     rows = [
         [
             named(entry.feature),
-            *(interval_cell(entry.auc[state]) for state in states),
+            *(
+                linked_cell(interval_cell(entry.auc[state]), explorer, state=state, indicator=entry.feature)
+                for state in states
+            ),
             interval_cell(entry.spearman, sign=True),
             Cell(f"{100.0 * entry.defined_share:.0f}", value=entry.defined_share),
         ]

@@ -10,20 +10,21 @@ import numpy as np
 
 from diagnostics.page.style import WIDTH_IN, styled
 from diagnostics.statistics.detector import Detector
-from diagnostics.training.detectors import CLASSIFIER, INDICATOR, NETWORKS, Detectors
+from diagnostics.training.detectors import BOOSTED, CLASSIFIER, INDICATOR, NETWORKS, Detectors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LOOKS = {
     INDICATOR: ("indicator", "#1f6f8b", "s"),
-    CLASSIFIER: ("classifier", "#b01e3c", "o"),
+    CLASSIFIER: ("logistic", "#b01e3c", "o"),
+    BOOSTED: ("boosting", "#6a1b6e", "D"),
     NETWORKS: ("network", "#e3a21a", "^"),
 }
 """Name in the legend, colour and marker of each family."""
 
 DASHES = ("-", "--", ":", "-.")
-SIDEWAYS = (0.94, 1.0, 1.06)
+SIDEWAYS = (0.92, 0.973, 1.027, 1.08)
 """Families stand beside each other at one size, so that their limits can be read."""
 
 MOST_NAMES = 4
@@ -33,8 +34,8 @@ def answer_figure(found: Detectors) -> Figure | None:
     """Return AUC by state over its damaged area above, sizes found in nine of ten below; None without any detector."""
     from matplotlib.figure import Figure
 
-    panels = [("On an unseen gearbox", found.alone), ("With its healthy record", found.referenced)]
-    panels = [(title, detectors) for title, detectors in panels if detectors]
+    sides = [("On an unseen gearbox", found.alone), ("With its healthy record", found.referenced)]
+    panels = [(title, {family: side[family] for family in LOOKS if family in side}) for title, side in sides if side]
     if not panels:
         return None
     with styled():
@@ -50,7 +51,7 @@ def answer_figure(found: Detectors) -> Figure | None:
         _scale(axes[1, 0], [detector for _, detectors in panels for detector in detectors.values()])
         axes[0, 0].set_ylabel("AUC against\nhealthy [-]")
         figure.supxlabel("Damaged area [mm²]", fontsize=10)
-        figure.legend(*_legend(panels[0][1]), loc="outside upper center", ncols=3, fontsize=9, handletextpad=0.3)
+        figure.legend(*_legend(panels[0][1]), loc="outside upper center", ncols=4, fontsize=9, handletextpad=0.3)
     return figure
 
 

@@ -7,7 +7,7 @@ import math
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
-from diagnostics.training.detectors import CLASSIFIER, FEWEST_SPECIMENS, INDICATOR, NETWORKS, Detectors
+from diagnostics.training.detectors import BOOSTED, CLASSIFIER, FEWEST_SPECIMENS, INDICATOR, NETWORKS, Detectors
 
 SPACE = "\N{NO-BREAK SPACE}"
 ERROR_FREE = (
@@ -101,7 +101,7 @@ def detector_sentence(found: Detectors, best: Detector) -> str:
     gearboxes = f"all {counted(best.specimens, 'gearbox')}"
     first = f"All damage together, the strongest on {gearboxes} is the {_title(best)}: {area}."
     others = []
-    for family in (INDICATOR, CLASSIFIER, NETWORKS):
+    for family in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS):
         detector = found.alone.get(family)
         if detector is None or detector is best:
             continue

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import rounded
@@ -12,16 +13,20 @@ from diagnostics.statistics.detector import Detector, FoundSize
 from diagnostics.training.detectors import Detectors
 
 CAPTION = (
-    "Detectors that give one alarm for all damage. Indicator and classifier are judged on all gearboxes, each fold by "
-    "what was chosen or trained on the others; the network on the test gearboxes. Alarms: share of the records of a "
-    "state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
+    "Detectors that give one alarm for all damage. Indicator and classifiers are judged on all gearboxes, each fold by "
+    "what was chosen or trained on the others; the network on the test gearboxes. Where folds differ in which of them "
+    "is the strongest, a row of its own has the choice that the other gearboxes make. Alarms: share of the records of "
+    "a state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
     "give an alarm. Limits of 95 % come from resampled gearboxes."
 )
 
 
-def detector_table(found: Detectors) -> str:
-    """Return all detectors, those beside a healthy record below those without; nothing without any."""
-    every = [*found.alone.values(), *found.referenced.values()]
+def detector_table(found: Detectors, explorer: str = "") -> str:
+    """Return all detectors, those beside a healthy record below those without; nothing without any.
+
+    AUC and alarms of a state lead to its records on the page to explore.
+    """
+    every = list({id(one): one for side in (found.alone, found.referenced) for one in side.values()}.values())
     if not every:
         return ""
     states = list(dict.fromkeys(name for detector in every for name in detector.states))
@@ -32,19 +37,27 @@ def detector_table(found: Detectors) -> str:
         *(f"Alarms, {name} [%]" for name in states),
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
-    return table(head, [_row(detector, states, kinds) for detector in every], caption=CAPTION, sortable=True)
+    return table(head, [_row(detector, states, kinds, explorer) for detector in every], caption=CAPTION, sortable=True)
 
 
-def _row(detector: Detector, states: list[str], kinds: list[str]) -> list[Cell]:
+def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced else ""
     small = ", ".join(part for part in (in_a_sentence(detector.basis) if detector.basis else "", beside) if part)
     none = Cell("–", value=math.nan)
+    shown = {"indicator": detector.basis} if detector.basis else {}
+
+    def behind(cell: Cell, state: str) -> Cell:
+        return linked_cell(cell, explorer, state=state, **shown)
+
     return [
         Cell(detector.title, small),
         Cell(str(detector.specimens), value=float(detector.specimens)),
         interval_cell(detector.every),
-        *(interval_cell(detector.states[name].auc) if name in detector.states else none for name in states),
-        *(_alarms(detector, name) for name in states),
+        *(
+            behind(interval_cell(detector.states[name].auc), name) if name in detector.states else none
+            for name in states
+        ),
+        *(behind(_alarms(detector, name), name) for name in states),
         *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
     ]
 

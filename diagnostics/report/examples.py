@@ -10,6 +10,7 @@ import numpy as np
 from diagnostics.records.recording import TACHO_NAME
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.order_spectrum import OrderSpectrum, order_spectrum
+from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 
 
@@ -17,6 +18,7 @@ from siggen.dataset.reading import Dataset
 class Example:
     """One state of the chosen specimen."""
 
+    record_id: int
     state: str
     fault: str
     signal_m_s2: np.ndarray
@@ -52,13 +54,7 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     channel : int
         Position of the channel.
     """
-    columns = ["record_id", "specimen_id", "state", "state_id", "operating_point_id", "repeat", "fault"]
-    rows = dataset.labels(columns=columns).to_pylist()
-    groups: dict[tuple[int, int], list[dict[str, Any]]] = {}
-    for row in rows:
-        if row["repeat"] == 0:
-            groups.setdefault((row["operating_point_id"], row["specimen_id"]), []).append(row)
-    _, chosen = max(groups.items(), key=lambda item: (len(item[1]), -item[0][0], -item[0][1]))
+    chosen = _example_rows(dataset)
     found = dataset.channels[channel]
     records = [dataset.record(row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
     first = records[0]
@@ -76,4 +72,22 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
 def _example(record: dict[str, Any], column: str, fs_hz: float) -> Example:
     signal, tacho_s = record[column], record[TACHO_NAME]
     spectrum = order_spectrum(signal, tacho_s, fs_hz, int(record["teeth_pinion"])) if len(tacho_s) > 1 else None
-    return Example(record["state"], record["fault"], signal, tacho_s, spectrum)
+    return Example(int(record["record_id"]), record["state"], record["fault"], signal, tacho_s, spectrum)
+
+
+def _example_rows(dataset: Dataset) -> list[dict[str, Any]]:
+    columns = ["record_id", "specimen_id", "state", "state_id", "operating_point_id", "repeat", "fault"]
+    groups: dict[tuple[int, int], list[dict[str, Any]]] = {}
+    for row in dataset.labels(columns=columns).to_pylist():
+        if row["repeat"] == 0:
+            groups.setdefault((row["operating_point_id"], row["specimen_id"]), []).append(row)
+    _, chosen = max(groups.items(), key=lambda item: (len(item[1]), -item[0][0], -item[0][1]))
+    return chosen
+
+
+def reported_gearboxes(dataset: Dataset) -> list[int]:
+    """Return the gearboxes to which a report leads: those of its figures, then those of the test split."""
+    table = dataset.labels(columns=["specimen_id", "split"]).to_pylist()
+    tested = sorted({int(row["specimen_id"]) for row in table if row["split"] == TEST})
+    # the stiffness curves are of gearbox 0
+    return list(dict.fromkeys([int(_example_rows(dataset)[0]["specimen_id"]), 0, *tested]))

@@ -1,4 +1,4 @@
-"""Figures of the evaluation of indicators: curves over severity, size of damage and noise, and causes."""
+"""Figures of the evaluation of indicators: curves over severity, size of damage and noise."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import fault_colours, new_figure, state_ticks
 from diagnostics.records.state_classes import HEALTHY
+from diagnostics.report.indicator_terms import panel_title
 from diagnostics.statistics.assessment import SIZES
 from diagnostics.statistics.detectable_size import detection_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
@@ -27,6 +28,7 @@ CAUSES = ("speed", "load", "sensor", "noise", "specimen")
 CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
 MARKERS = "osD^vP"
 MOST_LINES = 5
+LEGEND_SIGNS = 66
 
 
 def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:
@@ -53,38 +55,6 @@ def _mean(values: list[float]) -> float:
     return float(np.mean(values)) if all(map(math.isfinite, values)) else -math.inf
 
 
-def sensitivity_figure(found: Sequence[IndicatorResult]) -> Figure:
-    """Return the heat map of what explains indicators in healthy records, median over channels, in ranking order."""
-    names = list(dict.fromkeys(result.indicator for result in found))[:ROWS_SHOWN]
-    rows = []
-    for name in names:
-        shares = np.array(
-            [[r.sensitivity.get(cause, np.nan) for cause in CAUSES] for r in found if r.indicator == name]
-        )
-        defined = np.isfinite(shares).any(axis=0)
-        row = np.full(len(CAUSES), np.nan)
-        row[defined] = np.nanmedian(shares[:, defined], axis=0)
-        rows.append(row)
-    return _heat_map(np.array(rows), names, list(CAUSES), "Explained share [-]")
-
-
-def _heat_map(values: np.ndarray, rows: list[str], columns: list[str], title: str) -> Figure:
-    figure, axes = new_figure(height_in=1.2 + 0.2 * len(rows))
-    axis = axes[0, 0]
-    picture = axis.imshow(values, cmap="Greys", vmin=0.0, vmax=1.0, aspect="auto")
-    for (row, column), value in np.ndenumerate(values):
-        if math.isfinite(value):
-            colour = "white" if value > 0.55 else "#1c2733"
-            axis.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=7.5, color=colour)
-    axis.set_xticks(range(len(columns)), columns, fontsize=8)
-    axis.xaxis.tick_top()
-    axis.set_yticks(range(len(rows)), rows, fontsize=7.5)
-    axis.grid(visible=False)
-    axis.tick_params(length=0)
-    figure.colorbar(picture, ax=axis, location="bottom", shrink=0.6, aspect=40, pad=0.01, label=title)
-    return figure
-
-
 def severity_figure(
     matrix: FeatureMatrix, shown: Sequence[IndicatorResult], states: tuple[str, ...], healthy: tuple[str, ...]
 ) -> Figure:
@@ -102,7 +72,7 @@ def severity_figure(
         axis.plot(position, middle, color="#b01e3c", linewidth=1.8, marker="o", markersize=4)
         if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
             axis.set_yscale("log")
-        axis.set_title(f"{result.indicator}\n{result.channel}", loc="left", fontsize=7)
+        axis.set_title(panel_title(result.column), loc="left", fontsize=7)
         state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
     for axis in axes.ravel()[len(shown) :]:
         axis.set_visible(False)
@@ -140,7 +110,14 @@ def detection_figure(
         drawn += 1
         low, high = np.quantile(curve.share[1:], [0.025, 0.975], axis=0)
         axis.fill_between(curve.size, low, high, color=colour, alpha=0.12, linewidth=0)
-        axis.plot(curve.size, curve.share[0], color=colour, marker=marker, markersize=4, label=result.column)
+        axis.plot(
+            curve.size,
+            curve.share[0],
+            color=colour,
+            marker=marker,
+            markersize=4,
+            label=panel_title(result.column, LEGEND_SIGNS),
+        )
     if not drawn:
         return None
     for level in (0.5, 0.9):
@@ -185,7 +162,7 @@ def noise_figure(curves: dict[str, dict[str, NoiseCurve]], states: tuple[str, ..
                 curve.snr_db, [a.value for a in curve.auc], color=colour, marker=marker, markersize=3, label=label
             )
         axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
-        axis.set_title(name.replace("__", "\n"), loc="left", fontsize=7)
+        axis.set_title(panel_title(name), loc="left", fontsize=7)
     for axis in axes.ravel()[len(usable) :]:
         axis.set_visible(False)
     axes[0, 0].set_ylim(-0.03, 1.03)

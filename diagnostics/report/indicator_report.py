@@ -16,6 +16,7 @@ from diagnostics.indicators.classifier_table import write_table
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.page import html
+from diagnostics.page.explorer_link import indicator_links, records_line
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import set_table
@@ -24,6 +25,7 @@ from diagnostics.records.damage_kind import damage_kinds
 from diagnostics.records.state_classes import HEALTHY, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
+from diagnostics.report.indicator_terms import column_title
 from diagnostics.report.report import clipping_notes
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
 from diagnostics.statistics.indicator_result import IndicatorResult
@@ -78,6 +80,8 @@ def write_indicator_report(
     folder: Path,
     settings: AssessmentSettings | None = None,
     stage: Stage = silent_stage,
+    *,
+    explorer: str = "",
 ) -> Path:
     """Evaluate a table of indicators and write everything; return the page's path.
 
@@ -94,6 +98,8 @@ def write_indicator_report(
         Default: `AssessmentSettings()`.
     stage : Stage
         Told of every step.
+    explorer : str
+        Name of the page to explore beside it, to which tables and figures then lead.
 
     Raises
     ------
@@ -124,7 +130,7 @@ def write_indicator_report(
     (folder / "figures").mkdir(exist_ok=True)
     for name, (png, _) in pictures.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
-    return _write_page(dataset, folder, evaluated, sentences, pictures)
+    return _write_page(dataset, folder, evaluated, sentences, pictures, explorer)
 
 
 def _specimens(table: IndicatorTable) -> int:
@@ -154,17 +160,12 @@ def _noise_curves(evaluated: Evaluated) -> dict[str, dict[str, NoiseCurve]]:
 
 def figures(evaluated: Evaluated) -> dict[str, tuple[Figure, str]]:
     """Return all figures by file name with their captions; those without data are left out."""
-    found, names = evaluated.found, evaluated.records.states
+    names = evaluated.records.states
     if not names or not evaluated.shown:
         return {}
     matrix = evaluated.table.matrix
     intact = tuple(state for state in ordered_states(matrix.labels) if state not in names)
     drawn: dict[str, tuple[Figure | None, str]] = {
-        "sensitivity": (
-            indicator_figures.sensitivity_figure(found),
-            "What changes the same indicators in healthy records. Shown is the adjusted share of rank variance that "
-            "each cause explains alone, median over channels.",
-        ),
         "severity": (
             indicator_figures.severity_figure(matrix, evaluated.shown, names, intact),
             "Indicators over the severity of damage: median (red), 5 to 95 % of the records (blue), specimens (grey).",
@@ -218,25 +219,27 @@ def _write_page(
     evaluated: Evaluated,
     sentences: Sequence[str],
     pictures: dict[str, tuple[bytes, str]],
+    explorer: str,
 ) -> Path:
     found, names, table = evaluated.found, evaluated.records.states, evaluated.table
+    behind = _behind(evaluated, explorer)
 
     def grid(*wanted: str) -> str:
-        return html.figure_grid([html.figure_block(*pictures[name]) for name in wanted if name in pictures])
+        shown = [name for name in wanted if name in pictures]
+        return html.figure_grid([html.figure_block(*pictures[name], behind.get(name, "")) for name in shown])
 
     title = f"Indicators of {dataset.path.name}"
     first = found[:MOST_DETAILED]
     undefined = indicator_tables.undefined_html(found, _left_out(table))
     sections = [
         html.heading("Records"),
-        set_table(table.matrix.labels, ordered_states(table.matrix.labels)),
+        set_table(table.matrix.labels, ordered_states(table.matrix.labels), explorer),
         html.heading("Ranking"),
         html.paragraph(HOW_TO_READ),
         indicator_tables.best_html(best_by_state(found, names)),
-        indicator_tables.ranking_html(found, names),
+        indicator_tables.ranking_html(found, names, explorer),
         *([html.paragraph(_detail_text(len(found)))] if len(found) > MOST_DETAILED else []),
-        indicator_tables.separation_html(indicator_figures.separation_rows(found, names), names),
-        grid("sensitivity"),
+        indicator_tables.separation_html(indicator_figures.separation_rows(found, names), names, explorer),
         *(indicator_tables.same_specimen_html(first, names), indicator_tables.p_value_html(first, names)),
         html.heading("Trend with severity, and the smallest damage found"),
         html.paragraph(_size_text(evaluated)),
@@ -247,7 +250,7 @@ def _write_page(
             "The table gives the adjusted share of rank variance that each cause explains alone. Speed, load and "
             "signal-to-noise ratio are fitted as a parabola, sensor and specimen as groups. Causes may share variance."
         ),
-        indicator_tables.sensitivity_html(first),
+        indicator_tables.sensitivity_html(first, explorer),
         *([html.heading("Undefined values"), undefined] if undefined else []),
         html.heading("Definitions"),
         indicator_tables.definition_html(),
@@ -258,6 +261,13 @@ def _write_page(
     path = folder / PAGE
     path.write_text(html.page(title, parts), encoding="utf-8")
     return path
+
+
+def _behind(evaluated: Evaluated, explorer: str) -> dict[str, str]:
+    """Return by figure the line that leads to its records."""
+    titles = {result.column: column_title(result.column) for result in evaluated.shown}
+    line = records_line("All records by", indicator_links(explorer, titles))
+    return dict.fromkeys(("severity", "detection", "noise"), line)
 
 
 def _left_out(table: IndicatorTable) -> dict[str, float]:

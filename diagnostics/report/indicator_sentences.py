@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from diagnostics.page.wording import counted, limits, percent
 from diagnostics.report.indicator_tables import size_text
+from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.multiple_tests import smallest_paired_p
 
@@ -42,7 +43,7 @@ def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str
     other = max(single, key=lambda r: r.score_others.value)
     what = "AUC" if len(states) == 1 else "mean AUC over the states"
     text = (
-        f"The indicator {other.column} separates best between different specimens, with "
+        f"The indicator {in_a_sentence(other.column)} separates best between different specimens, with "
         f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)}). "
         "Only indicators of single records are compared here."
     )
@@ -50,9 +51,10 @@ def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str
     if not paired:
         return [text]
     same = max(paired, key=lambda r: r.score_same.value)
+    who = "It is also" if same is other else f"The indicator {in_a_sentence(same.column)} is"
     return [
-        f"{text} {'It is also' if same is other else f'The indicator {same.column} is'} the best on the same specimen "
-        f"before and after damage: it moves in its direction in {percent(same.score_same.value)} of the pairs."
+        f"{text} {who} the best on the same specimen before and after damage: it moves in its "
+        f"direction in {percent(same.score_same.value)} of the pairs."
     ]
 
 
@@ -78,9 +80,10 @@ def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list
         return []  # the sentence before has said it
     hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
     return [
-        f"The state {hardest} is the hardest to find: its best single indicator, {best[hardest][1]}, reaches an AUC of "
-        f"{best[hardest][0]:.2f}. The state {easiest} is the easiest: {best[easiest][1]} reaches "
-        f"{best[easiest][0]:.2f}. These values are optimistic, because each is the best of many."
+        f"The state {hardest} is the hardest to find: its best single indicator, {in_a_sentence(best[hardest][1])}, "
+        f"reaches an AUC of {best[hardest][0]:.2f}. The state {easiest} is the easiest: "
+        f"{in_a_sentence(best[easiest][1])} reaches {best[easiest][0]:.2f}. These values are "
+        f"optimistic, because each is the best of many."
     ]
 
 
@@ -127,6 +130,7 @@ def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
     size = best.detectable[name]
     at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
     return [
-        f"The indicator {best.column} finds the smallest damaged area: {at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² "
-        f"({size_text(size.low)} to {size_text(size.high)}) with 90\N{NO-BREAK SPACE}% probability."
+        f"The indicator {in_a_sentence(best.column)} finds the smallest damaged area: "
+        f"{at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}) "
+        f"with 90\N{NO-BREAK SPACE}% probability."
     ]

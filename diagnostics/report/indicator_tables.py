@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.registry import ALL, BY_NAME
+from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.report.indicator_figures import CAUSES
@@ -15,30 +16,44 @@ from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.indicator_result import IndicatorResult
 
 ARROWS = {1: "rises", -1: "falls"}
+BEHIND = " A number leads to the records behind it."
 
 
-def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...], explorer: str = "") -> str:
     """Return all indicators, best between other specimens first, with the AUC of every state."""
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
         [
             term_cell(r.column), Cell(str(rank), value=rank), interval_cell(r.score_others),
-            *(interval_cell(r.others[state].separation) for state in states), Cell(ARROWS[r.direction]),
+            *(
+                linked_cell(interval_cell(r.others[state].separation), explorer, state=state, indicator=r.column)
+                for state in states
+            ),
+            Cell(ARROWS[r.direction]),
         ]
         for rank, r in enumerate(found, start=1)
     ]  # fmt: skip
     caption = "Ranking between different specimens: AUC against healthy with 95 % limits. The score is their mean."
-    return table(head, rows, caption=caption, sortable=True, tall=True)
+    return table(head, rows, caption=caption + (BEHIND if explorer else ""), sortable=True, tall=True)
 
 
-def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]) -> str:
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], explorer: str = "") -> str:
     """Return the heat map: separation of every state in both designs, best first, empty without rows."""
     head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
-    cells = [[term_cell(name), *(_separation(value) for value in values)] for name, values in rows.items()]
+    cells = [
+        [
+            term_cell(name),
+            *(
+                linked_cell(_separation(value), explorer, state=state, indicator=name)
+                for value, state in zip(values, 2 * states, strict=True)
+            ),
+        ]
+        for name, values in rows.items()
+    ]
     caption = (
         f"Separation of each state from healthy by the best {len(cells)} indicators, median over channels. 1 (dark) is "
         "perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs of one specimen that move "
-        "in the direction of the indicator."
+        f"in the direction of the indicator.{BEHIND if explorer else ''}"
     )
     return table(head, cells, caption=caption, sortable=True, tall=True) if cells else ""
 
@@ -155,16 +170,25 @@ def p_cell(p_value: float) -> Cell:
     return Cell("< 0.001" if p_value < 0.001 else f"{p_value:.3f}", value=p_value)
 
 
-def sensitivity_html(found: Sequence[IndicatorResult]) -> str:
-    """Return what explains each indicator in healthy records."""
-    rows = [[term_cell(r.column), *(_share(r.sensitivity.get(cause, math.nan)) for cause in CAUSES)] for r in found]
+def sensitivity_html(found: Sequence[IndicatorResult], explorer: str = "") -> str:
+    """Return the heat map of what explains each indicator in healthy records."""
+    rows = [
+        [
+            term_cell(r.column),
+            *(
+                linked_cell(_share(r.sensitivity.get(cause, math.nan)), explorer, indicator=r.column)
+                for cause in CAUSES
+            ),
+        ]
+        for r in found
+    ]
     head = ["Indicator, channel", *(cause.capitalize() for cause in CAUSES)]
     caption = "Share of the rank variance of healthy records that each cause explains alone [-]."
     return table(head, rows, caption=caption, sortable=True, tall=True)
 
 
 def _share(value: float) -> Cell:
-    return Cell(f"{value:.2f}" if math.isfinite(value) else "–", value=value)
+    return Cell(f"{value:.2f}" if math.isfinite(value) else "–", value=value, shade=value)
 
 
 def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from functools import cache
 
 from diagnostics.indicators.indicator import base_name
@@ -36,3 +37,9 @@ def in_a_sentence(column: str) -> str:
     if title[1:2].islower():
         title = title[:1].lower() + title[1:]
     return f"{title} at {channel}" if channel else title
+
+
+def panel_title(column: str, width: int = 44) -> str:
+    """Return title and channel of a column for a figure, in lines of at most so many signs."""
+    title, channel = column_title(column), column.partition("__")[2]
+    return "\n".join(textwrap.wrap(f"{title} ({channel})" if channel else title, width))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from urllib.parse import urlencode
-
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.page.explorer_link import explorer_link
 from diagnostics.page.html import Cell, table
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.state_classes import CLASS
@@ -15,19 +14,6 @@ from diagnostics.training.training import Training
 
 MOST_RECORDS = 100
 """Rows of the table of wrongly named records."""
-
-
-def explorer_link(explorer: str, **chosen: object) -> str:
-    """Return where the page to explore shows records that fit, such as `explorer.html#state=severe`; nothing without.
-
-    Parameters
-    ----------
-    explorer : str
-        Name of the page beside the report, or nothing.
-    chosen
-        What its records have to be: `record`, `state`, `predicted`, `split`, `named` ...
-    """
-    return f"{explorer}#{urlencode({name: str(value) for name, value in chosen.items()})}" if explorer else ""
 
 
 def confusion_table(judged: Judged, explorer: str = "") -> str:

@@ -99,7 +99,7 @@ def write_report(
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()
     with stage("figures", 1) as advance, styled():
-        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies)
+        drawing = draw(dataset, matrix, ordered_states(matrix.labels), training, found, studies, explorer)
         opening = answer_figure(detectors)
         advance()
     drawing.notes += [*notes, *study_notes, *clipping_notes(dataset), *undefined_notes(table)]

@@ -8,6 +8,7 @@ from typing import Any
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page import html, tables
+from diagnostics.page.explorer_link import records_line, state_links
 from diagnostics.page.provenance import provenance
 from diagnostics.page.wording import counted
 from diagnostics.records.state_classes import ordered_states
@@ -73,7 +74,9 @@ def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -
 
 
 def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
-    figure = html.figure_block(*pictures[ANSWER]) if ANSWER in pictures else ""
+    states = next((tuple(one.states) for one in reported.detectors.alone.values()), ())
+    behind = records_line("Records", state_links(reported.explorer, states))
+    figure = html.figure_block(*pictures[ANSWER], behind) if ANSWER in pictures else ""
     error_free = is_error_free(reported.dataset.config)
     return html.answer(answer_sentences(reported.detectors, error_free=error_free), figure)
 
@@ -83,19 +86,19 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
     drawing, training = reported.drawing, reported.training
 
     def grid(names: Mapping[str, Any]) -> str:
-        return html.figure_grid([html.figure_block(*pictures[name]) for name in names])
+        return html.figure_grid([html.figure_block(*pictures[name], drawing.behind.get(name, "")) for name in names])
 
     labels = reported.matrix.labels
     notes = [*drawing.notes, "Shaft angles come from the once-per-revolution pulses."]
     notes.append(provenance(reported.dataset, reported.seed))
     return {
         "What limits the answer": _limits(reported),
-        "Detectors": [detector_table(reported.detectors)] if reported.detectors.alone else [],
-        "Records": [*_explore(reported.explorer), tables.set_table(labels, ordered_states(labels))],
+        "Detectors": [detector_table(reported.detectors, reported.explorer)] if reported.detectors.alone else [],
+        "Records": [*_explore(reported.explorer), tables.set_table(labels, ordered_states(labels), reported.explorer)],
         "Scores": [*_scores(training), grid(drawing.scores)],
         "Records named wrongly": _named(reported),
         "Splits and training specimens": [*study_blocks(reported.studies), grid(drawing.studies)] if training else [],
-        "Indicators": [*_indicators(reported.found), grid(drawing.indicators)],
+        "Indicators": [*_indicators(reported), grid(drawing.indicators)],
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
         "Definitions of the indicators": [definition_html()],
@@ -144,9 +147,13 @@ def _named(reported: Reported) -> list[str]:
     return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
 
 
-def _indicators(found: list[Separability]) -> list[str]:
+def _indicators(reported: Reported) -> list[str]:
+    found = reported.found
     text = (
         f"The table has all {counted(len(found), 'feature')} on all specimens. Nothing is trained here, so no "
         "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
     )
-    return [html.paragraph(" ".join([*area_sentence(found), text])), tables.separability_html(found, term_cell)]
+    return [
+        html.paragraph(" ".join([*area_sentence(found), text])),
+        tables.separability_html(found, term_cell, reported.explorer),
+    ]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.statistics.judgement import TITLES
+from diagnostics.report.indicator_terms import panel_title
+from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.learning_curve import CurvePoint
 from diagnostics.training.training import Training
@@ -34,9 +36,13 @@ def score_figure(training: Training) -> Figure:
             axis.plot(found.value, row, marker="o", markersize=6, color=colour)
         axis.set_xlim(0.0, 1.03)
         axis.set_xlabel(title)
-    axes[0, 0].set_yticks(range(len(training.judged)), [judged.name for judged in training.judged])
+    axes[0, 0].set_yticks(range(len(training.judged)), [_name(judged) for judged in training.judged], fontsize=9)
     axes[0, 0].set_ylim(len(training.judged) - 0.5, -0.5)
     return figure
+
+
+def _name(judged: Judged) -> str:
+    return "\n".join(textwrap.wrap(TITLES[judged.name], 18))
 
 
 def permutation_figure(training: Training) -> Figure:
@@ -54,7 +60,7 @@ def permutation_figure(training: Training) -> Figure:
         axis.plot(value, row, linestyle="none", marker="D", markersize=7, color=AREA_COLOUR, label=label[1])
     axis.set_xlim(0.0, 1.03)
     axis.set_ylim(len(shown) - 0.5, -0.5)
-    axis.set_yticks(range(len(shown)), [judged.name for judged in shown])
+    axis.set_yticks(range(len(shown)), [_name(judged) for judged in shown], fontsize=9)
     axis.set_xlabel("Macro-AUROC on test specimens [-]")
     figure.legend(loc="outside upper center", ncols=3, fontsize=9)
     return figure
@@ -107,7 +113,7 @@ def _draw_indicator(
     if (values > 0).all() and values.max() > 30.0 * values.min():
         axis.set_yscale("log")
     axis.set_ylabel(f"[{unit_of(feature)}]")
-    axis.set_title(feature, loc="left", fontsize=9, fontweight="bold")
+    axis.set_title(panel_title(feature, 72), loc="left", fontsize=9, fontweight="bold")
 
 
 def unit_of(feature: str) -> str:

@@ -18,6 +18,7 @@ from diagnostics.page.wording import (
     signed,
     signed_limits,
 )
+from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval, error_share_limit
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
@@ -207,7 +208,7 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     states = {name for other in found for name in other.auc}
     which = f"The state {state} is the hardest to find" if len(states) > 1 else f"The damaged state is {state}"
     return [
-        f"{which}. The best of {counted(len(found), 'single indicator')} is {entry.feature}, which "
+        f"{which}. The best of {counted(len(found), 'single indicator')} is {in_a_sentence(entry.feature)}, which "
         f"{'falls' if falls else 'rises'} with damage. It separates {state} from healthy with an AUC of "
         f"{turned.value:.2f} ({limits(turned)}). This value is optimistic: the indicator was chosen on the same "
         "specimens."
@@ -221,8 +222,8 @@ def area_sentence(found: list[Separability]) -> list[str]:
         return []
     best = max(followed, key=lambda entry: abs(entry.spearman.value))
     return [
-        f"The indicator {best.feature} follows the damaged area best (rank correlation {signed(best.spearman.value)}, "
-        f"{signed_limits(best.spearman)})."
+        f"The indicator {in_a_sentence(best.feature)} follows the damaged area best (rank correlation "
+        f"{signed(best.spearman.value)}, {signed_limits(best.spearman)})."
     ]
 
 

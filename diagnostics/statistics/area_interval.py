@@ -1,4 +1,4 @@
-"""Interval of an AUC from resampled gearboxes that does not shrink to nothing where all pairs are won.
+"""Interval of an AUC or a share from resampled gearboxes that does not shrink to nothing where all are won.
 
 Near 1 the bootstrap is too narrow: where every damaged record lies above every healthy one, so does it in every
 resample. So its limits are widened to those of Clopper and Pearson for a proportion among as many independent gearboxes
@@ -6,7 +6,8 @@ as the resamples' variance stands for, and not fewer than there are. Source: Clo
 effective sample size of Korn and Graubard (Survey Methodology 24, 1998, 193-201); its least value, the gearboxes of the
 smaller class, since the variance of an AUC is at most A(1 - A)/min(m, n): Birnbaum and Klose 1957. Where the resamples
 scatter less than that, more gearboxes count than there are, since each is compared with all of the other class; so
-limits between the ends may be narrower than those of the gearboxes counted. No AUC gets a higher lower limit than 1
+limits between the ends may be narrower than those of the gearboxes counted. A share of records is treated like an
+AUC: 0 and 1 get the exact limits of so many gearboxes. No AUC gets a higher lower limit than 1
 itself would, which is 0.025^(1/n). The combination is derived; its coverage is tested.
 """
 
@@ -20,14 +21,14 @@ from diagnostics.statistics.evaluation import LEVEL, Interval, interval
 
 
 def area_interval(samples: np.ndarray, specimens: int) -> Interval:
-    """Return an AUC with its limits; NaN where the AUC is.
+    """Return an AUC, or a share of records, with its limits; NaN where it is.
 
     Parameters
     ----------
     samples : (resamples + 1,) float64
-        The AUC itself, then those of resampled gearboxes.
+        The value itself, then those of resampled gearboxes.
     specimens : int
-        Gearboxes of the class that has fewer.
+        Gearboxes of the class that has fewer; of a share, those that have such records.
     """
     found = interval(samples, specimens)
     if not math.isfinite(found.value) or specimens < 2:

@@ -19,7 +19,7 @@ from diagnostics.records.state_classes import HEALTHY, ordered_states
 from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
 
 FALSE_ALARMS, FOUND = 0.05, 0.9
 FEWEST_HEALTHY = 20
@@ -197,7 +197,7 @@ def _state(
         own = weights[:, of_state]
         with np.errstate(invalid="ignore"):  # a resample without this state
             alarms = (own * (score[of_state] > threshold[:, None])).sum(axis=1) / own.sum(axis=1)
-        share = interval(alarms, int(np.unique(labels["specimen_id"][of_state]).size))
+        share = area_interval(alarms, int(np.unique(labels["specimen_id"][of_state]).size))
     return StateFound(kind, float(np.median(labels[AREA][of_state])), auc, share)
 
 

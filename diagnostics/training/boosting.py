@@ -31,16 +31,49 @@ def train_boosting(matrix: FeatureMatrix, split: SpecimenSplit, seed: int) -> Fe
         Seed of the histograms' sample.
     """
     truth = state_index(matrix, split.classes)
-    defined = np.isfinite(matrix.values[split.train]).any(axis=0)  # a column that is never defined has no histogram
-    matrix = matrix.columns([name for name, kept in zip(matrix.names, defined, strict=True) if kept])
-    train, validation = matrix.rows(split.train).values, matrix.rows(split.validation).values
+    known = defined_columns(matrix, split.train)
+    train, validation = known.rows(split.train).values, known.rows(split.validation).values
     note, trees = "", DEFAULT_TREES
     if split.validation.any():
         trees = _chosen_trees(train, truth[split.train], validation, truth[split.validation], seed)
     else:
         note = f"no validation specimens: {DEFAULT_TREES} boosting rounds were not chosen but taken as they are"
-    model = _model(trees, seed).fit(train, truth[split.train])
-    return FeatureClassifier(model, matrix.names, split.classes, float(trees), note)
+    return fitted_boosting(matrix.rows(split.train), truth[split.train], split.classes, seed, trees, note=note)
+
+
+def defined_columns(matrix: FeatureMatrix, rows: np.ndarray) -> FeatureMatrix:
+    """Return the columns that some of these records define: one that is never defined has no histogram."""
+    defined = np.isfinite(matrix.values[rows]).any(axis=0)
+    return matrix.columns([name for name, kept in zip(matrix.names, defined, strict=True) if kept])
+
+
+def fitted_boosting(
+    matrix: FeatureMatrix,
+    truth: np.ndarray,
+    classes: tuple[str, ...],
+    seed: int,
+    trees: int = DEFAULT_TREES,
+    *,
+    note: str = "",
+) -> FeatureClassifier:
+    """Fit so many trees on all records of a matrix.
+
+    Parameters
+    ----------
+    matrix : FeatureMatrix
+        Training records.
+    truth : (n,) int
+        Positions of their classes in `classes`.
+    classes : tuple of str
+    seed : int
+        Seed of the histograms' sample.
+    trees : int
+    note : str
+        What was not as it should be.
+    """
+    known = defined_columns(matrix, np.ones(truth.size, dtype=bool))
+    model = _model(trees, seed).fit(known.values, truth)
+    return FeatureClassifier(model, known.names, classes, float(trees), note)
 
 
 def _model(trees: int, seed: int) -> Any:

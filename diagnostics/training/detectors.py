@@ -1,37 +1,47 @@
-"""Alarms for damage: best single indicator, a classifier and a network, alone and beside healthy records.
+"""Alarms for damage: best single indicator, classifiers and a network, alone and beside healthy records.
 
-Indicator and classifier are judged on every gearbox: gearboxes are dealt into folds, and what judges a fold was chosen
-or trained on the others. The penalty of the classifier is fixed, so nothing is chosen on what is judged. Folds take
-different indicators; their scores become comparable as distances from the healthy records of the other folds. Networks
-are judged on the test gearboxes only, since training them again for every fold costs minutes. Source: nested
-cross-validation, standard literature; the scheme derived.
+Indicator and classifiers are judged on every gearbox: gearboxes are dealt into folds, and what judges a fold was chosen
+or trained on the others. Penalty and number of trees are fixed, so nothing is chosen on what is judged; neither is
+which of them is the strongest (`fold_scores`). Folds take different indicators; their scores become comparable as
+distances from the healthy records of the other folds. Networks are judged on the test gearboxes only, since training
+them again for every fold costs minutes. Source: nested cross-validation, standard literature; the scheme derived.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from diagnostics.attacks.column_attackers import column_auc
-from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.detection import damage_score
 from diagnostics.statistics.detector import Detector, judged_detector
 from diagnostics.statistics.judgement import CIRCULAR, CIRCULAR_REFERENCED, NETWORK, TITLES, VALIDATION_AUROC, Judged
-from diagnostics.training.baselines import fitted_classifier
+from diagnostics.training.baselines import FeatureClassifier, fitted_classifier
+from diagnostics.training.boosting import fitted_boosting
+from diagnostics.training.fold_scores import (
+    Fitted,
+    Scorer,
+    chosen_scores,
+    dealt,
+    distance,
+    fold_scores,
+    held_out,
+    inner_scores,
+)
 from diagnostics.training.log_features import healthy_referenced
 from diagnostics.training.training import Training
 
-FOLDS, DEALT = 5, 2000
-"""Folds of gearboxes, and the owner of the generator that deals them: others have other owners."""
-
 FEWEST_SPECIMENS = 4
-INDICATOR, CLASSIFIER, NETWORKS = "best single indicator", "logistic regression on all indicators", "network"
+INDICATOR, CLASSIFIER = "best single indicator", "logistic regression on all indicators"
+BOOSTED, NETWORKS, CHOSEN = "gradient boosting on all indicators", "network", "chosen"
+SMALLEST = 1e-12
+"""Probability below which odds are cut off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +53,13 @@ class Detectors:
 
     @property
     def strongest(self) -> Detector | None:
-        """The strongest of those that are judged on all gearboxes without a reference."""
-        return _strongest(self.alone)
+        """The one that the other gearboxes choose, of those that are judged on all gearboxes without a reference."""
+        return self.alone.get(CHOSEN)
 
     @property
     def strongest_referenced(self) -> Detector | None:
         """The same beside a healthy record."""
-        return _strongest(self.referenced)
-
-
-def _strongest(found: dict[str, Detector]) -> Detector | None:
-    judged = [detector for family, detector in found.items() if family != NETWORKS]
-    return max(judged, key=lambda detector: detector.every.value, default=None)
+        return self.referenced.get(CHOSEN)
 
 
 @single_thread
@@ -97,77 +102,75 @@ def _network(
 
 
 def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict[str, Detector]:
-    """Return indicator and classifier; empty with too few gearboxes of either side."""
+    """Return indicator, classifiers and the choice among them; empty with too few gearboxes of either side."""
     labels = matrix.labels
     healthy = labels["fault"] == HEALTHY
     if min(_count(labels["specimen_id"][side]) for side in (healthy, ~healthy)) < FEWEST_SPECIMENS:
         return {}
     fold = dealt(labels["specimen_id"], seed)
-    single, chosen = indicator_scores(matrix.values, ~healthy, fold)
+    usable = np.isfinite(matrix.values).all(axis=0)
+    whole = matrix.columns([name for name, kept in zip(matrix.names, usable, strict=True) if kept])
+    ways: dict[str, tuple[Scorer, FeatureMatrix]] = {
+        **({INDICATOR: (indicator_scorer, whole)} if usable.any() else {}),
+        CLASSIFIER: (partial(logistic_scorer, take_logarithms=not referenced), matrix),
+        BOOSTED: (partial(boosting_scorer, seed=seed), matrix),
+    }
+    outer = {family: fold_scores(way, taken, ~healthy, fold) for family, (way, taken) in ways.items()}
+    inner = {family: inner_scores(way, taken, ~healthy, fold) for family, (way, taken) in ways.items()}
+    score, names = chosen_scores(outer, inner, ~healthy, fold)
     judged = {}
-    if chosen.size:
-        basis = matrix.names[Counter(chosen.tolist()).most_common(1)[0][0]]
-        judged[INDICATOR] = judged_detector(INDICATOR, single, labels, seed, referenced=referenced, basis=basis)
-    score = classifier_scores(matrix, ~healthy, fold, take_logarithms=not referenced)
-    judged[CLASSIFIER] = judged_detector(CLASSIFIER, score, labels, seed, referenced=referenced)
-    return {family: detector for family, detector in judged.items() if detector}
+    for family, scores in outer.items():
+        basis = most_chosen(whole, ~healthy, fold) if family == INDICATOR else ""
+        judged[family] = judged_detector(family, scores, labels, seed, referenced=referenced, basis=basis)
+    alike = len(set(names)) == 1
+    chosen = judged[names[0]] if alike else judged_detector(choice(names), score, labels, seed, referenced=referenced)
+    return {family: detector for family, detector in {**judged, CHOSEN: chosen}.items() if detector}
 
 
 def _count(specimen: np.ndarray) -> int:
     return int(np.unique(specimen).size)
 
 
-def dealt(specimen: np.ndarray, seed: int) -> np.ndarray:
-    """Return the fold of every record, (n,) int; a gearbox is in one fold."""
-    unique, index = np.unique(specimen, return_inverse=True)
-    place = generator(seed, Purpose.FOLDS, DEALT).permutation(unique.size)
-    return np.asarray(place[index.ravel()] % min(FOLDS, unique.size))
+def choice(names: list[str]) -> str:
+    """Return what was chosen in how many folds, as a title."""
+    counted = Counter(names).most_common()
+    return f"choice on the other gearboxes ({', '.join(f'{count} of {len(names)}: {name}' for name, count in counted)})"
 
 
-def _held(fold: np.ndarray) -> Iterator[np.ndarray]:
-    yield from (fold == number for number in np.unique(fold))
+def strongest_column(values: np.ndarray, damaged: np.ndarray) -> tuple[int, float]:
+    """Return the column that is best by itself, and 1 where damage raises it or -1 where it lowers it."""
+    area = column_auc(values, damaged)
+    best = int(np.argmax(np.abs(area - 0.5)))
+    return best, 1.0 if area[best] >= 0.5 else -1.0
 
 
-def indicator_scores(values: np.ndarray, damaged: np.ndarray, fold: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the score of every record by the column that is best on the other folds, and these columns.
-
-    Parameters
-    ----------
-    values : (n, columns) float64
-        Columns that are undefined in a record are not taken.
-    damaged : (n,) bool
-    fold : (n,) int
-
-    Returns
-    -------
-    (n,) float64
-        Distance from the median of the other folds' healthy records over their interquartile range, turned so that
-        damage is large.
-    (folds,) int
-        Columns; empty where none is defined throughout.
-    """
-    usable = np.flatnonzero(np.isfinite(values).all(axis=0))
-    score, chosen = np.zeros(damaged.size), []
-    if not usable.size:
-        return score, np.empty(0, np.int64)
-    for held in _held(fold):
-        area = column_auc(values[np.ix_(~held, usable)], damaged[~held])
-        best = int(np.argmax(np.abs(area - 0.5)))
-        column = values[:, usable[best]]
-        low, middle, high = np.quantile(column[~held & ~damaged], [0.25, 0.5, 0.75])
-        turned = 1.0 if area[best] >= 0.5 else -1.0
-        score[held] = turned * (column[held] - middle) / ((high - low) or 1.0)
-        chosen.append(int(usable[best]))
-    return score, np.array(chosen)
+def indicator_scorer(matrix: FeatureMatrix, damaged: np.ndarray) -> Fitted:
+    """Take the column that is best: its distance from healthy records, turned so that damage is large."""
+    best, turned = strongest_column(matrix.values, damaged)
+    healthy = matrix.values[~damaged, best]
+    return lambda other: turned * distance(other.values[:, best], healthy)
 
 
-def classifier_scores(
-    matrix: FeatureMatrix, damaged: np.ndarray, fold: np.ndarray, *, take_logarithms: bool
-) -> np.ndarray:
-    """Return the probability of damage of every record, (n,), by logistic regression on the other folds."""
-    score, truth = np.zeros(damaged.size), damaged.astype(np.int64)
-    for held in _held(fold):
-        rest = matrix.rows(~held)
-        model = fitted_classifier(rest, truth[~held], (HEALTHY, "damaged"), take_logarithms=take_logarithms)
-        score[held] = model.probability(matrix.values[held])[:, 1]
+def most_chosen(matrix: FeatureMatrix, damaged: np.ndarray, fold: np.ndarray) -> str:
+    """Return the column that most folds choose."""
+    found = [strongest_column(matrix.values[~held], damaged[~held])[0] for held in held_out(fold)]
+    return matrix.names[Counter(found).most_common(1)[0][0]]
+
+
+def logistic_scorer(matrix: FeatureMatrix, damaged: np.ndarray, *, take_logarithms: bool) -> Fitted:
+    """Fit logistic regression; the score is the logarithm of the odds of damage."""
+    truth = damaged.astype(np.int64)
+    return _odds(fitted_classifier(matrix, truth, (HEALTHY, "damaged"), take_logarithms=take_logarithms))
+
+
+def boosting_scorer(matrix: FeatureMatrix, damaged: np.ndarray, *, seed: int) -> Fitted:
+    """Fit gradient boosting of a fixed number of trees; the score is the logarithm of the odds of damage."""
+    return _odds(fitted_boosting(matrix, damaged.astype(np.int64), (HEALTHY, "damaged"), seed))
+
+
+def _odds(model: FeatureClassifier) -> Fitted:
+    def score(other: FeatureMatrix) -> np.ndarray:
+        damage = model.probability(other.columns(model.features).values)[:, 1]
+        return np.asarray(np.log(np.maximum(damage, SMALLEST)) - np.log(np.maximum(1.0 - damage, SMALLEST)))
+
     return score

@@ -1,5 +1,9 @@
 """Print how fast the explorer's page is and what a browser says of it: `python docs/scripts/explorer_checks.py`.
 
+With names of pages, of any command: only errors on the console, text beyond the width of the screen, and axe-core (of
+a table its first 20 rows: all are written alike, and a thousand cells take minutes).
+What headless chromium calls a narrower window is 500 pixels wide.
+
 99 records of 33 gearboxes, 38,400 samples of two channels each: the set that the tests make in memory, made longer.
 Needs chromium, and axe-core for the check of accessibility (`pip install axe-core-python`). A server on this machine
 gives the page to the browser, which measures itself and sends back what it measured. First view: from the start of
@@ -51,6 +55,14 @@ found.axe=all.map((v)=>({id:v.id,impact:v.impact,nodes:v.nodes.length,first:v.no
 await fetch("done",{method:"POST",body:JSON.stringify(found)})})()</script>""".replace("TIMES", str(TIMES))
 
 
+ASK = """<script>addEventListener("load",async()=>{
+found.wide=Math.max(0,document.documentElement.scrollWidth-innerWidth);
+for(const body of document.querySelectorAll("tbody"))[...body.rows].slice(20).forEach((row)=>row.remove());
+const all=(await axe.run(document)).violations;
+found.axe=all.map((v)=>({id:v.id,impact:v.impact,nodes:v.nodes.length,first:v.nodes[0].html.slice(0,160)}));
+await fetch("done",{method:"POST",body:JSON.stringify(found)})})</script>"""
+
+
 def axe_source() -> str:
     """Return axe-core as a script element; nothing where it is not installed."""
     for package in ("axe_core_python", "axe_playwright_python"):
@@ -61,15 +73,15 @@ def axe_source() -> str:
     return ""
 
 
-def instrumented(page: str, more: str) -> str:
-    """Return the page with what watches and measures it, and with leave to send back what it found."""
+def instrumented(page: str, more: str, asked: str = MEASURE) -> str:
+    """Return the page with what watches it and asks it, and with leave to send back what it found."""
     page = page.replace("default-src 'none';", "default-src 'none'; connect-src 'self';", 1)
     return page.replace('<meta charset="utf-8">', f'<meta charset="utf-8">{WATCH}', 1).replace(
-        "</body>", f"{more}{MEASURE}</body>", 1
+        "</body>", f"{more}{asked}</body>", 1
     )
 
 
-def measured(browser: str, page: str, size: tuple[int, int], flags: Sequence[str] = ()) -> dict[str, Any]:
+def measured(program: str, page: str, size: tuple[int, int], flags: Sequence[str] = ()) -> dict[str, Any]:
     """Return what a browser found on a page."""
     answers: list[dict[str, Any]] = []
     done = threading.Event()
@@ -94,7 +106,7 @@ def measured(browser: str, page: str, size: tuple[int, int], flags: Sequence[str
     with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server, tempfile.TemporaryDirectory() as profile:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         command = [
-            *(browser, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"),
+            *(program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"),
             *("--no-first-run", f"--window-size={size[0]},{size[1]}", *flags),
         ]
         with subprocess.Popen(
@@ -113,17 +125,38 @@ def median(values: Sequence[float]) -> str:
     return f"{statistics.median(values):.0f} ms ({min(values):.0f} to {max(values):.0f})"
 
 
+def browser() -> str:
+    """Return the browser of this machine."""
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        raise SystemExit(f"none of {', '.join(BROWSERS)} is installed")
+    return found
+
+
+def check_pages(pages: Sequence[str]) -> None:
+    """Print a row for each page and width."""
+    axe, program = axe_source(), browser()
+    if not axe:
+        raise SystemExit("axe-core is not installed: pip install axe-core-python")
+    print("| page | width | errors on the console | beyond the screen | findings of axe-core |")
+    print("|---|---|---|---|---|")
+    for name in pages:
+        text = instrumented(Path(name).read_text(encoding="utf-8"), axe, ASK)
+        for size in ((1280, 800), (500, 844)):
+            found = measured(program, text, size)
+            said = json.dumps(found["axe"]) if found["axe"] else "none"
+            print(f"| {Path(name).name} | {size[0]} | {found['errors'] or 'none'} | {found['wide']} px | {said} |")
+
+
 def main() -> None:
     """Make the page, load it ten times after a warm-up, and print what was found."""
-    browser = next((found for name in BROWSERS if (found := shutil.which(name))), None)
-    if browser is None:
-        raise SystemExit(f"none of {', '.join(BROWSERS)} is installed")
+    program = browser()
     dataset = memory_dataset(("train",) * GEARBOXES, duration_s=DURATION_S)
     with tempfile.TemporaryDirectory() as folder:
         path = write_explorer(dataset, Path(folder) / "page.html", ExplorerOptions())
         text = path.read_text(encoding="utf-8")
     plain = instrumented(text, "")
-    runs = [measured(browser, plain, (1280, 800)) for _ in range(TIMES + 1)][1:]
+    runs = [measured(program, plain, (1280, 800)) for _ in range(TIMES + 1)][1:]
     print("| measured | median of ten (range) |")
     print("|---|---|")
     print(f"| first view, {runs[0]['charts']} charts | {median([run['first'] for run in runs])} |")
@@ -137,10 +170,13 @@ def main() -> None:
         ("500 x 844", (500, 844), ()),
         ("dark", (1280, 800), dark),
     ):
-        found = measured(browser, instrumented(text, axe), size, flags).get("axe") if axe else None
+        found = measured(program, instrumented(text, axe), size, flags).get("axe") if axe else None
         said = "not checked: axe-core is not installed" if found is None else json.dumps(found) if found else "none"
         print(f"| findings of axe-core, {name} | {said} |")
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:]:
+        check_pages(sys.argv[1:])
+    else:
+        main()

@@ -1,14 +1,15 @@
-"""Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [NAME ...]`.
+"""Pages of the presets in docs/reports: `python docs/scripts/report_pages.py [--sets DIR] [NAME ...]`.
 
-`make reports` makes those of quickstart and of the whole bench. `make pages` makes those of quickstart, bench,
-industrial and a machine of one's own, the last three with 20 gearboxes each: less sure than with all gearboxes.
-
-Sets are looked for in runs/ and made where they are missing; every command is printed before it runs. A page that
-names a place on this machine is refused. Sets, JSON files, tables and models stay in runs/.
+Without names all pages are made (`make pages`): those of quickstart, bench, industrial, families and a machine of one's
+own. Sets are looked for in runs/ and generated where they are missing; every command is printed before it runs. With
+`--sets DIR` a set is taken from DIR/NAME, where it is. A set of another configuration, or of another number of
+gearboxes, is refused, and so is a page that names a place on this machine. Sets, JSON files, tables and models stay in
+runs/. `docs/reports/answers.md` is written anew from all pages.
 """
 
 from __future__ import annotations
 
+import argparse
 import getpass
 import os
 import re
@@ -17,62 +18,44 @@ import shutil
 import socket
 import subprocess
 import sys
+from html import unescape
 from pathlib import Path
 
 RUNS, PAGES = Path("runs"), Path("docs/reports")
-OTHER_GEARS = (
-    "--set gears.pinion.teeth=21 --set gears.gear.teeth=50 --set specimens=24 --set seed=99 "
-    "--set 'splits={train: 0, validation: 0, test: 20}'"
-)
-LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
-SETS = {
-    "quickstart": ("siggen generate configs/quickstart.yaml --out runs/quickstart",),
-    "bench": ("siggen generate configs/bench.yaml --out runs/bench --workers 2",),
-    "other": (f"siggen generate configs/bench.yaml {OTHER_GEARS} --out runs/other --workers 2",),
-}
-"""Commands that make a set, by its folder in runs/."""
-
-GEARBOXES = 20
-"""Of the smaller sets: four of them test, and 5 % of 20 healthy records is one."""
+GEARBOXES = {"bench": 24, "industrial": 24, "families": 60, "rig": 20}
+"""Fewer than the presets have, so that the pages cost an hour: 5 % of 20 healthy records is one."""
 
 OWN = "--teeth 25,56 --module 2 --face-width 20 --speed 15,25 --torque 20 --sensors 2"
-SETS |= {
-    f"{preset}_{GEARBOXES}": (
-        f"siggen generate configs/{preset}.yaml --set specimens={GEARBOXES} --workers 2 "
-        f"--out runs/{preset}_{GEARBOXES}",
-    )
-    for preset in ("bench", "industrial")
+SETS = {
+    "quickstart": ("siggen generate configs/quickstart.yaml --out runs/quickstart --workers 2",),
+    **{
+        name: (f"siggen generate configs/{name}.yaml --set specimens={GEARBOXES[name]} --out runs/{name} --workers 2",)
+        for name in ("bench", "industrial", "families")
+    },
+    "rig": (
+        f"siggen init {OWN} --out runs/rig.yaml",
+        f"siggen generate runs/rig.yaml --set specimens={GEARBOXES['rig']} --out runs/rig --workers 2",
+    ),
 }
-SETS["rig"] = (
-    f"siggen init {OWN} --out runs/rig.yaml",
-    f"siggen generate runs/rig.yaml --set specimens={GEARBOXES} --out runs/rig --workers 2",
-)
+"""Commands that make a set, by its folder in runs/; the last one generates it."""
 
+LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
 REPORTS = {
-    "quickstart": {
-        "quickstart_report": ("report.html", "report runs/quickstart"),
-        "quickstart_indicators": ("indicators.html", "indicators runs/quickstart"),
-    },
-    "bench": {
-        "bench_report": ("report.html", "report runs/bench --test runs/other --channel lid_vertical"),
-        "bench_indicators": ("indicators.html", "indicators runs/bench --leave-out"),
-        "bench_ladder": ("indicators.html", f"indicators runs/bench --leave-out {LADDER}"),
-        "bench_audit": ("audit.html", "audit runs/bench --realism --paired"),
-    },
-}
-"""By preset: the name of a page, what the program calls it, and the command that writes it."""
-
-SMALLER = {
     name: {
         f"{name}_audit": ("audit.html", f"audit runs/{name} --realism"),  # first: the report cites it
         f"{name}_report": ("report.html", f"report runs/{name}"),
         f"{name}_indicators": ("indicators.html", f"indicators runs/{name} --leave-out"),
     }
-    for name in (f"bench_{GEARBOXES}", f"industrial_{GEARBOXES}", "rig")
+    for name in SETS
 }
-"""The same for sets of few gearboxes."""
+REPORTS["bench"]["bench_ladder"] = ("indicators.html", f"indicators runs/bench --leave-out {LADDER}")
+"""By set: the name of a page, what the program calls it, and the command that writes it."""
 
-NEEDED = {"quickstart": ("quickstart",), "bench": ("bench", "other")} | {name: (name,) for name in SMALLER}
+ANSWERS = PAGES / "answers.md"
+ANSWERS_HEAD = """# What the pages answer
+
+Printed by `python docs/scripts/report_pages.py` from the [pages](README.md): the first sentences of every report.
+"""
 
 
 def run(command: str) -> None:
@@ -107,17 +90,91 @@ def write_page(name: str, page: str, command: str) -> None:
     print(f"{PAGES / name}.html: {len(text.encode()) / 1e6:.2f} MB")
 
 
-def main(*presets: str) -> None:
-    """Write the pages of these presets, or of all."""
-    for preset in presets or REPORTS:
-        for folder in NEEDED[preset]:
-            if not (RUNS / folder).exists():
-                RUNS.mkdir(exist_ok=True)
-                for command in SETS[folder]:
-                    run(command)
-        for name, (page, command) in (REPORTS | SMALLER)[preset].items():
-            write_page(name, page, command)
+def fetch_set(name: str, sets: Path | None) -> None:
+    """Have the set in runs/: as it is there, from another folder (its files linked), or generated."""
+    target = RUNS / name
+    RUNS.mkdir(exist_ok=True)
+    if not target.exists() and sets is not None and (sets / name).is_dir():
+        shutil.copytree(sets / name, target, copy_function=_linked)
+    elif not target.exists():
+        for command in SETS[name]:
+            run(command)
+    check_set(name)
+
+
+def _linked(source: str, target: str) -> None:
+    """Link a file; copy it where that is not possible."""
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copy2(source, target)
+
+
+def check_set(name: str) -> None:
+    """Refuse a set in runs/ that its commands would not make.
+
+    Raises
+    ------
+    SystemExit
+        If configuration or number of gearboxes differ.
+    """
+    import siggen
+
+    *before, generate = SETS[name]
+    _, _, source, *options = shlex.split(generate)
+    if before and not Path(source).exists():
+        run(before[0])
+    overrides = [value for option, value in zip(options[::2], options[1::2], strict=True) if option == "--set"]
+    config, dataset = siggen.load_config(source, overrides), siggen.open(RUNS / name)
+    gearboxes = len(set(dataset.labels(columns=["specimen_id"]).column("specimen_id").to_pylist()))
+    if (dataset.manifest["identity"], gearboxes) != (config.identity, config.specimens):
+        raise SystemExit(
+            f"runs/{name}: {gearboxes} gearboxes of identity {dataset.manifest['identity']}; `{generate}` gives "
+            f"{config.specimens} of {config.identity}. Remove the folder to have it made"
+        )
+
+
+def answers() -> str:
+    """Return the answers of all reports in docs/reports, as a page."""
+    parts = [ANSWERS_HEAD]
+    for name in SETS:
+        page = PAGES / f"{name}_report.html"
+        if not page.exists():
+            continue
+        text = page.read_text(encoding="utf-8").replace("<wbr>", "")
+        opening = text.split('<section class="answer"')[1].split("</section>")[0]
+        said = [_plain(part) for part in re.findall(r"<p>(.*?)</p>", opening, re.DOTALL)]
+        count = re.search(r"identity (\w{12})\w*: (\d+)", _plain(text.rsplit("Made by", 1)[1]))
+        made = f"{count[2]} records, identity `{count[1]}`" if count else ""
+        listed = "\n".join(f"* {_folded(sentence)}" for sentence in said)
+        parts.append(f"## {name}\n\n[Report]({page.name}), {made}.\n\n{listed}\n")
+    return "\n".join(parts)
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[ \n\t]+", " ", unescape(re.sub(r"<[^>]*>", "", text))).strip()
+
+
+def _folded(sentence: str) -> str:
+    import textwrap
+
+    return "\n  ".join(textwrap.wrap(sentence, 120, break_long_words=False, break_on_hyphens=False))
+
+
+def main() -> None:
+    """Write the pages of the named sets, or of all."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(SETS)}; all unless told")
+    parser.add_argument("--sets", type=Path, help="folder that has sets by these names")
+    asked = parser.parse_args()
+    if unknown := set(asked.names) - set(SETS):
+        parser.error(f"{', '.join(sorted(unknown))}: allowed are {', '.join(SETS)}")
+    for name in asked.names or SETS:
+        fetch_set(name, asked.sets)
+        for page, (file, command) in REPORTS[name].items():
+            write_page(page, file, command)
+    ANSWERS.write_text(answers(), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

@@ -50,4 +50,5 @@ def test_the_page_leads_from_a_drawing_to_verdict_set_and_detector(
     assert "september.csv: changed" in said["check"]
     assert (tmp_path / "mine_data" / "calibration.html").stat().st_size > 50_000
     assert siggen.open("mine").labels().num_rows == 40
+    assert (tmp_path / "beside.html").read_text().count("recording</bdi>") >= 5
     assert "changed" in said["predict"]

@@ -41,9 +41,10 @@ Explore.showAverages = (section, row, channel, healthy) => {
   Explore.drawAverages(body, row, average, Explore.healthyAverage(healthy, channel, place, average));
 };
 
-// The healthy record's average where it can be laid over: as many teeth, both counted from the same tooth.
+// The healthy record's average where it can be laid over: as many teeth, both counted from the same tooth; never that of
+// another machine, whose teeth are others.
 Explore.healthyAverage = (healthy, channel, place, own) => {
-  const averages = healthy === null ? null : Explore.view(healthy, channel).averages;
+  const averages = healthy === null || Explore.besides() ? null : Explore.view(healthy, channel).averages;
   const found = averages && averages[place];
   return found && found.numbered && own.numbered ? Explore.values(found) : null;
 };
@@ -53,11 +54,11 @@ Explore.drawAverages = (body, row, packed, base) => {
   const own = Explore.values(packed);
   const x = own.map((_, k) => k / steps);
   const both = (values) => (base ? [x, values(base), values(own)] : [x, values(own)]);
-  const series = () => (base ? [Explore.line("healthy", "healthy", { alpha: 0.75 }), Explore.line("record", "record")] : [Explore.line("record", "record")]);
+  const series = () => (base ? [Explore.line(Explore.otherName(), "healthy", { alpha: 0.75 }), Explore.line("record", "record")] : [Explore.line("record", "record")]);
   const marks = Explore.toothMarks(row, Explore.shaft, packed.numbered);
   const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : "teeth since the first pulse", y: "m/s²", range: [0, own.length / steps], marks, group: "teeth" };
   const mark = packed.numbered ? "Shaded: one pitch from where a damaged tooth enters contact; the structure rings on after it." : "The set does not say which gear tooth the first pulse meets, so that no tooth is marked.";
   Explore.chart(body, { ...shared, title: "Synchronous average", data: both((values) => values), series: series(), caption: `Mean over ${packed.turns} revolutions of the ${Explore.shaft}. ${mark}` });
   Explore.chart(body, { ...shared, title: "Without the mean tooth", height: 190, data: both((values) => Explore.withoutMeanTooth(values, steps)), series: series(), caption: "Average minus the mean of all its teeth: all mesh harmonics are gone, what differs from tooth to tooth stays." });
-  if (base) Explore.chart(body, { ...shared, title: "Difference from the healthy record", height: 190, data: [x, Explore.minus(own, base)], series: [Explore.line("record minus healthy", "record")], caption: "Record minus healthy record at the same tooth." });
+  if (base) Explore.chart(body, { ...shared, title: `Difference from the ${Explore.otherName()} record`, height: 190, data: [x, Explore.minus(own, base)], series: [Explore.line(`record minus ${Explore.otherName()}`, "record")], caption: "Record minus the one laid over, at the same tooth." });
 };

@@ -5,18 +5,29 @@ Explore.facts = (row) => {
   const record = Explore.data.records[row];
   const area = record.damaged_area_mm2 ? `, ${Explore.number(record.damaged_area_mm2)} mm² damaged` : "";
   const load = record.torque_nm === null ? "" : `, load ${Explore.number(record.torque_nm)}`;
-  if (Explore.data.measured) return `${record.name}, ${record.state}, pinion ${Explore.number(record.speed_hz)} Hz${load}, ${record.teeth_pinion} and ${record.teeth_gear} teeth.`;
+  if (Explore.isRecording(row)) return `${record.name}, ${record.state}, pinion ${Explore.number(record.speed_hz)} Hz${load}, ${record.teeth_pinion} and ${record.teeth_gear} teeth.`;
   return `Gearbox ${record.specimen_id}, ${Explore.number(record.speed_hz)} Hz, ${Explore.number(record.torque_nm)} N m, ${record.teeth_pinion} and ${record.teeth_gear} teeth${area}, ${record.split}${record.predicted === undefined ? "" : `, ${record.named} named ${record.predicted}`}.`;
 };
 
-Explore.healthyOf = (row) => (document.getElementById("overlay").checked ? Explore.data.overlay[row] : null);
+Explore.isRecording = (row) => Explore.data.measured || Explore.data.records[row].kind === "recording";
+
+// Whether records are laid over the other side: a recording over a simulated record, and the other way round.
+Explore.besides = () => document.getElementById("laid")?.value === "beside";
+Explore.otherOf = (row) => (Explore.besides() ? Explore.data.beside : Explore.data.overlay)[row];
+Explore.healthyOf = (row) => (document.getElementById("overlay").checked ? Explore.otherOf(row) : null);
+Explore.otherName = () => (!Explore.besides() ? "healthy" : Explore.isRecording(Explore.chosen) ? "simulated" : "recording");
 
 Explore.showOverlayNote = (row) => {
   const note = document.getElementById("overlay-note");
-  const other = Explore.data.overlay[row];
+  const other = Explore.otherOf(row);
   note.hidden = !document.getElementById("overlay").checked;
-  const measured = Explore.data.measured;
+  const measured = Explore.isRecording(row);
   const laid = other === null ? null : Explore.data.records[other];
+  if (Explore.besides()) {
+    const what = laid === null ? "" : `${laid.fault === "healthy" ? "healthy " : ""}${measured ? `simulated record ${laid.record_id}` : `recording ${laid.name}`}`;
+    note.textContent = laid === null ? "The other side has no record: nothing is laid over." : `Laid over: ${what}, ${Explore.number(laid.speed_hz)} Hz, the nearest in speed. Angles count from each one's first pulse; averages by tooth are not laid over, since these are other teeth.`;
+    return;
+  }
   note.textContent = measured
     ? laid === null ? "No other recording is known to be healthy: nothing is laid over." : `Laid over: ${laid.name}, the healthy recording nearest in speed.`
     : other === null
@@ -28,7 +39,7 @@ Explore.open = (row) => {
   Explore.chosen = row;
   const record = Explore.data.records[row];
   const title = document.getElementById("chosen-title");
-  title.replaceChildren(`${Explore.data.measured ? "Recording" : "Record"} ${record.record_id}: `, Explore.element("bdi", Explore.data.measured ? record.name : record.state));
+  title.replaceChildren(`${Explore.isRecording(row) ? "Recording" : "Record"} ${record.record_id}: `, Explore.element("bdi", Explore.isRecording(row) ? record.name : record.state));
   document.getElementById("chosen-facts").textContent = Explore.facts(row);
   Explore.markRow();
   Explore.draw();
@@ -52,14 +63,17 @@ Explore.draw = () => {
 
 Explore.begin = () => {
   Explore.listen();
-  const asked = Explore.address();
   Explore.buildScatter(document.getElementById("scatter"));
+  const asked = Explore.address();
+  Explore.chooseScatter();
   document.getElementById("channel").addEventListener("change", Explore.draw);
   document.getElementById("overlay").addEventListener("change", Explore.draw);
+  document.getElementById("laid")?.addEventListener("change", Explore.draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
   addEventListener("resize", Explore.resize);
   addEventListener("hashchange", () => {
     const row = Explore.address();
+    Explore.chooseScatter();
     const shown = Explore.visible();
     if (row >= 0) Explore.open(row);
     else if (shown.length) Explore.open(Number(shown[0].dataset.row));

@@ -38,7 +38,7 @@ Explore.showFlank = (section, row) => {
   const damages = Explore.data.damage[String(record.record_id)] || [];
   const teeth = Explore.damagedTeeth(row);
   if (!teeth.length) {
-    const why = record.fault === "healthy" ? "This record is healthy." : "The table of damage names none for this record.";
+    const why = Explore.isRecording(row) ? "A recording does not tell its damage." : record.fault === "healthy" ? "This record is healthy." : "The table of damage names none for this record.";
     return void body.append(Explore.element("p", why));
   }
   const flanks = Explore.element("div", "", { class: "flanks" });

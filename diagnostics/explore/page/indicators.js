@@ -11,7 +11,7 @@ Explore.quantile = (sorted, share) => {
 // Rows of healthy records of other gearboxes: at the same operating point where these are five or more.
 Explore.healthyRows = (row) => {
   const records = Explore.data.records;
-  const others = records.flatMap((record, k) => (record.fault === "healthy" && record.specimen_id !== records[row].specimen_id ? [k] : []));
+  const others = records.flatMap((record, k) => (record.fault === "healthy" && record.kind !== "recording" && record.specimen_id !== records[row].specimen_id ? [k] : []));
   const near = others.filter((k) => records[k].operating_point_id === records[row].operating_point_id);
   return near.length >= 5 ? [near, "at the same operating point"] : [others, "at any operating point"];
 };
@@ -39,7 +39,8 @@ Explore.showIndicators = (section, row, channel) => {
   const label = Explore.element("label", "Indicator contains ");
   const search = Explore.element("input", "", { type: "search", autocomplete: "off" });
   label.append(search);
-  const those = Explore.data.measured ? "other healthy recordings" : "healthy records of other gearboxes";
+  const simulated = Explore.data.beside === null ? "" : "simulated ";
+  const those = Explore.data.measured ? "other healthy recordings" : `${simulated}healthy records of other gearboxes`;
   const against = healthy.length < 3
     ? `This page has fewer than three ${those}: no indicator has a place among them.`
     : `Compared with ${healthy.length} ${those} on this page, ${where}. Many are looked at, so that some stand far out by chance.`;
@@ -79,8 +80,9 @@ Explore.scatterData = () => {
   const rows = Explore.data.records.map((_, k) => k).filter((k) => Number.isFinite(x[k]) && Number.isFinite(y[k]));
   rows.sort((a, b) => x[a] - x[b]);
   const only = (wanted) => rows.map((k) => (wanted(Explore.data.records[k], k) ? y[k] : null));
-  const healthy = (record) => record.fault === "healthy";
-  return { rows, data: [rows.map((k) => x[k]), only(healthy), only((record) => !healthy(record)), only((_, k) => k === Explore.chosen)] };
+  const recorded = (record) => record.kind === "recording";
+  const healthy = (record) => record.fault === "healthy" && !recorded(record);
+  return { rows, data: [rows.map((k) => x[k]), only(healthy), only((record) => !healthy(record) && !recorded(record)), ...(Explore.data.beside ? [only(recorded)] : []), only((_, k) => k === Explore.chosen)] };
 };
 
 Explore.nearest = (plot, rows, left, top) => {
@@ -101,7 +103,7 @@ Explore.drawScatter = (section) => {
   const high = data[0][data[0].length - 1];
   const margin = 0.04 * (high - low) || 1;
   const plot = Explore.chart(body, {
-    title: "Scatter of two indicators", x, y, height: 340, data, range: [low - margin, high + margin], series: [dots("healthy", "healthy", 7), dots(Explore.data.measured ? "others" : "damaged", "record", 7), dots("chosen", "damage", 13)],
+    title: "Scatter of two indicators", x, y, height: 340, data, range: [low - margin, high + margin], series: [dots("healthy", "healthy", 7), dots(Explore.data.measured ? "others" : "damaged", "record", 7), ...(Explore.data.beside ? [dots("recordings", "other", 9)] : []), dots("chosen", "damage", 13)],
     summary: `${rows.length} records; the table of records opens them too.`, caption: "A click on a point opens its record. Drag to zoom.", cursor: { drag: { x: true, y: true, uni: 30 } },
   });
   let from = null;
@@ -133,3 +135,7 @@ Explore.buildScatter = (section) => {
     controls.append(label);
   });
 };
+
+// Brings the choices above the scatter in line with what it shows.
+Explore.chooseScatter = () =>
+  document.querySelectorAll("#scatter .controls select").forEach((select, axis) => (select.value = Explore.pair[axis]));

@@ -4,8 +4,10 @@ Explore.visible = () => Explore.rows().filter((line) => !line.hidden);
 
 Explore.sortRecords = (key, descending) => {
   const body = document.querySelector("#table tbody");
-  const value = (line) => Explore.data.records[line.dataset.row][key];
-  const order = (a, b) => (typeof a === "string" ? a.localeCompare(b) : (a ?? -Infinity) - (b ?? -Infinity));
+  const shown = Explore.indicatorValues[Explore.shown];
+  const value = (line) => (key === "shown" ? shown[line.dataset.row] : Explore.data.records[line.dataset.row][key]);
+  const known = (number) => (Number.isFinite(number) ? number : -Infinity);
+  const order = (a, b) => (typeof a === "string" ? a.localeCompare(b) : known(a) < known(b) ? -1 : Number(known(a) > known(b)));
   const lines = Explore.rows().sort((a, b) => order(value(a), value(b)) * (descending ? -1 : 1));
   body.append(...lines);
 };
@@ -23,7 +25,35 @@ Explore.filterRecords = () => {
   document.getElementById("count").textContent = `${Explore.visible().length} of ${Explore.data.records.length} records shown`;
 };
 
-// What the address asks for: `#record=12`, or values of the filters such as `#state=severe&predicted=healthy`.
+// An indicator as a column of the table and as the vertical axis of the scatter.
+Explore.showIndicator = (name) => {
+  Explore.shown = name ? Explore.data.indicators.findIndex((one) => one.name === name || one.name.startsWith(`${name}__`)) : -1;
+  const found = Explore.shown >= 0;
+  const head = document.getElementById("shown-indicator");
+  const values = found ? Explore.indicatorValues[Explore.shown] : null;
+  head.hidden = !found;
+  head.querySelector("button").textContent = found ? Explore.indicatorName(Explore.data.indicators[Explore.shown]) : "";
+  for (const line of Explore.rows()) {
+    line.lastElementChild.hidden = !found;
+    line.lastElementChild.textContent = found && Number.isFinite(values[line.dataset.row]) ? Explore.number(values[line.dataset.row]) : "";
+  }
+  if (found && Explore.data.indicators.length > 1) Explore.pair = [Explore.pair[0] === Explore.shown ? Explore.pair[1] : Explore.pair[0], Explore.shown];
+};
+
+// Says what the address asked for and the page does not have.
+Explore.showAsked = (wanted) => {
+  const note = document.getElementById("asked");
+  const record = wanted.get("record");
+  const lost = [];
+  if (record !== null && !Explore.data.records.some((one) => String(one.record_id) === record)) lost.push(`Record ${record} is not on this page; the option --limit takes more.`);
+  if (wanted.get("indicator") && Explore.shown < 0) lost.push(`No record of this page has the indicator ${wanted.get("indicator")}.`);
+  if (record === null && !Explore.visible().length) lost.push("No record of this page is as the link asks for; the option --limit takes more.");
+  note.textContent = lost.join(" ");
+  note.hidden = !lost.length;
+};
+
+// What the address asks for: `#record=12`, or values of the filters such as `#state=severe&predicted=healthy`, and
+// `indicator=fm4_pinion`, whose values are shown then.
 Explore.address = () => {
   const wanted = new URLSearchParams(location.hash.slice(1));
   for (const select of document.querySelectorAll("[data-filter]")) {
@@ -33,7 +63,9 @@ Explore.address = () => {
   }
   document.getElementById("filter-text").value = wanted.get("text") ?? "";
   document.getElementById("filter-size").value = wanted.get("area_from") ?? "";
+  Explore.showIndicator(wanted.get("indicator"));
   Explore.filterRecords();
+  Explore.showAsked(wanted);
   return Explore.data.records.findIndex((record) => String(record.record_id) === wanted.get("record"));
 };
 

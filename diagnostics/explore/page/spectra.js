@@ -29,7 +29,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   const range = [0, x[x.length - 1]];
   const top = own.reduce((found, value, k) => (k && value !== null && value > own[found] ? k : found), 1);
   const series = [Explore.line("record", "record")];
-  if (base) series.push(Explore.line("healthy", "healthy", { alpha: 0.6 }));
+  if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const shared = { x: "pinion order", range, marks: Explore.spectrumMarks(row), group: "orders" };
   Explore.chart(body, {
     ...shared, title: "Order spectrum", y: "dB over 1 m/s²", series, data: base ? [x, own, base] : [x, own],
@@ -38,8 +38,8 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   });
   if (!base) return;
   Explore.chart(body, {
-    ...shared, title: "Difference from the healthy record", y: "dB", height: 170, data: [x, Explore.minus(own, base)], series: [Explore.line("record minus healthy", "record")],
-    caption: "Record minus healthy record, point by point. Between the lines this is the noise of both.",
+    ...shared, title: `Difference from the ${Explore.otherName()} record`, y: "dB", height: 170, data: [x, Explore.minus(own, base)], series: [Explore.line(`record minus ${Explore.otherName()}`, "record")],
+    caption: "Record minus the one laid over, point by point. Between the lines this is the noise of both.",
   });
 };
 
@@ -61,7 +61,7 @@ Explore.showEnvelope = (section, row, channel, healthy) => {
   const other = healthy === null ? null : Explore.view(healthy, channel);
   const base = other && other.envelope ? Explore.values(other.envelope) : null;
   const series = [Explore.line("record", "record")];
-  if (base) series.push(Explore.line("healthy", "healthy", { alpha: 0.6 }));
+  if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const top = own.reduce((found, value, k) => (value !== null && value > own[found] ? k : found), 1);
   Explore.chart(body, {
     title: "Envelope spectrum", x: "pinion order", y: "amplitude [m/s²]", series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),

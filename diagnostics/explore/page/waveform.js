@@ -12,7 +12,7 @@ Explore.overlaid = (own, other) => {
   const series = [Explore.line("record", "record")];
   if (!other || other.turning !== own.turning) return { series, data: [own.x, own.y] };
   // on top and half transparent: a healthy signal is the smaller one, and would be hidden behind the record
-  series.push(Explore.line("healthy", "healthy", { alpha: 0.6 }));
+  series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   return { series, data: uPlot.join([[own.x, own.y], [other.x, other.y]]) };
 };
 

@@ -145,7 +145,8 @@ def test_a_model_names_every_record_and_a_report_folder_holds_one(
 
 @pytest.mark.skipif(not BROWSER, reason="needs a browser")
 @pytest.mark.parametrize(
-    ("asked", "shown", "opened"), [("state=severe", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 1)]
+    ("asked", "shown", "opened"),
+    [("state=severe&indicator=fm4_pinion", 2, 2), ("record=4", 6, 4), ("state=%3Cb%3E&record=99", 6, 1)],
 )
 def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, opened: int) -> None:
     page = write_explorer(memory_dataset(("train", "test")), tmp_path / "page.html")
@@ -154,6 +155,8 @@ def test_an_address_chooses_records(tmp_path: Path, asked: str, shown: int, open
     done = subprocess.run([*command, "--dump-dom", address], capture_output=True, text=True, timeout=120, check=True)
     assert f"{shown} of 6 records shown" in done.stdout
     assert f"Record {opened}: <bdi>" in done.stdout
+    assert ("Record 99 is not on this page" in done.stdout) == ("99" in asked)
+    assert (f"FM4, pinion ({CHANNELS[0]})</button>" in done.stdout) == ("fm4" in asked)
 
 
 def test_a_server_gives_every_sample_to_this_machine_alone(dataset: MemoryDataset) -> None:
@@ -228,6 +231,8 @@ def test_gearboxes_beyond_the_limit_are_left_out_whole_and_evenly() -> None:
     assert chosen_records(labels, 50).tolist() == list(range(50))
     assert np.unique(labels["specimen_id"][chosen_records(labels, 19)]).tolist() == [0, 4, 9]
     assert chosen_records(labels, 3).size == 3
+    assert np.unique(labels["specimen_id"][chosen_records(labels, 19, [7, 3])]).tolist() == [0, 3, 7]
+    assert np.unique(labels["specimen_id"][chosen_records(labels, 10, [7, 3, 4, 11])]).tolist() == [3, 7]
 
 
 def test_a_record_is_laid_over_its_own_gearbox_at_its_own_operating_point() -> None:

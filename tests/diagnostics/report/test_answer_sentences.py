@@ -8,7 +8,7 @@ from dataclasses import replace
 from diagnostics.report.answer_sentences import answer_sentences
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.detectors import CLASSIFIER, INDICATOR, NETWORKS, Detectors
+from diagnostics.training.detectors import CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors
 
 
 def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
@@ -22,8 +22,15 @@ def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
     return Detector("logistic regression", False, area, states, sizes, 72, 24, healthy)
 
 
+def with_choice(found: dict[str, Detector]) -> dict[str, Detector]:
+    """Return detectors with the first, which the other gearboxes choose."""
+    return {**found, CHOSEN: next(iter(found.values()))} if found else {}
+
+
 def said(**found: Detector) -> dict[str, str]:
-    return {question: text.replace("\xa0", " ") for question, text in answer_sentences(Detectors(found, {}))}
+    return {
+        question: text.replace("\xa0", " ") for question, text in answer_sentences(Detectors(with_choice(found), {}))
+    }
 
 
 def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_of_the_largest() -> None:
@@ -61,7 +68,9 @@ def test_few_healthy_records_and_no_detector_at_all_are_said() -> None:
 
 def test_a_healthy_record_beside_says_what_is_then_found_in_nine_of_ten() -> None:
     beside = replace(detector(0.9, 4.0), referenced=True)
-    answers = dict(answer_sentences(Detectors({CLASSIFIER: detector(0.8, 6.0)}, {CLASSIFIER: beside})))
+    answers = dict(
+        answer_sentences(Detectors(with_choice({CLASSIFIER: detector(0.8, 6.0)}), with_choice({CLASSIFIER: beside})))
+    )
     sure = answers["How sure"].replace("\xa0", " ")
     assert sure.endswith(
         "Beside a healthy record of the same gearbox: AUC 0.90 (0.80 to 1.00) by the logistic regression. Nine of ten "

@@ -9,6 +9,8 @@ from types import ModuleType
 
 import pytest
 
+from siggen.checks.loading import load_config
+
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "docs" / "reports"
 PAGES = sorted(FOLDER.glob("*.html"))
@@ -41,8 +43,8 @@ def test_the_readme_names_every_page_with_the_command_that_makes_it(script: Modu
     named = dict(
         re.findall(r"^\| \[(\w+)\.html\]\(\1\.html\) \|.*\| `siggen-diagnostics ([^`]+)` \|$", text, re.MULTILINE)
     )
-    assert named == {name: command for pages in script.REPORTS.values() for name, (_, command) in pages.items()}
-    assert {page.stem for page in PAGES} <= set(named)
+    made = {name: command for pages in script.REPORTS.values() for name, (_, command) in pages.items()}
+    assert named == {page.stem: made[page.stem] for page in PAGES}
 
 
 def test_places_on_a_machine_are_found_and_other_words_are_not(script: ModuleType) -> None:
@@ -51,9 +53,22 @@ def test_places_on_a_machine_are_found_and_other_words_are_not(script: ModuleTyp
     assert script.places("healthy / damaged, 1/2, m/s², </small>, root mean square") == []
 
 
-def test_the_commands_that_make_the_bench_are_those_of_the_presets_page(script: ModuleType) -> None:
-    page = re.sub(r"(?:\\|\s)+", " ", (ROOT / "docs" / "understand" / "presets.md").read_text(encoding="utf-8"))
-    for command in (*script.SETS["bench"], *script.SETS["other"]):
-        assert command in page
-    for _, command in script.REPORTS["bench"].values():
-        assert f"siggen-diagnostics {command}" in page
+def test_the_answers_are_those_of_the_pages(script: ModuleType) -> None:
+    assert script.ANSWERS.name == "answers.md"
+    assert (FOLDER / "answers.md").read_text(encoding="utf-8") == script.answers()
+
+
+REPORTED = [name for page in PAGES if (name := page.stem.removesuffix("_report")) != page.stem and name != "rig"]
+
+
+@pytest.mark.parametrize("name", REPORTED)
+def test_a_report_is_of_the_shipped_preset(name: str) -> None:
+    text = (FOLDER / f"{name}_report.html").read_text(encoding="utf-8").replace("<wbr>", "")
+    assert f"identity {load_config(ROOT / 'configs' / f'{name}.yaml').identity}" in text
+
+
+def test_the_readme_says_how_every_set_is_made(script: ModuleType) -> None:
+    page = (FOLDER / "README.md").read_text(encoding="utf-8")
+    for commands in script.SETS.values():
+        for command in commands:
+            assert f"`{command}`" in page or f"\n{command}\n" in page

@@ -30,19 +30,21 @@ def folder(dataset: Any, measured: RecordTable, tmp_path_factory: pytest.TempPat
     rng = np.random.default_rng(1)
     table.matrix.labels["snr_bearing_vertical_db"] = rng.uniform(0, 30, len(table.notes))
     table.matrix.values[0, table.matrix.names.index("phase_modulation_gear_h1__bearing_vertical")] = np.nan
-    write_indicator_report(dataset, table, folder, SETTINGS)
+    write_indicator_report(dataset, table, folder, SETTINGS, explorer="explorer.html")
     return folder
 
 
 def test_page_loads_nothing_from_elsewhere_and_names_every_indicator(folder: Path) -> None:
     page = (folder / "indicators.html").read_text(encoding="utf-8")
-    assert not re.search(r'(src|href)="(?!data:|#)', page)
+    assert not re.search(r'(src|href)="(?!data:|#|explorer\.html#)', page)
     for text in ("Ranking", "Definitions", "Undefined values", "other specimens", "manufacturing errors"):
         assert text in page
     for definition in ALL:
         assert definition.name.replace("_", "_<wbr>") in page
-    assert page.count("<img") == len(list((folder / "figures").glob("*.png"))) == 4
-    assert 0 < page.count('class="shade') <= 36 * 4  # the heat map: two states in two designs
+    assert page.count("<img") == len(list((folder / "figures").glob("*.png"))) == 3
+    separation = page.split("Separation of each state")[-1].split("</table>")[0]
+    assert 0 < separation.count('class="shade') <= 36 * 4  # the heat map: two states in two designs
+    assert separation.count('href="explorer.html#state=') == separation.count('class="shade')
 
 
 def test_numbers_are_those_of_the_tables(folder: Path) -> None:

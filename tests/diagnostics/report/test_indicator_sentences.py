@@ -36,13 +36,13 @@ def test_two_states_give_four_sentences_that_name_hardest_and_easiest() -> None:
     rises = result("rms", {"slight": state(0.55), "severe": state(0.8)})
     found = indicator_findings([falls, rises], ("slight", "severe"), 24)
     assert len(found) == 4
-    assert "fm4__x separates best" in found[0]
+    assert "fm4 at x separates best" in found[0]
     assert "It is also the best on the same specimen" in found[0]
-    assert "slight is the hardest to find: its best single indicator, fm4__x, reaches an AUC of 0.60." in found[1]
-    assert "severe is the easiest: fm4__x reaches 0.95." in found[1]
+    assert "slight is the hardest to find: its best single indicator, fm4 at x, reaches an AUC of 0.60." in found[1]
+    assert "severe is the easiest: fm4 at x reaches 0.95." in found[1]
     assert "optimistic" in found[1]
     assert "correction at 0.05, 4 of 4\xa0comparisons between different specimens are significant" in found[2]
-    assert "The indicator fm4__x finds the smallest damaged area: 8\xa0mm² (6 to ∞) with 90\xa0%" in found[3]
+    assert "The indicator fm4 at x finds the smallest damaged area: 8\xa0mm² (6 to ∞) with 90\xa0%" in found[3]
 
 
 def test_one_state_and_one_survivor_are_in_the_singular() -> None:

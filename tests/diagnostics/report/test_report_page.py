@@ -6,9 +6,11 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from urllib.parse import parse_qs
 
 import numpy as np
 import pyarrow as pa
@@ -30,7 +32,7 @@ from siggen.errors import DatasetError
 @pytest.fixture(scope="module")
 def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report")
-    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False))
+    write_report(dataset, out, seed=0, network=NetworkOptions(cnn=False), explorer="explorer.html")
     return out
 
 
@@ -69,7 +71,9 @@ def test_meaning_changes_once_gears_have_errors() -> None:
 
 def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
     text = (folder / "report.html").read_text()
-    assert set(re.findall(r'(?:src|href)=(".{5}|[^"])', re.sub(r'href="#[^"]*"', "", text))) == {'"data:'}
+    assert set(re.findall(r'(?:src|href)=(".{5}|[^"])', re.sub(r'href="(explorer\.html)?(#[^"]*)?"', "", text))) == {
+        '"data:'
+    }
     assert "http" not in re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)
     assert 'name="viewport"' in text
 
@@ -80,6 +84,28 @@ def test_every_link_leads_to_a_place_on_the_page(folder: Path) -> None:
     targets = set(re.findall(r'href="#([^"]*)"', text))
     assert len(places) == len(set(places))
     assert {"scores", "term-rms", "term-fm4"} <= targets <= set(places)
+
+
+def test_figures_and_tables_lead_to_the_records_behind_them(dataset: Any, folder: Path) -> None:
+    text = unescape((folder / "report.html").read_text())
+    labels = dataset.labels()
+    asked = [parse_qs(found) for found in re.findall(r'href="explorer\.html#([^"]*)"', text)]
+    records, states = set(labels.column("record_id").to_pylist()), set(labels.column("state").to_pylist())
+    assert {int(one["record"][0]) for one in asked if "record" in one} <= records
+    assert {one["state"][0] for one in asked if "state" in one} == states
+    known = set(feature_columns(folder))
+    shown = {one["indicator"][0] for one in asked if "indicator" in one}
+    assert shown <= known
+    assert len(shown) > 100  # the table of all indicators
+    first, *figures = re.findall(r"<figcaption.*?</figcaption>", text, re.DOTALL)
+    assert "explorer.html#state=severe" in first
+    assert sum("explorer.html#" in one for one in figures) >= len(figures) - 1  # all but the permuted labels
+    examples = next(one for one in figures if "Waveform in each state" in one)
+    assert len(re.findall(r"#record=\d+", examples)) == len(states)
+
+
+def feature_columns(folder: Path) -> list[str]:
+    return [entry["feature"] for entry in json.loads((folder / "metrics.json").read_text())["separability"]["features"]]
 
 
 def test_an_indicator_has_a_human_name_and_its_definition_on_hover(folder: Path) -> None:

@@ -45,7 +45,7 @@ def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
     one, two = indicator(0.8, 0.95), indicator(0.6, 0.8, 0.7, "rms__a", "severe")
     (first,) = indicator_sentences([one, two])
     (second,) = area_sentence([one])
-    assert "state severe is the hardest to find. The best of 2\xa0single indicators is rms__a, which rises" in first
+    assert "state severe is the hardest to find. The best of 2\xa0single indicators is RMS at a, which rises" in first
     assert "optimistic" in first
     assert "severe from healthy with an AUC of 0.70 (0.60 to 0.80)" in first
     assert "+0.50" in second
@@ -53,7 +53,9 @@ def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
 
 def test_an_indicator_that_falls_is_turned_and_a_single_state_is_not_the_hardest() -> None:
     (sentence,) = indicator_sentences([indicator(0.05, 0.2, 0.1)])
-    assert sentence.startswith("The damaged state is slight. The best of 1\xa0single indicator is fm4__a, which falls")
+    assert sentence.startswith(
+        "The damaged state is slight. The best of 1\xa0single indicator is fm4 at a, which falls"
+    )
     assert "an AUC of 0.90 (0.80 to 0.95)" in sentence
 
 

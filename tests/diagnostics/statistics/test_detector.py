@@ -31,6 +31,13 @@ def test_sizes_alarms_and_areas_are_the_planted_ones() -> None:
     assert found is not None
     assert [round(state.auc.value, 12) for state in found.states.values()] == [0.0, 0.0, 1.0, 1.0]
     assert [state.share.value for state in found.states.values() if state.share] == [0.0, 0.0, 1.0, 1.0]
+    # all or none of 24 gearboxes: limits of Clopper and Pearson, 0.025^(1/24) to 1 and their mirror image
+    lowest = 0.025 ** (1 / 24)
+    shares = [state.share for state in found.states.values() if state.share]
+    assert [(round(s.low, 9), round(s.high, 9)) for s in shares[::3]] == [
+        (0.0, round(1 - lowest, 9)),
+        (round(lowest, 9), 1.0),
+    ]
     assert found.every.value == 0.5  # half of the damaged records stand above all healthy ones, half below
     size = found.sizes["pitting"]
     # between the groups of 2 and 4 mm2 the share rises from 0 to 1: 0.9 of the way on a logarithmic axis

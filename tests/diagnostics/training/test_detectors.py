@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from diagnostics.attacks.column_attackers import column_auc
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.training.detectors import CLASSIFIER, INDICATOR, dealt, indicator_scores, judged_detectors
+from diagnostics.training.detectors import BOOSTED, CHOSEN, CLASSIFIER, INDICATOR, judged_detectors
+from diagnostics.training.fold_scores import chosen_scores, dealt, inner_scores
 
 GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")
@@ -41,7 +44,7 @@ def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_c
     found = judged_detectors(matrix, None, seed=0).alone
     assert within > 0.2  # chosen and judged on the same gearboxes, noise looks like a find
     # 24 healthy against 48 damaged: the standard error of an AUC of noise is 0.07
-    for family in (INDICATOR, CLASSIFIER):
+    for family in (INDICATOR, CLASSIFIER, BOOSTED, CHOSEN):
         assert abs(found[family].every.value - 0.5) < 3 * 0.07
 
 
@@ -73,7 +76,47 @@ def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None
     specimen = np.repeat(np.arange(GEARBOXES), 3)
     fold = dealt(specimen, seed=0)
     assert all(np.unique(fold[specimen == box]).size == 1 for box in range(GEARBOXES))
-    values = np.array([[np.nan, 1.0], [2.0, 0.0]] * 6)
-    damaged, places = np.tile([True, False], 6), np.arange(12) // 2 % 3
-    assert set(indicator_scores(values, damaged, places)[1].tolist()) == {1}
-    assert indicator_scores(values[:, :1], damaged, places)[1].size == 0
+    values = noise(3 * GEARBOXES)[:, :2]
+    matrix = matrix_of(values)
+    values[:, 1] = [STATES.index(name) for name in matrix.labels["state"]]
+    values[0, 1] = np.nan
+    found = judged_detectors(matrix, None, seed=0).alone
+    assert found[INDICATOR].basis == "noise_0__x"
+    values[1, 0] = np.nan
+    assert INDICATOR not in judged_detectors(matrix, None, seed=0).alone
+
+
+def test_what_chooses_for_a_fold_saw_neither_it_nor_the_fold_that_it_scores() -> None:
+    matrix = matrix_of(noise(3 * GEARBOXES)[:, :1])
+    damaged = matrix.labels["fault"] != "healthy"
+    fold = dealt(matrix.labels["specimen_id"], seed=0)
+    seen: list[set[int]] = []
+
+    def watching(learnt: FeatureMatrix, _: np.ndarray) -> Callable[[FeatureMatrix], np.ndarray]:
+        own = set(fold[learnt.labels["record_id"]].tolist())
+
+        def score(other: FeatureMatrix) -> np.ndarray:
+            asked = set(fold[other.labels["record_id"]].tolist())
+            assert not own & asked
+            seen.append(own)
+            return np.zeros(other.values.shape[0])
+
+        return score
+
+    inner = inner_scores(watching, matrix, damaged, fold)
+    assert {len(own) for own in seen} == {3}  # of five, without the one left out and the one that is scored
+    for row in range(5):
+        assert np.array_equal(np.isnan(inner[row]), fold == row)
+
+
+def test_a_way_that_is_strong_only_where_it_is_judged_is_not_chosen_there() -> None:
+    damaged = np.tile([False, True], 30)
+    fold = np.repeat(np.arange(5), 12)
+    rng = np.random.default_rng(3)
+    plain, lucky = damaged + 2.0 * rng.normal(size=60), rng.normal(size=60)
+    lucky[fold == 2] = damaged[fold == 2]  # perfect on one fold alone
+    outer = {"plain": plain, "lucky": lucky}
+    inner = {name: np.where(fold == np.arange(5)[:, None], np.nan, score) for name, score in outer.items()}
+    score, names = chosen_scores(outer, inner, damaged, fold)
+    assert names[2] == "plain"
+    assert len(set(names)) > 1 or score is plain
