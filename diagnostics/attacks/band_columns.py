@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-LOWEST_ORDER = 9
+from diagnostics.attacks.residual_lines import SHAFT_ORDERS
+
+LOWEST_ORDER = SHAFT_ORDERS + 1
 STEP = 2.0**0.5
 WIDTHS = (1, 2, 3, 4, 6, 8, 12)
 """Widths of bands in steps of half an octave; the last ones hold nearly all orders."""

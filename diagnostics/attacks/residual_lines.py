@@ -6,8 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-SHAFT_ORDERS = 2
-"""Shaft orders 0 ... 2 are no residual, as in `diagnostics.signal.difference_signal`."""
+SHAFT_ORDERS = 8
+"""Orders 0 ... 8 are no residual: couplings and rotors press there, up to 4x, and no tooth.
+
+`diagnostics.signal.difference_signal` leaves out 0 to 2, as the toolboxes do. There a strong 3x of a coupling changes every
+share of energy.
+"""
 
 WHITENING_ORDERS = 10
 """Lines on each side whose median size a line is divided by."""
@@ -37,7 +41,7 @@ def line_array(waveforms: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
 
 
 def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
-    """Return lines without shaft orders 0 to 2 and without all mesh harmonics; sidebands stay.
+    """Return lines without shaft orders 0 to 8 and without all mesh harmonics; sidebands stay.
 
     Parameters
     ----------

@@ -54,6 +54,17 @@ def test_gaussian_noise_has_kurtosis_three_and_a_burst_stands_out_in_its_band() 
     assert kurtogram_maximum(noise + event_lines(0.3)).mean() > 2.0 * kurtogram_maximum(noise).mean()
 
 
+def test_lines_of_shafts_and_couplings_move_no_column() -> None:
+    rng = np.random.default_rng(3)
+    lines = rng.standard_normal((2, 1, ORDERS)) + 1j * rng.standard_normal((2, 1, ORDERS))
+    loud = lines.copy()
+    loud[..., 1:9] *= 100.0
+    teeth = np.full(2, TEETH)
+    np.testing.assert_array_equal(
+        band_bank(residual_lines(loud, teeth)).values, band_bank(residual_lines(lines, teeth)).values
+    )
+
+
 def test_no_column_depends_on_where_the_revolution_starts_or_on_the_level() -> None:
     lines = noise_lines(3, 2) + event_lines(0.1)
     turned = 7.0 * lines * np.exp(-2j * np.pi * np.arange(ORDERS) * 0.2371)
