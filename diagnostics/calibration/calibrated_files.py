@@ -165,7 +165,9 @@ NOT_IDENTIFIED = (
     "path and source apart: only their product shows at a line. Paths are drawn: direction of the bearing forces, "
     "simulated gearboxes and recordings differ from path to path",
     "phase of the path: minimum phase is assumed",
-    "structure, tip relief, errors of the teeth: as wide as in the rig; give an accuracy class if you know it",
+    "level of the gears' errors: sidebands depend on it, but as much on relief, load and path; as wide as in the rig, "
+    "give an accuracy class if you know it",
+    "structure and tip relief: as wide as in the rig",
     "torque and its variation: as in the rig, or --torque",
     "lines at multiples of a shaft's order above the fourth: they count as errors of the teeth, which are simulated, "
     "so a further stage on one of these shafts is left out",

@@ -16,8 +16,8 @@ import numpy as np
 import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import HealthyBlocks
-from diagnostics.calibration.jackknife import Fitted, jackknife
-from diagnostics.calibration.noise_fit import NoiseFit, noise_fit
+from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
+from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, noise_fit
 from diagnostics.calibration.order_record import (
     HIGHEST_SHARE,
     LineGroup,
@@ -208,9 +208,10 @@ def _channel(
     rng = generator(draws.seed, Purpose.PATHS, 1 + number)
     directions = rng.standard_normal((len(draws.blocks), len(PLACES)))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    gains = path_gains(len(draws.blocks), len(blocks.blocks), rng)
     found = tuple(
-        PathDraw(drawn_path(seen.lines, library.level_db(w, chosen), picked, grid_hz, blocks.fs_hz), w)
-        for w, chosen, picked in zip(directions, draws.gearboxes, draws.blocks, strict=True)
+        PathDraw(gain * drawn_path(seen.lines, library.level_db(w, chosen), picked, grid_hz, blocks.fs_hz), w)
+        for gain, w, chosen, picked in zip(gains, directions, draws.gearboxes, draws.blocks, strict=True)
     )
     gear_order = teeth[0] / teeth[1]
     return ChannelFit(
@@ -222,6 +223,13 @@ def _channel(
         sensor_fit(blocks.blocks, seen.name),
         found,
     )
+
+
+def path_gains(paths: int, recordings: int, rng: np.random.Generator) -> np.ndarray:
+    """Return factors (paths,) on paths: too few recordings do not tell how their level differs from day to day."""
+    if recordings >= FEWEST_RECORDINGS:
+        return np.ones(paths)
+    return np.asarray(10.0 ** (rng.uniform(-UNKNOWN_SPREAD_DB, UNKNOWN_SPREAD_DB, paths) / 20.0))
 
 
 def _speeds(blocks: HealthyBlocks) -> dict[str, Any] | float:

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from siggen.config import Config, Number, Sensor, bounds, corners
+from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import pair_configs
+from siggen.planning.plan import SPLITS, split_of
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
 
@@ -101,6 +103,21 @@ def missing(config: Config) -> Iterator[str]:
         if not noisy and nameless in seen:
             yield f"sensors: {sensor.name} repeats another sensor: their channels will be identical, bit by bit"
         seen.append(nameless)
+    yield from _empty_splits(config)
+
+
+def _empty_splits(config: Config) -> Iterator[str]:
+    """Yield which splits have no gear pair, where splits go by pairs."""
+    if config.splits.by != "pair":
+        return
+    pairs = min(len(config.gears.pairs), config.specimens)
+    there = {split_of(config, specimen) for specimen in range(pairs)}
+    empty = [name for name in SPLITS if getattr(config.splits, name) and name not in there]
+    if empty:
+        yield (
+            f"splits.by: pair: {counted(pairs, 'gear pair')} in all, so {' and '.join(empty)} would have no records; "
+            "take more gears.pairs, or splits.by: gearbox"
+        )
 
 
 def _gears(config: Config, pair: GearPair) -> Iterator[Quantity]:

@@ -57,3 +57,8 @@ def test_idealised_sets_say_what_they_lack() -> None:
     found = "\n".join(implausible(load_config("ideal")))
     assert "perfect gears" in found
     assert "no noise at all" in found
+
+
+def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
+    told = [implausible(load_config("families", [f"gears.pairs.count={count}"])) for count in (1, 60)]
+    assert ["no records" in " ".join(sentences) for sentences in told] == [True, False]

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnostics.calibration.calibration import path_gains
 from diagnostics.calibration.healthy_blocks import Block, healthy_blocks
 from diagnostics.calibration.jackknife import jackknife
 from diagnostics.calibration.noise_fit import noise_fit
@@ -125,6 +126,15 @@ def test_nine_of_ten_intervals_hold_the_mean_from_three_recordings_on() -> None:
         assert np.mean(inside) == pytest.approx(0.9, abs=0.025)
     for count in (1, 2):
         assert not np.isfinite(jackknife(rng.standard_normal(count)).low)
+
+
+def test_paths_keep_their_level_from_three_recordings_on_and_spread_below() -> None:
+    """Half to twice the power, as the noise has it."""
+    rng = np.random.default_rng(5)
+    assert np.array_equal(path_gains(24, 3, rng), np.ones(24))
+    power = path_gains(200, 2, rng) ** 2
+    assert 0.5 <= power.min() < 0.55
+    assert 1.85 < power.max() <= 2.0
 
 
 def test_one_recording_stays_whole_and_what_it_cannot_tell_is_drawn_wide(tmp_path: Path) -> None:
