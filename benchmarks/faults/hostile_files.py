@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from siggen.config.yaml_source import LARGEST_BYTES
+
 PRESET = Path(__file__).resolve().parents[2] / "configs" / "quickstart.yaml"
 MEASURED = """
 import resource, sys
@@ -41,6 +43,7 @@ def hostile_texts() -> Mapping[str, str]:
     preset = PRESET.read_text(encoding="utf-8")
     pairs = range(1, 60)
     return {
+        **_large_texts(preset),
         "a billion laughs": "a0: &a0 [ha, ha]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in pairs),
         "a billion merges": "a0: &a0 {x: 1}\n"
         + "".join(f"a{i}: &a{i} {{<<: [*a{i - 1}, *a{i - 1}]}}\n" for i in pairs),
@@ -59,6 +62,22 @@ def hostile_texts() -> Mapping[str, str]:
         ),
         "10^390 repeats": preset + f"repeats: 1{'0' * 390}\n",
         "control characters": preset + "\x07\n",
+    }
+
+
+def _large_texts(preset: str) -> Mapping[str, str]:
+    """Return texts of up to 4 MiB, the most that is read, and of as many values as are counted before it is refused."""
+    points = re.sub(r"operating_points:\n(?:[ -].*\n)+", "", preset)
+    return {
+        "4 MiB of list entries": "a:\n" + "- 1\n" * (LARGEST_BYTES // 4 - 10),
+        "4 MiB of unknown keys": preset + "".join(f"k{i:06d}: 1\n" for i in range(LARGEST_BYTES // 11 - 2_000)),
+        "4 MiB of a text of many lines": "a: x\n" + "  y\n" * (LARGEST_BYTES // 4 - 10),
+        "4 MiB of anchors": "a:\n" + "".join(f"- &a{i:06d} x\n" for i in range(LARGEST_BYTES // 13 - 10)),
+        "a name of 4 MiB": preset.replace("name: ", "name: " + "x" * (LARGEST_BYTES - 2 * len(preset.encode())), 1),
+        "29,900 numbers as operating points": f"{points}operating_points: [{'1.5,' * 29_900}1]\n",
+        "29,900 numbers as a module": preset.replace("module_mm: 3.0", f"module_mm: [{'1.5,' * 29_900}1]"),
+        "3,600 wrong operating points": f"{points}operating_points:\n" + "  - {speed_hz: -1, torque_nm: x}\n" * 3_600,
+        "6,000 wrong states": re.sub(r"states:\n(?:[ -].*\n)+", "", preset) + "states:\n" + "  - {a: 1}\n" * 6_000,
     }
 
 

@@ -29,10 +29,11 @@ from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
-from siggen.config.yaml_source import parse_yaml, read_yaml, yaml_text
+from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",
+    "STORED_NUMBERS",
     "Background",
     "Base",
     "BearingTones",

@@ -33,7 +33,7 @@ BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
 
 
-CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit")
+CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit, at most 200")
 
 
 class Splits(Section):
@@ -59,7 +59,9 @@ class Splits(Section):
 class Config(Section):
     """Everything a data set follows from."""
 
-    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]*$"), CONFIG_NAME] = Field(description="name of the set")
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]{0,199}$"), CONFIG_NAME] = Field(
+        description="name of the set"
+    )
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(description="where all randomness begins")
     specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
         description="number of gearboxes; not part of the identity"

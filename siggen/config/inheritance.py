@@ -47,9 +47,14 @@ def extended_files(file: Path) -> tuple[Path, ...]:
         As `inherited`.
     """
     found: tuple[Path, ...] = (file,)
-    while EXTENDS in (raw := read_yaml(found[-1])) and len(found) <= DEEPEST:
+    while _has_word(found[-1]) and EXTENDS in (raw := read_yaml(found[-1])) and len(found) <= DEEPEST:
         found = (*found, _extended(raw[EXTENDS], found[-1].parent, str(found[-1])))
     return found
+
+
+def _has_word(file: Path) -> bool:
+    """Tell whether it is worth reading a file once more: a large one takes long."""
+    return EXTENDS.encode() in file.read_bytes()
 
 
 def _resolved(raw: Mapping[str, Any], folder: Path, source: str, seen: tuple[Path, ...]) -> dict[str, Any]:

@@ -12,12 +12,15 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
-from siggen.config.problems import missing_key, section_problems, unknown_keys
+from siggen.config.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
 from siggen.config.wording import models_in
 from siggen.errors import Problem
 
 LISTS = ("states", "sensors")
 """Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
+
+MOST_ENTRIES = 5_000
+"""Of a section that is a list; a file has no room for as many mappings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,8 @@ def _is_filled_list(raw: Mapping[str, object], name: str) -> bool:
 
 def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
     field = Config.model_fields[name]
+    if isinstance(value := raw.get(name), (list, tuple)) and len(value) > MOST_ENTRIES:
+        return None, [Problem(name, f"a list of {len(value)}", f"allowed: at most {MOST_ENTRIES} entries")]
     if name not in raw:
         if field.is_required():
             return None, [missing_key(name, field)]
@@ -73,8 +78,11 @@ def _section(name: str, raw: Mapping[str, object]) -> tuple[Any, list[Problem]]:
 
 
 def _entries(name: str, raw: Any) -> tuple[dict[int, Any], list[Problem]]:
-    entries, problems = {}, []
+    entries: dict[int, Any] = {}
+    problems: list[Problem] = []
     for index, item in enumerate(raw):
+        if len(problems) >= MOST_PROBLEMS:
+            break
         entry, found = _validated(_entry_adapter(name), item, (name, index))
         problems += found
         if entry is not None:
@@ -86,7 +94,7 @@ def _validated(adapter: TypeAdapter[Any], value: object, location: tuple[str | i
     try:
         return adapter.validate_python(value), []
     except ValidationError as error:
-        return None, section_problems(Config, error.errors(), location)
+        return None, section_problems(Config, error.errors(include_url=False), location)
 
 
 @cache

@@ -18,6 +18,9 @@ MISSING = "nothing"
 LISTED_KEYS = 10
 """Unknown keys of one mapping that are named; of the others only the number is told."""
 
+MOST_PROBLEMS = 1_000
+"""Of a section that are put into words, unknown keys apart; a hostile file has as many as it likes."""
+
 SHOWN_NUMBERS = 4
 """Lists of up to as many numbers are shown as they came."""
 
@@ -80,7 +83,7 @@ def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], bel
         if error["type"] == "extra_forbidden":
             path = joined(*(part for part in place if part not in BRANCHES))
             unknown.setdefault(place[:-1], []).append((path, error["input"]))
-        elif not _echoes(error):
+        elif len(found) < MOST_PROBLEMS and not _echoes(error):
             found += _translated(model, place, error)
     for place, keys in unknown.items():
         found += unknown_keys(keys, list(_model_at(model, place).model_fields))

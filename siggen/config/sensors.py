@@ -19,7 +19,7 @@ from siggen.errors import Problem
 POSITION = AllowedText(
     "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"
 )
-SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter")
+SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 
 
 class NoiseFloor(Section):
@@ -56,7 +56,7 @@ class Sensor(Section):
     Axial is along the shafts, where only a transfer path leads.
     """
 
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$"), SENSOR_NAME] = Field(
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
         description="part of the channel's name"
     )
     place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim", "pinion_cap", "gear_cap"] = (

@@ -15,7 +15,7 @@ from siggen.errors import Problem
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
 RESERVED_NAMES = ("previous", "none")
-STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter")
+STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter, at most 200")
 
 
 def _labels_are_optional(schema: dict[str, Any]) -> None:
@@ -28,7 +28,9 @@ class State(Section):
 
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
 
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]*$"), STATE_NAME] = Field(description="label of the state")
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
+        description="label of the state"
+    )
     fault: Literal["healthy", "pitting", "spalling"] = Field(
         description="default: spalling with damage of kind spall or irregular or a list of spalls alone, pitting with "
         "any other, healthy with none"

@@ -8,9 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import yaml
+from yaml.composer import Composer
+from yaml.constructor import SafeConstructor
+from yaml.reader import Reader
+from yaml.resolver import Resolver
 
 from siggen.errors import ConfigError, Problem, UsageError
 
@@ -23,13 +27,19 @@ NULL = re.compile(r"^(?:~|null|Null|NULL|)$")
 
 
 LARGEST_BYTES = 1 << 22
-"""Of a file: the stored configuration of a set with measured responses holds some 200,000 numbers."""
+"""Of a file: the stored configuration of a set with measured responses holds megabytes of them, as text."""
 
 DEEPEST = 32
 """Mappings and lists within each other, aliases followed; a configuration needs eight."""
 
-MOST_VALUES = 250_000
-"""Keys and values of a file, those counted again that an alias repeats; without aliases no file holds as many."""
+MOST_VALUES = 20_000
+"""Keys and values of a file, those counted again that an alias repeats; presets have up to 3,000."""
+
+MOST_NUMBERS = 30_000
+"""Numbers in lists, which cost less than other values; more belong into a file that the configuration names."""
+
+STORED_NUMBERS = 250_000
+"""The same in the configuration of a set, into which the numbers of such files have gone."""
 
 
 class _Refusal(yaml.YAMLError):
@@ -47,20 +57,39 @@ class _Extent(NamedTuple):
     height: int
 
 
-class _Loader(yaml.SafeLoader):
+_NUMBER = _Extent(1, 1)
+
+if TYPE_CHECKING or not yaml.__with_libyaml__:
+    _Reader = yaml.SafeLoader
+else:
+
+    class _Reader(Composer, yaml.cyaml.CParser, SafeConstructor, Resolver):
+        """Scanned by libyaml, ten times faster; composed in Python, where values are counted before they are made."""
+
+        def __init__(self, text: str) -> None:
+            yaml.cyaml.CParser.__init__(self, text)
+            for part in (Composer, SafeConstructor, Resolver):
+                part.__init__(self)
+
+
+class _Loader(_Reader):
     """SafeLoader with the numbers, booleans and nulls of YAML 1.2 and nothing else resolved."""
 
     yaml_implicit_resolvers = {}  # noqa: RUF012 - PyYAML's own, filled below
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, most_numbers: int = MOST_NUMBERS) -> None:
         super().__init__(text)
+        self._most_numbers = most_numbers
         self.problems: list[Problem] = []
         self._extents: dict[yaml.Node, _Extent] = {}
         self._depth = 0
         self._values = 0
+        self._numbers = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         """Compose a node; refuses tags, aliases of what they stand in, and more or deeper values than are allowed."""
+        if (number := self._number(parent)) is not None:
+            return number
         event = self.peek_event()  # type: ignore[no-untyped-call]
         if isinstance(event, yaml.AliasEvent):
             return self._repeated(super().compose_node(parent, index), event.start_mark)
@@ -68,13 +97,32 @@ class _Loader(yaml.SafeLoader):
             raise _Refusal(event.start_mark, f"the tag {event.tag[:60]}", "allowed: plain values, without tags")
         self._depth += 1
         self._count(1, self._depth, event.start_mark)
-        before = self._values
+        before = self._values + self._numbers
         node = super().compose_node(parent, index)
         self._depth -= 1
         if node is not None:
-            height = 1 + max((self._extents[child].height for child in _children(node)), default=0)
-            self._extents[node] = _Extent(1 + self._values - before, height)
+            height = 1 + max((self._extents.get(child, _NUMBER).height for child in _children(node)), default=0)
+            self._extents[node] = _Extent(1 + self._values + self._numbers - before, height)
         return node
+
+    def _number(self, parent: yaml.Node | None) -> yaml.ScalarNode | None:
+        """Return the next value of a list if it is a number, which goes a shorter way; None if it is anything else."""
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
+        if not (isinstance(event, yaml.ScalarEvent) and isinstance(parent, yaml.SequenceNode)):
+            return None
+        if event.anchor is not None or event.tag is not None or not event.implicit[0]:
+            return None
+        kind = "int" if INT.match(event.value) else "float" if FLOAT.match(event.value) else ""
+        if not kind:
+            return None
+        self._numbers += 1
+        if self._numbers > self._most_numbers:
+            received = f"{self._numbers} numbers in lists"
+            raise _Refusal(event.start_mark, received, f"allowed: at most {self._most_numbers}; files take more")
+        self.get_event()  # type: ignore[no-untyped-call]
+        start: Any = event.start_mark
+        end: Any = event.end_mark
+        return yaml.ScalarNode(_tag(kind), event.value, start, end)
 
     def _repeated(self, node: yaml.Node | None, mark: Any) -> yaml.Node | None:
         """Return the node of an alias, counted with all that it stands for."""
@@ -184,9 +232,9 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
     return parse_yaml(text.removeprefix("\ufeff"), source=str(path))
 
 
-def parse_yaml(text: str, source: str = "configuration") -> dict[str, Any]:
+def parse_yaml(text: str, source: str = "configuration", most_numbers: int = MOST_NUMBERS) -> dict[str, Any]:
     """Return the mapping that a YAML text stands for; raises ConfigError as `read_yaml` does."""
-    value = yaml_value(text, source)
+    value = yaml_value(text, source, most_numbers)
     if not isinstance(value, Mapping):
         received = "an empty file" if value is None else f"{type(value).__name__} at the top"
         raise ConfigError(
@@ -197,31 +245,39 @@ def parse_yaml(text: str, source: str = "configuration") -> dict[str, Any]:
 
 def yaml_node(text: str) -> yaml.Node | None:
     """Return the tree of nodes of a YAML text, which know their lines; None if it is empty or no YAML."""
+    if Reader.NON_PRINTABLE.search(text):
+        return None
     try:
         return _Loader(text).get_single_node()
     except yaml.YAMLError:
         return None
 
 
-def yaml_value(text: str, source: str) -> Any:
+def yaml_value(text: str, source: str, most_numbers: int = MOST_NUMBERS) -> Any:
     """Return any value written in YAML; raises ConfigError with the line if it is not YAML or has keys twice."""
+    if unprintable := Reader.NON_PRINTABLE.search(text):
+        line = text.count("\n", 0, unprintable.start()) + 1
+        received = f"the character #x{ord(unprintable.group()):04x}"
+        raise ConfigError([Problem(f"line {line}", received, "allowed: text that can be printed")], source)
     try:
-        loader = _Loader(text)
+        loader = _Loader(text, most_numbers)
         value = loader.get_single_data()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}" if mark else "the file"
-        hint = "indent with spaces, not with tabs" if "'\\t'" in str(error.problem) else "allowed: valid YAML"
+        hint = "indent with spaces, not with tabs" if _has_tab(text, mark) else "allowed: valid YAML"
         raise ConfigError([Problem(where, f"what is no YAML ({error.problem})", hint)], source) from None
     except _Refusal as error:
         raise ConfigError([*loader.problems, error.problem], source) from None
-    except yaml.reader.ReaderError as error:
-        line = text.count("\n", 0, error.position) + 1
-        received = f"the character #x{error.character:04x}"
-        raise ConfigError([Problem(f"line {line}", received, "allowed: text that can be printed")], source) from None
     if loader.problems:
         raise ConfigError(loader.problems, source)
     return value
+
+
+def _has_tab(text: str, mark: Any) -> bool:
+    """Tell whether a tab stands at a place of a text, which only there is no space."""
+    line = text.split("\n")[mark.line : mark.line + 1] if mark else []
+    return bool(line) and line[0][mark.column : mark.column + 1] == "\t"
 
 
 def yaml_text(mapping: Mapping[str, Any]) -> str:

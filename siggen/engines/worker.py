@@ -8,6 +8,7 @@ import signal
 from collections.abc import Callable, Iterator, Mapping
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from siggen.engines.orphan import end_with
@@ -53,7 +54,9 @@ class Worker:
         self.connection, theirs = context.Pipe()
         self.task: int | None = None
         self.ready = False
-        self._process = context.Process(target=_work, args=(theirs, function, os.getpid()), daemon=True)
+        # as bytes: reading it imports the physics, and before that the process has to end with its parent
+        pickled = bytes(ForkingPickler.dumps(function))
+        self._process = context.Process(target=_work, args=(theirs, pickled, os.getpid()), daemon=True)
         with _environment(ONE_THREAD), _blocked(PARENTS_SIGNALS):
             self._process.start()
         # the process must hold the only other end, or its death would not close the pipe
@@ -78,9 +81,10 @@ class Worker:
         return self._process.exitcode
 
 
-def _work(connection: Connection, function: Callable[[Any], Any], parent: int) -> None:
+def _work(connection: Connection, pickled: bytes, parent: int) -> None:
     """Run tasks until the parent closes the pipe or dies."""
     end_with(parent)
+    function = ForkingPickler.loads(pickled)
     _settle_down()
     with contextlib.suppress(EOFError, OSError):
         connection.send((READY, None))

@@ -96,10 +96,10 @@ def _check_begun(storage: Storage, there: int, wanted: int) -> None:
 
 
 def _config(storage: Storage, specimens: int) -> Config:
-    from siggen.config import parse, parse_yaml
+    from siggen.config import STORED_NUMBERS, parse, parse_yaml
 
     source = f"{storage.location}/{CONFIG}"
-    parsed = parse({**parse_yaml(storage.get(CONFIG).decode(), source), "specimens": specimens})
+    parsed = parse({**parse_yaml(storage.get(CONFIG).decode(), source, STORED_NUMBERS), "specimens": specimens})
     if parsed.config is None:
         raise ConfigError(parsed.problems, source)
     return parsed.config

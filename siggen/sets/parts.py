@@ -122,14 +122,14 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
 
 
 def _common_config(sources: Sequence[Storage]) -> Config:
-    from siggen.config import parse, parse_yaml
+    from siggen.config import STORED_NUMBERS, parse, parse_yaml
 
     found: list[Config] = []
     for source in sources:
         name = f"{source.location}/{CONFIG}"
         if not source.exists(CONFIG):
             raise DatasetError(f"{source.location}: is no part of a set (it has no {CONFIG})")
-        parsed = parse(parse_yaml(source.get(CONFIG).decode(), name))
+        parsed = parse(parse_yaml(source.get(CONFIG).decode(), name, STORED_NUMBERS))
         if parsed.config is None:
             raise ConfigError(parsed.problems, name)
         found.append(parsed.config)

@@ -215,9 +215,9 @@ def stored_config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
     ConfigError, DatasetError
         If this version reads it otherwise.
     """
-    from siggen.config import parse, parse_yaml
+    from siggen.config import STORED_NUMBERS, parse, parse_yaml
 
-    parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG))
+    parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG, STORED_NUMBERS))
     if parsed.config is None:
         raise ConfigError(parsed.problems, CONFIG)
     if parsed.config.identity != manifest["identity"]:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from siggen.config import parse, parse_yaml, read_yaml
+from siggen.config import STORED_NUMBERS, parse, parse_yaml, read_yaml
 from siggen.errors import ConfigError, UsageError
 from tests.config.minimal import minimal
 
@@ -49,6 +49,23 @@ def test_a_hostile_text_is_refused_with_its_line_within_bounds_of_time_and_memor
         tracemalloc.stop()
     # the whole command has 2 s; tracing makes this ten times slower than it is
     assert time.process_time() - started_s < 20.0
+
+
+def test_numbers_in_lists_are_counted_apart_and_a_set_may_store_more() -> None:
+    text = f"a: [{'1.5, ' * 25_000}-2e-3, 7]\n"
+    assert parse_yaml(text)["a"][-3:] == [1.5, -2e-3, 7]
+    twice = f"a: &a [{'1.5, ' * 25_000}1]\nb: [{'1.5, ' * 25_000}1]\n"
+    with pytest.raises(ConfigError, match="line 2: received 30001 numbers in lists; allowed: at most 30000"):
+        parse_yaml(twice)
+    assert len(parse_yaml(twice, most_numbers=STORED_NUMBERS)["b"]) == 25_001
+    with pytest.raises(ConfigError, match="line 2: received 25006 values, those repeated by aliases counted again"):
+        parse_yaml(f"a: &a [{'1.5, ' * 25_000}1]\nb: *a\n")
+
+
+def test_a_section_of_more_entries_than_anybody_lists_is_refused_at_once() -> None:
+    problems = parse(minimal(operating_points=[1.5] * 20_000)).problems
+    assert [(p.path, p.received) for p in problems] == [("operating_points", "a list of 20000")]
+    assert len(parse(minimal(states=[{"a": 1}] * 4_000)).problems) < 1_100
 
 
 def test_aliases_and_merges_of_a_useful_size_stay_allowed() -> None:

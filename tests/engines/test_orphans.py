@@ -19,6 +19,14 @@ from tests.engines.tasks import busy
 if __name__ == "__main__":
     list(engine_of(sys.argv[1], 2).map(busy, range(8)))
 """
+STARTING = """
+import os, sys
+from siggen.engines.registry import engine_of
+if __name__ == "__main__":
+    os.environ["SIGGEN_TEST_DRIVER"] = str(os.getpid())
+    from tests.engines.slow_to_import import same
+    list(engine_of(sys.argv[1], 2).map(same, range(8)))
+"""
 
 ENGINES = [
     "processes",
@@ -46,8 +54,17 @@ def wait_until(condition, seconds: float) -> bool:
 @pytest.mark.parametrize("engine", ENGINES)
 def test_busy_workers_end_with_their_driver(engine: str, tmp_path: Path) -> None:
     pytest.importorskip({"dask": "distributed"}.get(engine, engine if engine == "ray" else "siggen"))
+    assert_workers_end_with_their_driver(DRIVER, engine, tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_workers_that_still_import_the_physics_end_with_their_driver(tmp_path: Path) -> None:
+    assert_workers_end_with_their_driver(STARTING, "processes", tmp_path)
+
+
+def assert_workers_end_with_their_driver(code: str, engine: str, tmp_path: Path) -> None:
     script = tmp_path / "driver.py"
-    script.write_text(DRIVER)
+    script.write_text(code)
     (tmp_path / "busy").mkdir()
     environment = {**os.environ, "SIGGEN_TEST_BUSY": str(tmp_path / "busy"), "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, script, engine]
