@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
+from diagnostics.report.detector_table import picked
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.training.detectors import BOOSTED, CLASSIFIER, FEWEST_SPECIMENS, INDICATOR, NETWORKS, Detectors
@@ -100,6 +101,11 @@ def detector_sentence(found: Detectors, best: Detector) -> str:
     area = f"AUC {decimal(best.every.value)} ({limits(best.every)})"
     gearboxes = f"all {counted(best.specimens, 'gearbox')}"
     first = f"All damage together, the strongest on {gearboxes} is the {_title(best)}: {area}."
+    if best.picks:
+        first = (
+            f"All damage together, the strongest is {picked(best.picks)}, each chosen on the other gearboxes: {area} "
+            f"on {gearboxes}."
+        )
     others = []
     for family in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS):
         detector = found.alone.get(family)
@@ -139,5 +145,5 @@ def reference_sentence(found: Detectors) -> str:
     sizes = f" Nine of ten records are then found of {joined(reached)}." if reached else ""
     return (
         f"Beside a healthy record of the same gearbox: AUC {decimal(beside.every.value)} ({limits(beside.every)}) by "
-        f"the {beside.title}.{sizes}"
+        f"{picked(beside.picks) or f'the {beside.title}'}.{sizes}"
     )

@@ -7,7 +7,7 @@ import math
 from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import rounded
+from diagnostics.page.wording import joined, rounded
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize
 from diagnostics.training.detectors import Detectors
@@ -42,7 +42,8 @@ def detector_table(found: Detectors, explorer: str = "") -> str:
 
 def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced else ""
-    small = ", ".join(part for part in (in_a_sentence(detector.basis) if detector.basis else "", beside) if part)
+    basis = in_a_sentence(detector.basis) if detector.basis else picked(detector.picks)
+    small = ", ".join(part for part in (basis, beside) if part)
     none = Cell("–", value=math.nan)
     shown = {"indicator": detector.basis} if detector.basis else {}
 
@@ -60,6 +61,15 @@ def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str)
         *(behind(_alarms(detector, name), name) for name in states),
         *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
     ]
+
+
+def picked(picks: tuple[tuple[str, int], ...]) -> str:
+    """Return what was chosen in how many folds, the most frequent first; nothing without a choice."""
+    folds = sum(count for _, count in picks)
+    said = [
+        f"{name} in {count}{f' of {folds} folds' if not place else ''}" for place, (name, count) in enumerate(picks)
+    ]
+    return joined(said) if said else ""
 
 
 def _alarms(detector: Detector, name: str) -> Cell:

@@ -86,6 +86,8 @@ class Detector:
         On how many records of how many gearboxes it was judged, and how many of them are healthy.
     basis : str
         The column that it took most often, or nothing.
+    picks : tuple of (str, int)
+        Which detectors it stands for, and in how many folds; empty for one that is always the same.
     """
 
     title: str
@@ -97,12 +99,14 @@ class Detector:
     specimens: int
     healthy: int
     basis: str = ""
+    picks: tuple[tuple[str, int], ...] = ()
 
     def numbers(self) -> dict[str, Any]:
         """Return everything for JSON; undefined and unreached numbers are null."""
         return {
             "title": self.title,
             "basis": self.basis or None,
+            "folds_by_detector": dict(self.picks) or None,
             "healthy_reference": self.referenced,
             "records": self.records,
             "specimens": self.specimens,

@@ -10,7 +10,7 @@ them again for every fold costs minutes. Source: nested cross-validation, standa
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -40,6 +40,7 @@ from diagnostics.training.training import Training
 FEWEST_SPECIMENS = 4
 INDICATOR, CLASSIFIER = "best single indicator", "logistic regression on all indicators"
 BOOSTED, NETWORKS, CHOSEN = "gradient boosting on all indicators", "network", "chosen"
+CHOICE = "strongest by the other gearboxes"
 SMALLEST = 1e-12
 """Probability below which odds are cut off."""
 
@@ -122,19 +123,15 @@ def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict
     for family, scores in outer.items():
         basis = most_chosen(whole, ~healthy, fold) if family == INDICATOR else ""
         judged[family] = judged_detector(family, scores, labels, seed, referenced=referenced, basis=basis)
-    alike = len(set(names)) == 1
-    chosen = judged[names[0]] if alike else judged_detector(choice(names), score, labels, seed, referenced=referenced)
+    chosen = judged[names[0]]
+    if len(set(names)) > 1:
+        mixed = judged_detector(CHOICE, score, labels, seed, referenced=referenced)
+        chosen = replace(mixed, picks=tuple(Counter(names).most_common())) if mixed else None
     return {family: detector for family, detector in {**judged, CHOSEN: chosen}.items() if detector}
 
 
 def _count(specimen: np.ndarray) -> int:
     return int(np.unique(specimen).size)
-
-
-def choice(names: list[str]) -> str:
-    """Return what was chosen in how many folds, as a title."""
-    counted = Counter(names).most_common()
-    return f"choice on the other gearboxes ({', '.join(f'{count} of {len(names)}: {name}' for name, count in counted)})"
 
 
 def strongest_column(values: np.ndarray, damaged: np.ndarray) -> tuple[int, float]:

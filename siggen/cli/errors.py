@@ -44,7 +44,8 @@ def errors(
         write_table_file(deviation_table(charts), out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.views.error_figure import save_error_figure
+        with working("drawing the picture", compiles=False):
+            from siggen.views.error_figure import save_error_figure
 
-        save_error_figure(charts, png)
+            save_error_figure(charts, png)
         drawn(png, show)

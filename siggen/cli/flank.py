@@ -50,9 +50,10 @@ def flank(
         write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.views.flank_figure import save_flank_figure
+        with working("drawing the picture", compiles=False):
+            from siggen.views.flank_figure import save_flank_figure
 
-        save_flank_figure(views, png)
+            save_flank_figure(views, png)
         drawn(png, show)
 
 

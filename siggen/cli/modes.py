@@ -49,9 +49,10 @@ def modes(
         write_table_file(found.table, out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.views.modes_figure import save_modes_figure
+        with working("drawing the picture", compiles=False):
+            from siggen.views.modes_figure import save_modes_figure
 
-        save_modes_figure(found, png)
+            save_modes_figure(found, png)
         drawn(png, show)
 
 

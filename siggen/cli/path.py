@@ -52,9 +52,10 @@ def path(
         write_table_file(found.table, out)
         typer.echo(str(out))
     if png is not None:
-        from siggen.views.path_figure import save_path_figure
+        with working("drawing the picture", compiles=False):
+            from siggen.views.path_figure import save_path_figure
 
-        save_path_figure(found, png)
+            save_path_figure(found, png)
         drawn(png, show)
 
 

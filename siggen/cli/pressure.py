@@ -54,7 +54,8 @@ def pressure(
     if out is not None:
         write_table_file(pressure_table(found), out)
     if png is not None:
-        save_pressure_figure(found, positions, png)
+        with working("drawing the picture", compiles=False):
+            save_pressure_figure(found, positions, png)
     typer.echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
     if out is not None:
         typer.echo(str(out))

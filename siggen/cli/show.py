@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.working import working
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -33,9 +34,10 @@ def show(
     dataset = open_set(folder)
     found = dataset.record(record)
     if (png := picture_place(png, open_it, "show")) is not None:
-        from siggen.views.record_figure import save_record_figure
+        with working("drawing the picture", compiles=False):
+            from siggen.views.record_figure import save_record_figure
 
-        save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
+            save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
         drawn(png, open_it)
         return
     from rich.console import Console

@@ -78,12 +78,14 @@ def tvms(
         torque = static_torque_nm(usable, specimen) if torque_nm is None else torque_nm
         curves = stiffness_curves(usable, specimen, pitches=pitches, torque_nm=torque)
         meaning = stiffness_meaning(usable, torque)
+        error = table_error_text(usable, specimen)
     if out is not None:
         write_table_file(curve_table(curves, parts=parts, potential_energy=potential_energy), out)
     if png is not None:
-        save_stiffness_figure(curves, png, parts=parts, potential_energy=potential_energy, title=meaning)
+        with working("drawing the picture", compiles=False):
+            save_stiffness_figure(curves, png, parts=parts, potential_energy=potential_energy, title=meaning)
     typer.echo(meaning, err=True)
-    typer.echo(table_error_text(usable, specimen), err=True)
+    typer.echo(error, err=True)
     for note in model_notes(usable):
         typer.echo(f"note: {note}", err=True)
     if out is not None:
