@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.contact.record_case import RecordCase, record_case
-from siggen.specimen.integration import steps_per_sample
+from siggen.specimen.integration import TimeGrid, time_grid
 
 LOOP_S, ROUNDS = 0.25, 5
 STATE = "through_100"
@@ -35,10 +35,11 @@ def loop_times() -> Iterator[tuple[str, dict[str, float]]]:
 def _loop_s(case: RecordCase, integrator: str, steps: int | None) -> float:
     """Return the CPU time of the loop per second of signal."""
     mesh = case.state.mesh
+    grid = TimeGrid(steps or 1, 1)
     if steps is None:
-        steps = steps_per_sample(case.config, case.specimen, mesh.structure, mesh.tables)
-    motion = case.motion(integrator, steps)
-    _, pitches, inputs = case.course(motion, steps, 0.0, LOOP_S)
+        grid = time_grid(case.config, case.specimen, mesh.structure, mesh.tables)
+    motion = case.motion(integrator, grid.per_sample, stride=grid.stride)
+    _, pitches, inputs = case.course(motion, grid.per_sample, 0.0, LOOP_S)
     states = np.empty((pitches.size, 2 * len(motion.structure.coordinates)))
     states[0] = motion.start(pitches[0])
     begin = time.process_time()

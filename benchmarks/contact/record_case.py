@@ -38,11 +38,18 @@ class RecordCase:
         """Name of the state."""
         return self.config.states[self.state_id].name
 
-    def motion(self, integrator: str = "runge_kutta", steps: int = STEPS, more: tuple[Source, ...] = ()) -> PairMotion:
+    def motion(
+        self, integrator: str = "runge_kutta", steps: int = STEPS, more: tuple[Source, ...] = (), stride: int = 1
+    ) -> PairMotion:
         """Return the motion; `more` acts besides what drives the record."""
         dynamics = self.specimen.dynamics.model_copy(update={"integrator": integrator})
         found = specimen_motion(
-            dynamics, self.state.mesh, self.point, 1.0 / (self.config.fs_hz * steps), self.with_sources(more)
+            dynamics,
+            self.state.mesh,
+            self.point,
+            1.0 / (self.config.fs_hz * steps),
+            self.with_sources(more),
+            stride=stride,
         )
         assert isinstance(found, PairMotion)
         return found

@@ -31,7 +31,7 @@ from siggen.specimen.errors import SpecimenErrors, error_labels
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
-from siggen.specimen.integration import steps_per_sample
+from siggen.specimen.integration import time_grid
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
@@ -147,11 +147,12 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
+    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
         driven = _driven(config, specimen, state, record) if driven is None else driven
         with stage("inputs"):
-            motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
+            step_s = 1.0 / (config.fs_hz * steps)
+            motion = specimen_motion(specimen.dynamics, state.mesh, point, step_s, driven, stride=stride)
         with stage("loop"):
             response = response_of(
                 motion,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,9 +52,17 @@ def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMat
 
 
 def specimen_motion(
-    dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, step_s: float, driven: RecordDrive | None = None
+    dynamics: Dynamics,
+    mesh: SpecimenMesh,
+    point: OperatingPoint,
+    step_s: float,
+    driven: RecordDrive | None = None,
+    *,
+    stride: int = 1,
 ) -> Motion:
     """Return the motion, made for steps of `step_s` seconds; with friction the load holds the mean speed.
+
+    The exponential integrator takes `stride` of them, 1 or 2, at once.
 
     What is `driven` by more than a constant torque takes its inputs; None: constant speed and torque.
     """
@@ -72,6 +81,7 @@ def specimen_motion(
         )
     rubbing = dynamics.rubbing != "off"
     kind = ExponentialMotion if dynamics.method == "exponential" else PairMotion
+    more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
         _law(dynamics, mesh, point),
@@ -82,6 +92,7 @@ def specimen_motion(
         input_vectors=vectors,
         speed_input=-1 if driven is None else driven.speed_input,
         contact=_contact(dynamics, mesh.pair, point),
+        **more,
     )
 
 

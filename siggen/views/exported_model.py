@@ -30,7 +30,7 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
-from siggen.specimen.integration import steps_per_sample
+from siggen.specimen.integration import time_grid
 from siggen.specimen.motion import specimen_motion
 
 FORMAT_VERSION = 2
@@ -60,7 +60,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
+    steps = time_grid(config, specimen, state.mesh.structure, state.mesh.tables).per_sample
     with refused_as("outside_model"):
         angle = start_angle_rad(config, state.pair, record)
         driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)

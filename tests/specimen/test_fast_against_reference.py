@@ -14,7 +14,7 @@ from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
 from siggen.specimen.drive import record_drive
-from siggen.specimen.integration import steps_per_sample
+from siggen.specimen.integration import time_grid
 from siggen.specimen.motion import specimen_motion
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -30,7 +30,9 @@ def drawn_record(preset: str, number: int) -> tuple[Config, int]:
     return config, Random(f"{preset} {number}").randrange(config.specimens * config.records_per_specimen)
 
 
-def accelerations(config: Config, record_id: int, state: SpecimenState, integrator: str, steps: int) -> np.ndarray:
+def accelerations(
+    config: Config, record_id: int, state: SpecimenState, integrator: str, steps: int, stride: int = 1
+) -> np.ndarray:
     """Return the accelerations (samples, motions) of a record from the static start, means over two samples."""
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
@@ -39,7 +41,7 @@ def accelerations(config: Config, record_id: int, state: SpecimenState, integrat
     driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
     rate_hz = config.fs_hz * steps
     dynamics = specimen.dynamics.model_copy(update={"integrator": integrator})
-    motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven)
+    motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
     times = np.arange(round(WINDOW_S * rate_hz) + 1) / rate_hz
     pitches = driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
     inputs = np.zeros((times.size, motion.equations.external_input.shape[0]))
@@ -66,9 +68,9 @@ def errors(preset: str, number: int) -> np.ndarray:
     specimen = draw_specimen(config, record.specimen_id)
     assert specimen.dynamics.method == "exponential"
     state = specimen_state(config, specimen, record.state_id)
-    steps = steps_per_sample(config, specimen, state.mesh.structure, state.mesh.tables)
+    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
-    fast = accelerations(config, record_id, state, "exponential", steps)
+    fast = accelerations(config, record_id, state, "exponential", steps, stride)
     return np.asarray(np.sqrt(np.mean((fast - fine) ** 2, axis=0) / np.mean(fine**2, axis=0)))
 
 

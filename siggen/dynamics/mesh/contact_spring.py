@@ -141,3 +141,63 @@ def contact_shares(
     rough_0 = numbers[here + 3] * (1.0 - t) + numbers[here + values + 3] * t
     rough_1 = numbers[there + 3] * (1.0 - t) + numbers[there + values + 3] * t
     return carrying_0 + share * (carrying_1 - carrying_0), rough_0 + share * (rough_1 - rough_0)
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def contact_state(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return all that the table says of slot i, which is found once: spring, moment and shares of the functions above.
+
+    Force [N] and stiffness [N/m]; moment [N m], dM/dd [N] and dM/dθ [N m]; carrying share and share on damage.
+    """
+    approach = penetration_m - pairs[i, TOUCH]
+    if not approach > 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0
+    nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
+    unit_m = scalars[layout.CONTACT_UNIT]
+    node = _node(approach, unit_m, nodes)
+    span = unit_m * (2.0 * node + 1.0)
+    over = approach - unit_m * (node * node)
+    per_span = 1.0 / span
+    t = over * per_span
+    here = int(pairs[i, CURVES]) + node * values
+    there, share = here + nodes * values, pairs[i, SHARE]
+    beyond, held = t > 1.0, min(t, 1.0)
+    force, slope, _ = _hermite(numbers, here, there, values, share, over, per_span, beyond)
+    low = _across(numbers, here + 2, there + 2, share)
+    carrying = low + held * (_across(numbers, here + values + 2, there + values + 2, share) - low)
+    low = _across(numbers, here + 3, there + 3, share)
+    rough = low + held * (_across(numbers, here + values + 3, there + values + 3, share) - low)
+    if values == 4:
+        return force, slope, 0.0, 0.0, 0.0, carrying, rough
+    tilt = pairs[i, TILT]
+    moment, m_slope, m_bend = _hermite(numbers, here + 4, there + 4, values, share, over, per_span, beyond)
+    turning, r_slope, r_bend = _hermite(numbers, here + 6, there + 6, values, share, over, per_span, beyond)
+    force += tilt * (m_slope + 0.5 * tilt * r_slope)
+    slope += tilt * (m_bend + 0.5 * tilt * r_bend)
+    cross = m_slope + r_slope * tilt
+    return max(force, 0.0), max(slope, 0.0), moment + turning * tilt, cross, turning, carrying, rough
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _across(numbers: FloatArray, here: int, there: int, share: float) -> float:
+    """Return the value between two columns."""
+    value: float = numbers[here] + share * (numbers[there] - numbers[here])
+    return value
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _hermite(
+    numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, per_span: float, beyond: bool
+) -> tuple[float, float, float]:
+    """Return what `_cubic` returns, without divisions."""
+    f_0, s_0 = _across(numbers, here, there, share), _across(numbers, here + 1, there + 1, share)
+    f_1 = _across(numbers, here + values, there + values, share)
+    s_1 = _across(numbers, here + values + 1, there + values + 1, share)
+    if beyond:
+        return f_1 + s_1 * (over - 1.0 / per_span), s_1, 0.0
+    rise, t = (f_1 - f_0) * per_span, over * per_span
+    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
+    value = f_0 + over * (s_0 + t * (bend + t * twist))
+    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) * per_span

@@ -12,9 +12,9 @@ from math import sqrt, tanh
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import contact_moment, contact_shares
 from siggen.dynamics.mesh.pair_columns import (
     CARRYING,
+    CROSS,
     DAMPING,
     FLANK,
     MOMENT,
@@ -24,6 +24,7 @@ from siggen.dynamics.mesh.pair_columns import (
     ROUGH,
     STIFFNESS,
     TILT,
+    TURNING,
     WHOLE,
     YIELD,
 )
@@ -98,7 +99,7 @@ def _write_roots(
     """Write c √Σk/k of every pair by the share of the load that asperities carry, the same at all nodes."""
     for i in range(slots):
         root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM]
-        load, position, rough = _middle(scalars, numbers, index, weights, pairs, i, slots)
+        load, position, rough = _middle(weights, pairs, i, slots)
         if load > 0.0:
             share, _ = lubricated(scalars, numbers, index, position, load, rough)
             root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM] * (1.0 - share)
@@ -130,10 +131,9 @@ def _load(
         damping = root * shared * pairs[i, STIFFNESS]
         force = pairs[i, NORMAL] + damping * rate
         if tilts and flank > 0.0:
-            moment, cross, turning = contact_moment(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
-            tilt_rate = root * shared * node[NODE_TILT_RATE, q]
+            tilt_rate, cross = root * shared * node[NODE_TILT_RATE, q], pairs[i, CROSS]
             force += cross * tilt_rate
-            moment += root * shared * cross * rate + turning * tilt_rate
+            moment = pairs[i, MOMENT] + root * shared * cross * rate + pairs[i, TURNING] * tilt_rate
             pairs[i, MOMENT] = moment if force > 0.0 else 0.0
             node[NODE_MOMENT, q] += pairs[i, MOMENT]
         pairs[i, NORMAL] = 0.0
@@ -145,36 +145,25 @@ def _load(
 
 
 @njit(cache=True, _nrt=False)
-def _middle(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slot: int,
-    slots: int,
-) -> tuple[float, float, float]:  # fmt: skip
+def _middle(weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> tuple[float, float, float]:
     """Return means over the nodes at which the drive flank of a slot carries; no force where it never does.
 
     Force on the face that carries [N], position [m] and share on damage.
     """
-    whole, load, position, carrying, rough, inner, carries = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1
-    last = weights.size - 1
-    for q in range(last + 1):
+    whole, load, position, carrying, rough = 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(weights.size):
         i = q * slots + slot
         if pairs[i, FLANK] <= 0.0:
             continue
-        weight, carries = weights[q], i
+        weight = weights[q]
         whole += weight
         load += weight * pairs[i, NORMAL]
         position += weight * pairs[i, POSITION]
-        if index[layout.CONTACT_NODES] == 0:
-            carrying, rough = carrying + weight * pairs[i, CARRYING], rough + weight * pairs[i, ROUGH]
-            inner += weight
-        elif 0 < q < last:  # at two nodes of four
-            here, there = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
-            carrying, rough, inner = carrying + weight * here, rough + weight * there, inner + weight
+        carrying += weight * pairs[i, CARRYING]
+        rough += weight * pairs[i, ROUGH]
     if load <= 0.0:
         return 0.0, 0.0, 0.0
-    if inner == 0.0:
-        carrying, rough = contact_shares(scalars, numbers, index, pairs, carries, pairs[carries, PENETRATION])
-        inner = 1.0
-    return load / whole * inner / max(carrying, LEAST_CARRYING), position / whole, rough / inner
+    return load / max(carrying, LEAST_CARRYING * whole), position / whole, rough / whole
 
 
 @njit(cache=True, _nrt=False, inline="always")
@@ -188,10 +177,8 @@ def _rub(
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:
             continue
-        carrying, rough = pairs[i, CARRYING], pairs[i, ROUGH]
-        if index[layout.CONTACT_NODES] > 0:
-            carrying, rough = contact_shares(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
-        _, coefficient = lubricated(scalars, numbers, index, here, force / max(carrying, LEAST_CARRYING), rough)
+        load = force / max(pairs[i, CARRYING], LEAST_CARRYING)
+        _, coefficient = lubricated(scalars, numbers, index, here, load, pairs[i, ROUGH])
         speed = (node[NODE_SLIDING_0, q] + here * node[NODE_SLIDING_1, q]) / scalars[layout.SLIP_SPEED]
         friction = coefficient * force
         if abs(speed) < STRAIGHT:

@@ -41,10 +41,10 @@ if TYPE_CHECKING:
     CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
     BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
     LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG, CONTACT_REACH,
-    CONTACT_TILT,
-) = range(25)  # fmt: skip
+    CONTACT_TILT, CONTACT_UNIT,
+) = range(26)  # fmt: skip
 """Places of single numbers in `PairLaw.scalars`."""
-SCALARS = 25
+SCALARS = 26
 
 (
     TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
@@ -243,6 +243,7 @@ def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTab
         packed.add(place, values)
     scalars[CONTACT_REACH], scalars[LEAD_M] = contact.reach_m, contact.lead_m
     scalars[CONTACT_TILT] = contact.largest_tilt_rad
+    scalars[CONTACT_UNIT] = contact.reach_m / (contact.curves.shape[1] - 1.0) ** 2
 
 
 def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:

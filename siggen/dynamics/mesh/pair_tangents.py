@@ -12,18 +12,23 @@ import numpy as np
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.contact_spring import contact_state
 from siggen.dynamics.mesh.pair_columns import (
     ALONE,
     CARRYING,
     COUPLED,
+    CROSS,
     FLANK,
     GAP,
+    MOMENT,
     MOST_APART,
     NORMAL,
     OFFSET,
     PAIR,
     PENETRATION,
+    ROUGH,
     STIFFNESS,
+    TURNING,
     WHOLE,
     YIELD,
 )
@@ -105,15 +110,28 @@ def _write_alone(
     for i in range(base, base + slots):
         elastic, tangent = 0.0, 0.0
         if pairs[i, WHOLE] > 0.0:
-            elastic, tangent, pairs[i, CARRYING] = spring_of_flank(
-                scalars, numbers, index, pairs, i, pairs[i, PENETRATION]
-            )
+            elastic, tangent = _spring(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
         _write(pairs, i, elastic, tangent)
         pairs[i, YIELD] = pairs[i, STIFFNESS]
         if elastic != 0.0:
             touching += digit if elastic > 0.0 else 2 * digit
         digit *= 3
     return touching
+
+
+@njit(cache=True, _nrt=False, inline="always")
+def _spring(
+    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
+) -> tuple[float, float]:
+    """Return force and stiffness of slot i; write its moment, its carrying share and its share on damage."""
+    if index[layout.CONTACT_NODES] > 0 and pairs[i, FLANK] >= 0.0:
+        (
+            force, slope, pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING], pairs[i, CARRYING], pairs[i, ROUGH],
+        ) = contact_state(scalars, numbers, index, pairs, i, penetration_m)  # fmt: skip
+        return force, slope
+    pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING] = 0.0, 0.0, 0.0
+    force, slope, pairs[i, CARRYING] = spring_of_flank(scalars, numbers, index, pairs, i, penetration_m)
+    return force, slope
 
 
 @njit(cache=True, _nrt=False, inline="always")
@@ -137,10 +155,11 @@ def _write_two(
     f_j, k_j, d_j = _state_before(pairs, j, j + back)
     inverse = 1.0 / (1.0 - k_i * k_j * c * c)
     f_i, f_j = f_i + k_i * (d_i - c * k_j * d_j) * inverse, f_j + k_j * (d_j - c * k_i * d_i) * inverse
+    p_i, p_j = alone_i, alone_j
     for _ in range(MOST_STEPS):
         p_i, p_j = alone_i - c * f_j, alone_j - c * f_i
-        g_i, k_i, pairs[i, CARRYING] = spring_of_flank(scalars, numbers, index, pairs, i, p_i)
-        g_j, k_j, pairs[j, CARRYING] = spring_of_flank(scalars, numbers, index, pairs, j, p_j)
+        g_i, k_i = _spring(scalars, numbers, index, pairs, i, p_i)
+        g_j, k_j = _spring(scalars, numbers, index, pairs, j, p_j)
         inverse = 1.0 / (1.0 - k_i * k_j * c * c)
         d_i = (g_i - f_i - k_i * c * (g_j - f_j)) * inverse
         d_j = (g_j - f_j - k_j * c * (g_i - f_i)) * inverse
@@ -148,6 +167,8 @@ def _write_two(
         if max(abs(d_i), abs(d_j)) <= settled * max(abs(f_i), abs(f_j)):
             break
     pairs[i, PENETRATION], pairs[j, PENETRATION] = alone_i - c * f_j, alone_j - c * f_i
+    pairs[i, MOMENT] += pairs[i, CROSS] * (pairs[i, PENETRATION] - p_i)
+    pairs[j, MOMENT] += pairs[j, CROSS] * (pairs[j, PENETRATION] - p_j)
     _write(pairs, i, max(f_i, 0.0), k_i)
     _write(pairs, j, max(f_j, 0.0), k_j)
     pairs[i, YIELD] = k_i * (1.0 - c * k_j) * inverse

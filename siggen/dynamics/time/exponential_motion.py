@@ -22,15 +22,15 @@ from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, advance, f
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.dynamics.time.transient import transient_s
 
-EVENT_SHARE = 1e-2
-"""Of the static force: how large the cubic part of the force over a step may be."""
+SMOOTH_SHARE, KINKED_SHARE = 4e-2, 1e-2
+"""Of the static force: how large its quadratic part over a step may be, with contact across the face and slices."""
 MEAN_ANGLES = 24
 GOLDEN = 0.6180339887498949
 """Angles spread over all teeth and the path of contact."""
 
 
 class ExponentialMotion(PairMotion):
-    """Steps with the exponential integrator; arguments as `PairMotion`.
+    """Steps with the exponential integrator; arguments as `PairMotion`; `stride` steps, 1 or 2, are one of its own.
 
     It remembers the end of the last step, so steps follow one another: blocks of a run give what one block gives.
     """
@@ -49,6 +49,7 @@ class ExponentialMotion(PairMotion):
         contact: PairContact | None = None,
         input_vectors: FloatArray | None = None,
         speed_input: int = -1,
+        stride: int = 1,
     ) -> None:
         super().__init__(
             structure, law, torque_nm=torque_nm, speed_hz=speed_hz, step_s=step_s, contact=contact,
@@ -57,10 +58,12 @@ class ExponentialMotion(PairMotion):
         )  # fmt: skip
         damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
         rigid = (self.pair_equations.rigid_sliding_0, self.pair_equations.rigid_sliding_1)
-        self.scheme = exponential_scheme(structure, self.equations, damping, rigid, step_s)
-        self._tolerance_n = EVENT_SHARE * abs(self.equations.static_force)
+        self.scheme = exponential_scheme(structure, self.equations, damping, rigid, stride * step_s)
+        self._stride = stride
+        share = SMOOTH_SHARE if law.places[layout.CONTACT_NODES] > 0 else KINKED_SHARE
+        self._tolerance_n = share * abs(self.equations.static_force)
         self._events = event_places(
-            law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * step_s
+            law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * stride * step_s
         )
         if law.places[layout.ROUGHNESSES] > 0:
             self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
@@ -86,8 +89,8 @@ class ExponentialMotion(PairMotion):
         """
         apart = np.empty(pitches.size - 1, dtype=np.bool_)
         advance(
-            self.scheme, self.law, self._speed_input, self._tolerance_n, self._events, pitches, inputs, self._memory,
-            self._tables, self._work, apart, trajectory,
+            self.scheme, self.law, self._stride, self._speed_input, self._tolerance_n, self._events, pitches, inputs,
+            self._memory, self._tables, self._work, apart, trajectory,
         )  # fmt: skip
         return apart
 

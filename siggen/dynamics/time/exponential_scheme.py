@@ -1,14 +1,15 @@
 """Constants of the exponential integrator: exact propagation of the linear part and of forces given at Gauss nodes.
 
 Derived: ż = A z + Σ_c b_c e_c(t) + Σ_k v_k u_k(t) with the mesh's mean stiffness and damper in A. Over a step of length
-h every e_c is the cubic through its values at the four Gauss-Legendre nodes τ_q, so that for any τ in [0, 1]
+h every e_c is the parabola through its values at the three Gauss-Legendre nodes τ_q, so that for any τ in [0, 1]
 
     z(τ h) = e^{A τ h} z_0 + Σ_c Σ_q W_cq(τ) e_c(τ_q) + R_0(τ) u_0 + R_1(τ) u_1,
     W_cq(τ) = ∫ e^{A (τ h - s)} b_c L_q(s/h) ds over [0, τ h],
 
 with L_q the Lagrange polynomials of the nodes; inputs are linear. It is asked for at the end, and at the nodes for what
 the mesh sees there: approach and its rate, both parts of the sliding speed, and where gears tilt, tilt and its rate
-(collocation). All of it comes from exponentials of augmented matrices, without an inverse of A.
+(collocation). The state in the middle of a step is handed on too: it costs no forces. All of it comes from exponentials
+of augmented matrices, without an inverse of A.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
 from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
 
-NODES = 4
+NODES = 3
 LEVELS = 5
 SPLIT = 2
 """A step with an event becomes this many, and each of them again this many, up to LEVELS lengths in all."""
@@ -40,6 +41,7 @@ class Scheme(NamedTuple):
     transition: FloatArray  # (LEVELS, 2n, columns)
     response: FloatArray  # (LEVELS, channels, NODES, columns) to ΣN, ΣF, Σ s F, and where gears tilt Σμ, Σ ζ F
     input_response: FloatArray  # (LEVELS, 2, m, columns)
+    middle: FloatArray  # (2n + channels x NODES + 2 m, 2n) of start, excess forces and inputs to the state after h/2
     nodes: FloatArray  # (NODES,) τ_q on [0, 1]
     weights: FloatArray  # (NODES,)
     legendre: FloatArray  # (NODES, NODES) (2l + 1) w_q P_l(τ_q): values at the nodes to Legendre coefficients
@@ -72,7 +74,7 @@ def exponential_scheme(
     matrix = state_matrix(equations, equations.reference_stiffness, damping_n_s_per_m)
     forces, observed = _forces(structure), _observed(structure)
     keys = tuple(_key(array) for array in (matrix, forces, equations.external_input, observed))
-    transition, response, inputs = _all_levels(keys, step_s)
+    transition, response, inputs, middle = _all_levels(keys, step_s)
     tilt = structure.tilt_vector
     static_tilt = 0.0 if tilt is None else float((tilt * equations.static_deflection).sum())
     static = (equations.static_force, equations.static_approach, static_tilt)
@@ -81,6 +83,7 @@ def exponential_scheme(
         transition=transition,
         response=response,
         input_response=inputs,
+        middle=middle,
         nodes=nodes,
         weights=weights,
         legendre=np.array([_legendre(nodes, degree) * weights * (2.0 * degree + 1.0) for degree in range(NODES)]),
@@ -95,12 +98,14 @@ def _key(array: FloatArray) -> tuple[tuple[int, ...], bytes]:
 
 @lru_cache(maxsize=4)
 def _all_levels(keys: tuple[tuple[tuple[int, ...], bytes], ...], step_s: float) -> tuple[FloatArray, ...]:
-    """Return transition, response and input response of all lengths; kept, since states of a gearbox share them."""
+    """Return transition, response and inputs of all lengths, and the middle; kept: states of a gearbox share them."""
     matrix, forces, inputs, observed = (np.frombuffer(data).reshape(shape) for shape, data in keys)
     nodes = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
     steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
     parts = [_propagated(matrix, forces, inputs, float(step), nodes, observed) for step in steps]
-    return tuple(np.ascontiguousarray([part[k] for part in parts]) for k in range(3))
+    half = _exponentials(matrix, forces, inputs, step_s, 0.5, nodes)
+    middle = np.concatenate([part.reshape(-1, len(matrix)) for part in half])
+    return (*(np.ascontiguousarray([part[k] for part in parts]) for k in range(3)), middle)
 
 
 def _forces(structure: Structure) -> FloatArray:

@@ -1,12 +1,12 @@
 """Steps of the exponential integrator, compiled. Constants and derivation: `exponential_scheme`.
 
 The forces of the mesh at the nodes of a step decide what the mesh sees there, and that decides the forces: with the
-tangents of the pair law (`node_forces`) four linear equations for the excess forces at the nodes, Newton's method. From
-a good guess, the parabola through the forces of the step before, a single step of it is enough where nothing happens.
+tangents of the pair law (`node_forces`) three linear equations for the excess forces there, Newton's method. From a
+good guess, the parabola through the forces of the step before, a single step of it is enough where nothing happens.
 Friction and moments follow in proportion, or with the next step.
 
 A step is taken again as SPLIT shorter ones where its force is no smooth function of time: a flank touches or parts, the
-cubic part of the force is larger than allowed, or Newton's method does not end. It is short from the start where a
+quadratic part of the force is larger than allowed, or Newton's method does not end. It is short from the start where a
 pair passes its pitch point, at which friction turns, or an edge of damage (`event_places`). So steps are shortened by
 what happens and never by a label.
 """
@@ -34,6 +34,7 @@ from siggen.dynamics.mesh.node_forces import (
 )
 from siggen.dynamics.mesh.pair_columns import PAIR, ROW
 from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.time.exponential_products import add_response, free_motion, write_middle
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
 
 MOST_ITERATIONS = 6
@@ -55,45 +56,14 @@ Work = tuple[FloatArray, ...]
 
 
 def fresh_memory() -> FloatArray:
-    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, NODES).
+    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, NODES or more).
 
     Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1:
     not known), and how many steps were tried and shortened.
     """
-    memory = np.zeros((CHANNELS + 1, NODES))
+    memory = np.zeros((CHANNELS + 1, max(NODES, SHORTENED + 1)))
     memory[CHANNELS, TOUCHING] = -1.0
     return memory
-
-
-@njit(cache=True, _nrt=False, inline="always")
-def _free_motion(
-    transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, between: FloatArray, free: FloatArray
-) -> None:
-    """Write the state after a step, and what the mesh sees in it, without excess forces into `free` (columns,)."""
-    for c in range(free.size):
-        free[c] = 0.0
-    for j in range(0, transition.shape[1], 2):
-        first, second = start[j], start[j + 1]
-        for c in range(free.size):
-            free[c] += transition[level, j, c] * first + transition[level, j + 1, c] * second
-    for k in range(between.shape[1]):
-        first, second = between[0, k], between[1, k]
-        for c in range(free.size):
-            free[c] += inputs[level, 0, k, c] * first + inputs[level, 1, k, c] * second
-
-
-@njit(cache=True, _nrt=False, inline="always")
-def _add_response(
-    response: FloatArray, level: int, excess: FloatArray, first: int, last: int, values: FloatArray
-) -> None:
-    """Add what excess forces (channels, NODES) do to the columns from `first` up to but without `last`."""
-    for channel in range(response.shape[1]):
-        e_0, e_1, e_2, e_3 = excess[channel, 0], excess[channel, 1], excess[channel, 2], excess[channel, 3]
-        for c in range(first, last):
-            values[c] += (
-                response[level, channel, 0, c] * e_0 + response[level, channel, 1, c] * e_1
-                + response[level, channel, 2, c] * e_2 + response[level, channel, 3, c] * e_3
-            )  # fmt: skip
 
 
 @njit(cache=True, _nrt=False, inline="always")
@@ -180,7 +150,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     node, excess, matrix, seen, start, end, between = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
     seers = 4 if channels == 3 else 6
-    _free_motion(scheme.transition, scheme.input_response, level, start, between, end)
+    free_motion(scheme.transition, scheme.input_response, level, start, between, end)
     last = int(memory[CHANNELS, LAST_LEVEL])
     for channel in range(channels):
         for q in range(NODES):
@@ -193,7 +163,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     for iteration in range(MOST_ITERATIONS):
         for c in range(size, columns):
             seen[c] = end[c]
-        _add_response(response, level, excess, size, columns, seen)
+        add_response(response, level, excess, size, columns, seen)
         for s in range(seers):
             for q in range(NODES):
                 node[s, q] = seen[size + s * NODES + q]
@@ -213,14 +183,14 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
             settled = True
             break
     if level < LEVELS - 1:
-        cubic, rubbing = 0.0, 0.0
+        bent, rubbing = 0.0, 0.0
         for q in range(NODES):
-            cubic += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
+            bent += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
             rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
         parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
-        if not settled or (level < TOUCHED and parted) or not max(abs(cubic), abs(rubbing)) <= tolerance_n:
+        if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= tolerance_n:
             return False
-    _add_response(response, level, excess, 0, size, end)
+    add_response(response, level, excess, 0, size, end)
     for channel in range(channels):
         for q in range(NODES):
             memory[channel, q] = excess[channel, q]
@@ -260,9 +230,10 @@ def work_arrays(columns: int, inputs: int) -> Work:
 
 
 @njit(cache=True, _nrt=False)
-def advance(
+def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme: Scheme,
     law: PairLaw,
+    stride: int,
     speed_input: int,
     tolerance_n: float,
     events: NDArray[np.bool_],
@@ -274,8 +245,9 @@ def advance(
     apart: NDArray[np.bool_],
     trajectory: FloatArray,
 ) -> None:
-    """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which ends of steps no pair touches.
+    """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which of them no pair touches.
 
+    A step of the scheme takes `stride` of these steps, 1 or 2; one that is left over at the end is half of it.
     `pitches` (steps + 1,), `inputs` (steps + 1, m), `events` of `event_places`; `memory` of `fresh_memory` and `pairs`
     (NODES slots, COLUMNS) go on from the steps before.
     """
@@ -287,18 +259,24 @@ def advance(
     reach = reach if law.places[layout.ROUGHNESSES] > 0 else -1.0
     for j in range(size):
         state[j] = trajectory[0, j]
-    for i in range(pitches.size - 1):
-        turned, ratio = pitches[i + 1] - pitches[i], 1.0
+    steps, i = pitches.size - 1, 0
+    while i < steps:
+        until = FINEST if i + stride <= steps else FINEST // 2
+        last = min(i + stride, steps)
+        turned, ratio = (pitches[last] - pitches[i]) * (FINEST // until), 1.0
         if speed_input >= 0:
-            ratio += 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])
-        place, level = 0, 1 if _has_event(law, pairs, events, pitch_place, reach, pitches[i], pitches[i + 1]) else 0
-        while place < FINEST:
+            ratio += 0.5 * (inputs[i, speed_input] + inputs[last, speed_input])
+        place, level = 0, 0
+        if until < FINEST or _has_event(law, pairs, events, pitch_place, reach, pitches[i], pitches[last]):
+            level = 1
+        while place < until:
             length = FINEST // SPLIT**level
-            a, b = place / FINEST, (place + length) / FINEST
+            a, b = place / until, (place + length) / until
             for k in range(m):
-                rise = inputs[i + 1, k] - inputs[i, k]
+                rise = inputs[last, k] - inputs[i, k]
                 between[0, k], between[1, k] = inputs[i, k] + a * rise, inputs[i, k] + b * rise
             memory[CHANNELS, ATTEMPTS] += 1.0
+            a, b = place / FINEST, (place + length) / FINEST
             if not _attempt(
                 scheme, law, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, tolerance_n, memory,
                 pairs, work,
@@ -306,11 +284,19 @@ def advance(
                 level += 1
                 memory[CHANNELS, SHORTENED] += 1.0
                 continue
+            if stride == 2 and level == 0:
+                write_middle(scheme.middle, state, memory, scheme.response.shape[1], between, trajectory[i + 1])
+                apart[i] = memory[CHANNELS, TOUCHING] == 0.0
             for j in range(size):
                 state[j] = end[j]
             place += length
+            if stride == 2 and place == FINEST // 2:
+                apart[i] = memory[CHANNELS, TOUCHING] == 0.0
+                for j in range(size):
+                    trajectory[i + 1, j] = state[j]
             while level > 0 and place % (FINEST // SPLIT ** (level - 1)) == 0:
                 level -= 1
-        apart[i] = memory[CHANNELS, TOUCHING] == 0.0
+        apart[last - 1] = memory[CHANNELS, TOUCHING] == 0.0
         for j in range(size):
-            trajectory[i + 1, j] = state[j]
+            trajectory[last, j] = state[j]
+        i = last
