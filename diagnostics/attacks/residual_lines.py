@@ -9,8 +9,8 @@ import numpy as np
 SHAFT_ORDERS = 8
 """Orders 0 ... 8 are no residual: couplings and rotors press there, up to 4x, and no tooth.
 
-`diagnostics.signal.difference_signal` leaves out 0 to 2, as the toolboxes do. There a strong 3x of a coupling changes every
-share of energy.
+`diagnostics.signal.difference_signal` leaves out 0 to 2, as the toolboxes do. There a strong 3x of a coupling changes
+every share of energy.
 """
 
 WHITENING_ORDERS = 10
