@@ -23,6 +23,7 @@ from diagnostics.audit.audit_report import signal_attackers
 from diagnostics.audit.bank_detections import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.separability_findings import separability_findings
+from diagnostics.base.single_thread import single_thread
 
 DAMAGE = ("state", "fault", "severity", "damage", "faulty", "mesh_stiffness", "land", "sink", "snr", "contact_loss")
 """Beginnings of the names of labels that follow from the state."""
@@ -55,6 +56,7 @@ def with_permuted_states(found: MeasuredSet, turn: int) -> MeasuredSet:
     return replace(found, labels={**found.labels, **moved})
 
 
+@single_thread
 def main(path: str, turns: int, states: list[str]) -> None:
     """Print both shares."""
     every = measured_set(siggen.open(path))
