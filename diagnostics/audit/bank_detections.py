@@ -105,5 +105,16 @@ def chance_limit(
         maxima.append(chance_maximum(asked, rows, positive, labels["specimen_id"][rows], folds, seed, turn))
         advance()
     defined = np.array(maxima)[np.isfinite(maxima)]
-    limit = float(np.quantile(defined, LEVEL)) if defined.size else math.nan
-    return ChanceLimit(limit, len(asked), PERMUTATIONS)
+    return ChanceLimit(exceeded_by_chance(defined), len(asked), PERMUTATIONS)
+
+
+def exceeded_by_chance(maxima: np.ndarray) -> float:
+    """Return the limit that another maximum of the same law exceeds in 5 % of the cases at most; NaN without any.
+
+    Of n + 1 exchangeable numbers each is as likely to be the largest. So the limit is number ceil(0.95 (n + 1)) of n,
+    the largest where that is beyond it; a quantile of the n would be exceeded more often. Derived.
+    """
+    if maxima.size == 0:
+        return math.nan
+    place = math.ceil(LEVEL * (maxima.size + 1) - 1e-9)
+    return float(np.sort(maxima)[min(place, maxima.size) - 1])

@@ -38,30 +38,19 @@ def shafts(diameter: Any, span: Any) -> Changes:
     return {f"{SHAFTS}.{which}.{name}": value for which in BOTH for name, value in sizes.items()}
 
 
-STIFF = {"kind": "loguniform", "low": 2e8, "high": 5e8}
-BEARINGS = {f"dynamics.{which}.bearing_stiffness_{axis}_n_per_m": STIFF for which in BOTH for axis in "xy"}
+NARROW = {RELIEF: uniform(6, 10)}
+SLENDER = {**shafts(30, uniform(110, 140)), f"{SHAFTS}.gear.diameter_mm": 35}
 CHANGES: dict[str, Changes] = {
-    "bench as it is": {},
+    "bench as it is: relief 2 to 10 um, shafts of 30 to 45 mm on 70 to 140 mm": {},
+    "relief 6 to 10 um": NARROW,
+    "shafts of 30 and 35 mm on 110 to 140 mm": SLENDER,
+    "both, as bench was before": {**NARROW, **SLENDER},
     "contact of slices, rigid shafts": {"dynamics.mesh.contact": "slices", SHAFTS: None},
-    "rigid shafts": {SHAFTS: None},
-    "shafts of 40 mm in place of 30 and 35 mm": shafts(40, uniform(110, 140)),
-    "span 70 to 100 mm in place of 110 to 140 mm, both 30 mm": shafts(30, uniform(70, 100)),
-    "bearings of 2 to 5e8 N/m, both of a shaft": BEARINGS,
-    "no helix": {"manufacture.helix": "off"},
-    "no misalignment": {"manufacture.lead_misalignment_um": 0},
-    "no crowning": {"manufacture.crowning_um": 0},
     "no relief": {RELIEF: 0},
-    "relief 2 um": {RELIEF: 2},
-    "relief 2 to 10 um": {RELIEF: uniform(2, 10)},
-    "relief over 0.15 base pitches": {"dynamics.mesh.tip_relief_length": 0.15},
-    "relief over 0.40 base pitches": {"dynamics.mesh.tip_relief_length": 0.4},
-    "no flank waves": {"manufacture.flank_waves": None},
-    "no background": {"background": None},
-    "class 8": {"manufacture.accuracy_class": 8},
-    "70 % of the tolerance": {"manufacture.tolerance_share": 0.7},
-    "relief 2 to 10 um, shafts 30 to 45 mm, span 70 to 140 mm": {
-        RELIEF: uniform(2, 10), **shafts(uniform(30, 45), uniform(70, 140))
+    "no helix, crowning and misalignment": {
+        "manufacture.helix": "off", "manufacture.lead_misalignment_um": 0, "manufacture.crowning_um": 0
     },
+    "no background": {"background": None},
 }  # fmt: skip
 
 

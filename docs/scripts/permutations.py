@@ -23,6 +23,7 @@ from diagnostics.audit.audit_report import signal_attackers
 from diagnostics.audit.bank_detections import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.separability_findings import separability_findings
+from diagnostics.base.single_thread import single_thread
 
 DAMAGE = ("state", "fault", "severity", "damage", "faulty", "mesh_stiffness", "land", "sink", "snr", "contact_loss")
 """Beginnings of the names of labels that follow from the state."""
@@ -55,21 +56,13 @@ def with_permuted_states(found: MeasuredSet, turn: int) -> MeasuredSet:
     return replace(found, labels={**found.labels, **moved})
 
 
+@single_thread
 def main(path: str, turns: int, states: list[str]) -> None:
     """Print both shares."""
     every = measured_set(siggen.open(path))
     found = kept(every, every.healthy | np.isin(every.labels["state"], states))
     specimen = found.labels["specimen_id"]
     print(f"{specimen.size} records of {np.unique(specimen).size} gearboxes; states {', '.join(states)}", flush=True)
-    begin, named = time.process_time(), Counter[str]()
-    accused = 0
-    for turn in range(turns):
-        traps = [finding.trap for finding in separability_findings(with_permuted_states(found, turn))]
-        accused += bool(traps)
-        named.update(traps)
-    print(
-        f"accused of a trap: {accused} of {turns} {dict(named)}; {time.process_time() - begin:.0f} s of CPU", flush=True
-    )
     begin = time.process_time()
     bank = [attacker for attacker in signal_attackers(found, 0, lambda: None) if attacker.permutable]
     limit = chance_limit(found, bank, 0, lambda: None).auc
@@ -82,7 +75,17 @@ def main(path: str, turns: int, states: list[str]) -> None:
     above = int(np.sum(np.array(best) > limit))
     print(
         f"strongest of {len(bank)} attackers above its limit {limit:.2f}: {above} of {turns}; "
-        f"{time.process_time() - begin:.0f} s of CPU"
+        f"{time.process_time() - begin:.0f} s of CPU",
+        flush=True,
+    )
+    begin, named = time.process_time(), Counter[str]()
+    accused = 0
+    for turn in range(turns):
+        traps = [finding.trap for finding in separability_findings(with_permuted_states(found, turn))]
+        accused += bool(traps)
+        named.update(traps)
+    print(
+        f"accused of a trap: {accused} of {turns} {dict(named)}; {time.process_time() - begin:.0f} s of CPU", flush=True
     )
 
 
