@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnostics.recordings.level_alike import check_levels_alike, level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
 from siggen.errors import UsageError
 
 FEWEST_TURNS = 10
-PLAUSIBLE_RMS_M_S2 = (1e-4, 1e4)
 LEAST_LINE = 0.3
 """Share of a mesh line's bins above the floor; the strongest of the recording must be that much."""
 
@@ -86,11 +86,7 @@ def _check_alike(read: Sequence[MeasuredRecording]) -> None:
             )
         if any(np.array_equal(a, b) for a, b in zip(one.channels.values(), first.channels.values(), strict=True)):
             raise UsageError(f"{one.path}: has the same samples as {first.path}; give every recording once")
-    low, high = PLAUSIBLE_RMS_M_S2
     for one in read:
-        for channel, signal in one.channels.items():
-            if not low < float(signal.std()) < high:
-                raise UsageError(
-                    f"{one.path}: rms of {channel} is {signal.std():.3g} m/s2; allowed: {low:g} to {high:g}. Is --unit "
-                    "that of the file?"
-                )
+        if note := level_note(one):
+            raise UsageError(f"{one.path}: {note}")
+    check_levels_alike(read)

@@ -67,7 +67,7 @@ def calibrate(
         typer.Option(
             "--inject",
             metavar="FOLDER",
-            help="Also write the recordings plus the simulated difference damaged less healthy, as a table.",
+            help="Also write the recordings plus the simulated difference damaged less healthy, as a set.",
         ),
     ] = None,
     per_recording: Annotated[

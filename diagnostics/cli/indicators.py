@@ -174,5 +174,7 @@ def _of_recordings(
         levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
         speed = f"pinion {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
         typer.echo(f"{one.name}: {speed}; rms {levels}")
+        for doubt in one.doubts:
+            typer.echo(f"doubtful: {doubt}", err=True)
     folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")
     typer.echo(str(write_recordings(found, folder)))

@@ -12,6 +12,7 @@ import numpy as np
 
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import Machine
+from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
 from diagnostics.training.log_features import log_values
@@ -21,8 +22,6 @@ UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "oth
 SPEED_RATIO = 1.05
 """Up to which indicators are compared: a line moves by less than the width of most modes."""
 LOAD_RATIO = 1.2
-LARGEST_LEVEL_DB = 25.0
-"""Of all channels alike: more than damage does, so a wrong unit or gain."""
 LISTED = 8
 
 
@@ -154,7 +153,7 @@ def _level_db(machine: Machine, healthy: np.ndarray, logs: np.ndarray) -> float 
         return None
     off = 20.0 / np.log(10.0) * (logs[levels] - healthy[:, levels].mean(axis=0))
     alike = np.isfinite(off).all() and np.ptp(off) < 10.0
-    return float(off.mean()) if alike and np.abs(off).min() > LARGEST_LEVEL_DB else None
+    return float(off.mean()) if alike and np.abs(off).min() > MOST_DB else None
 
 
 def _moved(machine: Machine, healthy: np.ndarray, logs: np.ndarray, score: ChangeScore) -> tuple[Moved, ...]:

@@ -13,6 +13,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.machine import Machine
 from diagnostics.machine.mesh_lines import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
+from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.statistics.change_score import FEWEST
@@ -61,6 +62,7 @@ def healthy_state(
         raise UsageError(f"--load: received {len(loads)} numbers; allowed: one, or one per recording ({len(sources)})")
     read = [read_recording(path, channels, _row(facts, row)) for path, row in sources]
     _refuse_twice(read)
+    check_levels_alike(read)
     fs_hz = min(recording.fs_hz for recording in read)
     duration_s = min(LONGEST_PIECE_S, *(recording.duration_s for recording in read))
     rows, speeds = [], []
@@ -102,8 +104,9 @@ def pieces_of(
     pulses = shaft_pulses(slow, teeth, speed_range_hz)
     if duration_s * pulses.speed_hz < FEWEST_TURNS:
         raise UsageError(
-            f"{recording.path}: pieces of {duration_s:.3g} s hold {duration_s * pulses.speed_hz:.1f} turns of the "
-            f"pinion; allowed: at least {FEWEST_TURNS}. Use longer recordings"
+            f"{recording.path}: pieces of {duration_s:.3g} s, as long as the shortest recording, hold "
+            f"{duration_s * pulses.speed_hz:.1f} turns of the pinion; allowed: at least {FEWEST_TURNS}. Use longer "
+            "recordings, or leave the shortest out"
         )
     return record_pieces(slow, pulses, teeth, duration_s, IndicatorSettings()), pulses
 

@@ -10,9 +10,12 @@ import numpy as np
 from diagnostics.indicators.record import record_values
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.machine.mesh_lines import check_mesh_lines
 from diagnostics.recordings.file_channels import file_channels
+from diagnostics.recordings.level_alike import level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from siggen.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,8 @@ class RecordingIndicators:
         Whole revolutions of pinion and gear that were averaged.
     note : str
         What is undefined, and why.
+    doubts : tuple of str
+        What speaks against unit, teeth or tacho.
     """
 
     name: str
@@ -43,6 +48,7 @@ class RecordingIndicators:
     values: dict[str, float]
     revolutions: tuple[int, int]
     note: str
+    doubts: tuple[str, ...] = ()
 
     @property
     def mesh_hz(self) -> float:
@@ -85,7 +91,16 @@ def recording_indicators(
     pulses = shaft_pulses(recording, teeth, speed_range_hz)
     found = record_values(recording.channels, pulses.times_s, recording.fs_hz, teeth, IndicatorSettings())
     name = path.name if facts.row is None else f"{path.name}:{facts.row}"
-    return RecordingIndicators(name, recording, teeth, pulses, found.values, found.revolutions, found.notes)
+    doubts = _doubts(recording, pulses, teeth)
+    return RecordingIndicators(name, recording, teeth, pulses, found.values, found.revolutions, found.notes, doubts)
+
+
+def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, teeth: tuple[int, int]) -> tuple[str, ...]:
+    try:
+        check_mesh_lines(recording, pulses, teeth)
+    except UsageError as error:
+        return tuple(text for text in (level_note(recording), str(error)) if text)
+    return tuple(text for text in (level_note(recording),) if text)
 
 
 def indicator_title(name: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.recorded_columns import Columns, refuse_twice
 from siggen.errors import UsageError
 
 SEPARATORS = ("\t", ";", ",")
@@ -27,7 +27,7 @@ def read_csv(path: Path) -> Columns:
     Raises
     ------
     UsageError
-        If it holds no samples, a cell is not a number or rows differ in length.
+        If it holds no samples, a cell is not a number, rows differ in length or two columns have one name.
     """
     import pyarrow as pa
     from pyarrow import csv
@@ -45,6 +45,7 @@ def read_csv(path: Path) -> Columns:
         if above == len(rows):
             raise UsageError(f"{path}: holds no samples, only a header ({first})")
         names = rows[0] if named else [str(k) for k in range(1, len(rows[0]) + 1)]
+        refuse_twice(path, names)
         table = csv.read_csv(
             path,
             read_options=csv.ReadOptions(column_names=names, skip_rows=lines[above][0]),

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.recorded_columns import Columns, refuse_twice
 from siggen.errors import UsageError
 
 IDENTITY = b"siggen.identity"
@@ -34,6 +34,7 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
 
     try:
         schema = parquet.read_schema(path)
+        refuse_twice(path, schema.names)
         lists = [field.name for field in schema if _is_list(field.type)]
         numbers = [
             field.name for field in schema if pa.types.is_floating(field.type) or pa.types.is_integer(field.type)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
+
+from siggen.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,3 +52,15 @@ def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:
     if len(rows) == 1:
         return {prefix or "1": rows[0]}
     return {f"{prefix}:{k}" if prefix else str(k): row for k, row in enumerate(rows, start=1)}
+
+
+def refuse_twice(path: Path, names: Sequence[str]) -> None:
+    """Refuse a file in which a name stands for several columns: nobody could say which of them is meant.
+
+    Raises
+    ------
+    UsageError
+        If there is such a name; columns without a name are not counted.
+    """
+    if again := sorted({name for name in names if name and names.count(name) > 1}):
+        raise UsageError(f"{path}: {names.count(again[0])} columns are called {again[0]}; rename them in the file")

@@ -24,6 +24,9 @@ from siggen.errors import UsageError
 PART_RATIO = 1.6
 """High over low of one part; below two, so that a part holds one mesh harmonic only."""
 
+NARROW_RATIO = 1.05
+"""The same where the wide parts give no speed; lines of two stages hardly ever lie that near."""
+
 CLEAR_ENOUGH = 0.5
 """Clarity, relative to the clearest part, from which a part's speed is a candidate."""
 
@@ -116,20 +119,49 @@ class _Candidate:
 def _from_mesh(
     recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
 ) -> ShaftPulses:
-    pinion, gear = teeth
     try:
-        channel, speeds = _candidates(recording, pinion, speed_range_hz)
-        signal, fs_hz = recording.channels[channel], recording.fs_hz
-        chosen = _surest(recording, channel, pinion, speeds, speed_range_hz) if gear % pinion else None
-        if chosen is None:
-            doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
-            judged = signal[: round(JUDGED_S * fs_hz)]
-            chosen = _by_power(judged, fs_hz, pinion, _distinct([*speeds, *doubled]))
-            if gear % pinion:
-                _check_mesh_rules(judged, fs_hz, pinion, chosen)
-        return ShaftPulses(_pulses_around(signal, fs_hz, pinion, chosen), channel)
+        return _in_wide_parts(recording, teeth, speed_range_hz)
     except UsageError as error:
-        raise UsageError(f"{recording.path}: {error}") from error
+        found = _in_narrow_parts(recording, teeth, speed_range_hz)
+        if found is None:
+            raise UsageError(f"{recording.path}: {error}") from error
+        return found
+
+
+def _in_wide_parts(
+    recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
+) -> ShaftPulses:
+    pinion, gear = teeth
+    channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz), speed_range_hz)
+    signal, fs_hz = recording.channels[channel], recording.fs_hz
+    chosen = _surest(recording, channel, pinion, speeds, speed_range_hz) if gear % pinion else None
+    if chosen is None:
+        doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
+        judged = signal[: round(JUDGED_S * fs_hz)]
+        chosen = _by_power(judged, fs_hz, pinion, _distinct([*speeds, *doubled]))
+        if gear % pinion:
+            _check_mesh_rules(judged, fs_hz, pinion, chosen)
+    return ShaftPulses(_pulses_around(signal, fs_hz, pinion, chosen), channel)
+
+
+def _in_narrow_parts(
+    recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
+) -> ShaftPulses | None:
+    """Return the pulses at a speed whose shaft shows, though lines of another stage are stronger than the mesh lines.
+
+    Those lines lead in the wide part that holds both; a narrow part holds one of them alone.
+    """
+    pinion, gear = teeth
+    if gear % pinion == 0:
+        return None
+    try:
+        channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz, NARROW_RATIO), speed_range_hz)
+        chosen = _surest(recording, channel, pinion, speeds, speed_range_hz)
+    except UsageError:
+        return None
+    if chosen is None:
+        return None
+    return ShaftPulses(_pulses_around(recording.channels[channel], recording.fs_hz, pinion, chosen), channel)
 
 
 def _surest(
@@ -223,12 +255,15 @@ def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarra
 
 
 def _candidates(
-    recording: MeasuredRecording, teeth: int, speed_range_hz: tuple[float, float]
+    recording: MeasuredRecording,
+    teeth: int,
+    parts: list[tuple[float, float]],
+    speed_range_hz: tuple[float, float],
 ) -> tuple[str, list[np.ndarray]]:
     """Return the clearest channel and the speeds over time that its parts of the range show."""
     samples = round(SEARCHED_S * recording.fs_hz)
     found: dict[str, list[MeshRidge]] = {
-        name: [mesh_ridge(signal[:samples], recording.fs_hz, teeth, part) for part in range_parts(speed_range_hz)]
+        name: [mesh_ridge(signal[:samples], recording.fs_hz, teeth, part) for part in parts]
         for name, signal in recording.channels.items()
     }
     channel = max(found, key=lambda name: max(ridge.clarity for ridge in found[name]))
@@ -241,8 +276,8 @@ def _candidates(
     return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
 
 
-def range_parts(speed_range_hz: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return overlapping parts of a range, each narrower than one to two.
+def range_parts(speed_range_hz: tuple[float, float], ratio: float = PART_RATIO) -> list[tuple[float, float]]:
+    """Return overlapping parts of a range, each of this ratio of high to low, and an overlap of at most 10 %.
 
     Raises
     ------
@@ -252,6 +287,6 @@ def range_parts(speed_range_hz: tuple[float, float]) -> list[tuple[float, float]
     low, high = speed_range_hz
     if not 0.0 < low < high < np.inf:
         raise UsageError(f"speed range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
-    count = int(np.ceil(np.log(high / low) / np.log(PART_RATIO)))
+    count = int(np.ceil(np.log(high / low) / np.log(ratio)))
     edges = low * (high / low) ** (np.arange(count + 1) / count)
-    return [(float(a), float(min(1.1 * b, high))) for a, b in itertools.pairwise(edges)]
+    return [(float(a), float(min(min(1.1, ratio**0.5) * b, high))) for a, b in itertools.pairwise(edges)]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import siggen
+from siggen.columns.record import RecordFailure
 
 FS_HZ = 25_600.0
 TEETH = (18, 47)
@@ -50,3 +51,10 @@ def hidden_recordings(folder: Path) -> list[Path]:
 def channel_data(file: Path) -> np.ndarray:
     """Return the vibration channels (n, 2) of a file."""
     return np.loadtxt(file, delimiter=",", skiprows=1)[:, :2]
+
+
+def hidden_record() -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Return channels and pulse times of the hidden machine's first recording."""
+    record = siggen.simulate(siggen.load_config(HIDDEN), [0])[0]
+    assert not isinstance(record, RecordFailure)
+    return {name: signal.astype(np.float64) for name, signal in record.channels.items()}, np.asarray(record.tacho_s)

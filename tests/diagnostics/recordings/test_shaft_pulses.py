@@ -11,6 +11,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_contrast import shaft_contrast
 from diagnostics.recordings.shaft_pulses import range_parts, shaft_pulses
 from siggen.errors import UsageError
+from tests.diagnostics.calibration.hidden_machine import hidden_record
 
 FS_HZ, TEETH = 12_800.0, (18, 47)
 
@@ -95,3 +96,13 @@ def test_without_tacho_and_range_and_with_too_few_turns_the_file_is_named() -> N
         shaft_pulses(recording(30.0, np.arange(5) / 30.0), TEETH, None)
     with pytest.raises(UsageError, match="speed range"):
         shaft_pulses(recording(30.0), TEETH, (40.0, 30.0))
+
+
+def test_a_second_stage_louder_than_the_mesh_lines_does_not_pass_for_them() -> None:
+    """Its lines lead in every part of the range that is wide enough to hold both; the shaft's own lines decide."""
+    channels, pulses = hidden_record()
+    recording = MeasuredRecording(Path("run.csv"), channels, 25_600.0, None, False)
+    true_hz = (pulses.size - 1) / (pulses[-1] - pulses[0])
+    assert shaft_pulses(recording, (18, 47), (30.0, 40.0)).speed_hz == pytest.approx(true_hz, rel=1e-4)
+    with pytest.raises(UsageError):
+        shaft_pulses(recording, (18, 47), (36.0, 41.0))
