@@ -77,7 +77,7 @@ def nearest(word: str, known: Sequence[str]) -> str:
 
 def section_problems(model: type[BaseModel], errors: Sequence[ErrorDetails], below: Location = ()) -> list[Problem]:
     """Translate pydantic's errors about something that lies `below` a section; paths begin at the section."""
-    found, unknown = [], dict[Location, list[tuple[str, object]]]()
+    found, unknown = list[Problem](), dict[Location, list[tuple[str, object]]]()
     for error in errors:
         place: Location = (*below, *error["loc"])
         if error["type"] == "extra_forbidden":

@@ -73,7 +73,7 @@ class ChunkSimulation:
         Raises
         ------
         EngineError
-            If the simulation raises anything (a failure of the solver is a result, not an exception); names the record.
+            If the simulation raises anything but MemoryError; names the record. A failure of the solver is a result.
         """
         records: list[Record] = []
         failures: list[RecordFailure] = []
@@ -93,6 +93,8 @@ class ChunkSimulation:
     def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
         try:
             results = self.simulate(self.config, ids)
+        except MemoryError:
+            raise
         except Exception as error:
             raise EngineError(f"{self._culprit(ids)} raised {error!r}, which is a fault of the program") from error
         received = [r.record_id if isinstance(r, RecordFailure) else r.planned.record_id for r in results]
