@@ -31,8 +31,12 @@ TOPICS = (
         "storage",
         "loader",
     ),
-    *("indicators", "audit", "workers", "quickstart", "contact", "faults", "house"),
+    *("indicators", "audit", "workers", "engines", "quickstart", "contact", "faults", "house"),
 )
+
+
+PARTS = ("faults.digests", "faults.shortages", "faults.kills")
+"""Of a long topic, by themselves."""
 
 
 def main() -> int:
@@ -55,7 +59,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("topics", nargs="*", metavar="topic", help=f"one or more of {', '.join(TOPICS)}; default: all")
     parser.add_argument("--quick", action="store_true", help="fewer repeats, smaller sets, no whole quickstart")
     arguments = parser.parse_args()
-    if unknown := [topic for topic in arguments.topics if topic not in TOPICS]:
+    if unknown := [topic for topic in arguments.topics if topic not in (*TOPICS, *PARTS)]:
         parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join(TOPICS)}")
     return arguments
 

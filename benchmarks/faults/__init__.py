@@ -1,4 +1,4 @@
-"""Faults made on purpose, and what came of them: flipped bits in sets and models, mutated and hostile configurations.
+"""Faults made on purpose, and what came of them: flipped bits, hostile files, shortages, kills; one digest of all ways.
 
 Here `measured` is how many were found or refused, `alternative` what else happened, and the goal is all of them.
 """
@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.faults import digests, kills, shortages
 from benchmarks.faults.bit_flips import SET_FILES, flipped_in_model, flipped_in_set
 from benchmarks.faults.hostile_files import hostile_files, refusal
 from benchmarks.faults.mutated_configurations import judged, mutated
@@ -38,6 +39,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
         for kind in SET_FILES:
             yield _flips_row(kind, Counter(flipped_in_set(victim, kind, flips)))
         yield _flips_row("model folder", Counter(flipped_in_model(small_model(victim, folder / "model"), flips)))
+    for part in (digests, shortages, kills):
+        yield from part.rows(quick=quick)
 
 
 def _flips_row(kind: str, outcomes: Counter[str]) -> Row:

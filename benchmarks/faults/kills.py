@@ -99,7 +99,7 @@ class Siege:
         address = [] if cluster is None else ["--address", cluster.address]
         with tempfile.TemporaryFile() as said:
             started_s = time.monotonic()
-            driver = _start([*step, *address], said)
+            driver = start([*step, *address], said)
             while len(self.kills) < self.count:
                 try:
                     driver.wait(chance.uniform(0.0, self._pause_s))
@@ -178,7 +178,7 @@ def undisturbed(place: Path) -> tuple[dict[str, bytes], float]:
         shutil.rmtree(place, ignore_errors=True)
         started_s = time.monotonic()
         with tempfile.TemporaryFile() as said:
-            _start(["generate", str(place)], said).wait()
+            start(["generate", str(place)], said).wait()
     return set_files(LocalFolder(place)), time.monotonic() - started_s
 
 
@@ -191,7 +191,8 @@ def steps(engine: str, place: Path) -> list[list[str]]:
     return [*made, ["merge", str(place), *parts]]
 
 
-def _start(step: list[str], said: BinaryIO) -> subprocess.Popen[bytes]:
+def start(step: list[str], said: BinaryIO) -> subprocess.Popen[bytes]:
+    """Start a step; what it says goes to a file."""
     command = [sys.executable, "-m", "benchmarks.faults.victim_run", *step]
     environment = {**os.environ, **ONE_THREAD}
     return subprocess.Popen(command, env=environment, stdout=said, stderr=said, start_new_session=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -54,13 +55,30 @@ def seconds_until_gone(processes: list[Process], most_s: float) -> float:
     return time.monotonic() - started_s
 
 
+def cpu_seconds(driver: subprocess.Popen[bytes]) -> float:
+    """Wait for a process and return the CPU time that it and all below it took, looked at ten times a second."""
+    found: dict[tuple[int, int], float] = {}
+    while driver.poll() is None:
+        for pid in (driver.pid, *(one.pid for one in below(driver.pid))):
+            fields = _fields(pid)
+            if fields:
+                found[pid, int(fields[19])] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        time.sleep(0.1)
+    return sum(found.values())
+
+
 def _stat(pid: int) -> tuple[str, int, int] | None:
     """Return state, parent and start of a process, in ticks."""
+    fields = _fields(pid)
+    return (fields[0], int(fields[1]), int(fields[19])) if fields else None
+
+
+def _fields(pid: int) -> list[str]:
+    """Return what /proc/PID/stat holds behind the name (proc(5), from field 3 on); nothing if there is no such."""
     try:
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:
-        return None
-    return fields[0], int(fields[1]), int(fields[19])
+        return []
 
 
 def _command(pid: int) -> str:

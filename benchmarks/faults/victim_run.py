@@ -37,12 +37,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from siggen.planning import plan
 
     given = _arguments(arguments)
+    if given.memory_mb:
+        import resource
+
+        # of address space, for this process and its workers: what `ulimit -v` sets
+        resource.setrlimit(resource.RLIMIT_AS, (given.memory_mb << 20, resource.RLIM_INFINITY))
     try:
         with patch.object(plan, "SHARD_BYTES", 1):
             _run(given)
     except SiggenError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code
+    except MemoryError:
+        sys.stderr.write("not enough memory; finished shards stay\n")
+        return 1
     return 0
 
 
@@ -72,6 +80,7 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--engine", default="processes")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--address")
+    parser.add_argument("--memory-mb", type=int, default=0)
     parser.add_argument("--part", type=int, default=1)
     parser.add_argument("--specimens", type=int, default=SPECIMENS)
     return parser.parse_args(arguments)

@@ -77,6 +77,9 @@ def main() -> None:
     except KeyboardInterrupt:
         typer.echo("siggen: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)
+    except MemoryError:
+        typer.echo("siggen: not enough memory; finished shards stay, and the same command goes on from there", err=True)
+        sys.exit(EXIT_UNEXPECTED)
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
             raise

@@ -78,7 +78,7 @@ class ChunkSimulation:
         Raises
         ------
         EngineError
-            If the simulation raises anything (a failure of the solver is a result, not an exception); names the record.
+            If the simulation raises anything but MemoryError; names the record. A failure of the solver is a result.
         """
         with collected("other") as times:
             rows, failures, internals = self._made(chunk)
@@ -103,6 +103,8 @@ class ChunkSimulation:
     def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
         try:
             results = self.simulate(self.config, ids)
+        except MemoryError:
+            raise
         except Exception as error:
             raise EngineError(f"{self._culprit(ids)} raised {error!r}, which is a fault of the program") from error
         received = [r.record_id if isinstance(r, RecordFailure) else r.planned.record_id for r in results]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any
 
@@ -75,10 +75,14 @@ class DaskEngine:
                 yield client
             return
         options = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50, "env": dict(ONE_THREAD)}
-        with (
-            LocalCluster(n_workers=self.workers, **options) as cluster,
-            Client(cluster) as client,
-        ):
+        with ExitStack() as stack:
+            try:
+                cluster = stack.enter_context(LocalCluster(n_workers=self.workers, **options))
+                client = stack.enter_context(Client(cluster))
+            except (RuntimeError, OSError, TimeoutError) as error:
+                raise EngineError(
+                    f"the cluster of Dask on this machine did not start ({error}); what is committed stays: try again"
+                ) from error
             yield client
 
 

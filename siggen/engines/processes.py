@@ -11,7 +11,7 @@ from typing import Any
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
 from siggen.engines.window import WINDOW_PER_WORKER
-from siggen.engines.worker import DONE, RAISED, READY, Worker
+from siggen.engines.worker import DONE, OUT_OF_MEMORY, RAISED, READY, Worker
 from siggen.errors import EngineError, UsageError
 
 TASK_ATTEMPTS = 3
@@ -162,6 +162,8 @@ class _Pool:
 
 
 def _death(exit_code: int | None) -> str:
+    if exit_code == OUT_OF_MEMORY:
+        return "out of memory"
     if exit_code is None or exit_code >= 0:
         return f"exit code {exit_code}"
     hint = ", usually out of memory" if exit_code == -9 else ""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import failure_text, task_error
+from siggen.errors import EngineError
 
 
 class SerialEngine:
@@ -19,11 +20,15 @@ class SerialEngine:
         Raises
         ------
         EngineError
-            If a task raised.
+            If a task raised, or ran out of memory.
         """
         for index, task in enumerate(tasks):
             try:
                 result = function(task)
+            except MemoryError as error:
+                raise EngineError(
+                    f"{task} ran out of memory; what is committed stays, and the same command continues"
+                ) from error
             except Exception as error:
                 raise task_error(task, failure_text(error)) from error
             yield index, result

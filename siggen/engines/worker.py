@@ -35,6 +35,9 @@ PARENTS_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 
 GOODBYE_S = 5.0
 
+OUT_OF_MEMORY = 71
+"""Exit code of a worker that was refused memory."""
+
 
 class Worker:
     """The parent's side of a worker process.
@@ -93,11 +96,16 @@ def _work(connection: Connection, pickled: bytes, parent: int) -> None:
 
 
 def answer(function: Callable[[Any], Any], task: Any) -> tuple[str, Any]:
-    """Return the result of a task, or that it raised and with which text: not every exception survives the way back."""
+    """Return the result of a task, or that it raised and with which text: not every exception survives the way back.
+
+    A process that is refused memory ends, so that its task runs again in another one.
+    """
     from siggen.engines.task_failure import failure_text
 
     try:
         return DONE, function(task)
+    except MemoryError:  # a new process has what this one has lost; whoever counts deaths says it in words
+        os._exit(OUT_OF_MEMORY)
     except Exception as error:
         return RAISED, failure_text(error)
 

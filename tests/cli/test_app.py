@@ -95,6 +95,13 @@ def test_an_interruption_has_its_own_exit_code(monkeypatch, capsys):
     assert "interrupted" in capsys.readouterr().err
 
 
+def test_too_little_memory_is_said_with_how_to_go_on(monkeypatch, capsys):
+    assert run_main(monkeypatch, MemoryError()) == 1
+    assert capsys.readouterr().err == (
+        "siggen: not enough memory; finished shards stay, and the same command goes on from there\n"
+    )
+
+
 def test_an_unexpected_error_is_one_line_that_says_how_to_learn_more(monkeypatch, capsys):
     monkeypatch.delenv("SIGGEN_TRACEBACK", raising=False)
     assert run_main(monkeypatch, ZeroDivisionError("division by zero")) == 1

@@ -32,6 +32,19 @@ def die_once(task: str) -> str:
     return task
 
 
+def no_memory_once(task: str) -> str:
+    """Be refused memory unless the marker file says that this happened before."""
+    marker = Path(task)
+    if not marker.exists():
+        marker.touch()
+        raise MemoryError
+    return task
+
+
+def no_memory(task: int) -> int:
+    raise MemoryError
+
+
 def die_at_three(task: int) -> int:
     if task == 3:
         os.kill(os.getpid(), signal.SIGKILL)

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from siggen.engines.processes import ProcessEngine, default_workers
+from siggen.engines.serial import SerialEngine
 from siggen.engines.worker import ONE_THREAD
 from siggen.errors import EngineError, UsageError
 from tests.engines import tasks
@@ -45,6 +46,20 @@ def test_workers_have_one_numeric_thread_and_ignore_the_signals_meant_for_the_pa
 def test_a_killed_worker_is_replaced_and_its_task_done_again(tmp_path: Path) -> None:
     markers = [str(tmp_path / name) for name in ("a", "b", "c")]
     assert dict(ProcessEngine(2).map(tasks.die_once, markers)) == dict(enumerate(markers))
+
+
+def test_a_worker_without_memory_is_replaced_and_its_task_done_again(tmp_path: Path) -> None:
+    markers = [str(tmp_path / name) for name in ("a", "b")]
+    assert dict(ProcessEngine(2).map(tasks.no_memory_once, markers)) == dict(enumerate(markers))
+
+
+def test_a_task_that_never_has_enough_memory_is_named_with_what_to_do() -> None:
+    with pytest.raises(
+        EngineError, match=r"^0 was lost 3 times because its worker died \(out of memory\).*fewer workers"
+    ):
+        dict(ProcessEngine(1).map(tasks.no_memory, [0]))
+    with pytest.raises(EngineError, match=r"^0 ran out of memory; what is committed stays"):
+        dict(SerialEngine().map(tasks.no_memory, [0]))
 
 
 def test_a_task_that_kills_every_worker_ends_with_an_error_that_names_it() -> None:
