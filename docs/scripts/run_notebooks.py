@@ -33,7 +33,7 @@ def executed(path: Path) -> Any:
     os.environ["PATH"] = os.pathsep.join((beside, os.environ.get("PATH", "")))
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
     notebook = nbformat.read(path, as_version=4)
-    NotebookClient(notebook, timeout=LIMIT_S, kernel_name="python3").execute()
+    NotebookClient(notebook, timeout=LIMIT_S, kernel_name="python3", coalesce_streams=True).execute()
     return notebook
 
 
