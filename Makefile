@@ -2,12 +2,12 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := diagnostics,cnn,onnx,s3,recordings,dev
+EXTRAS := diagnostics,cnn,onnx,s3,recordings,notebooks,dev
 DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow lint bench pages reference docs clean
+.PHONY: demo test test-slow lint bench pages reference docs wheel container locks clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -52,6 +52,21 @@ reference: $(STAMP)
 # NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
 docs: $(VENV)/.documented
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+# Builds it, and tries it in an environment that has nothing else, with the hashes of locks/siggen.txt.
+wheel: $(STAMP)
+	$(BIN)/python docs/scripts/bare_wheel.py dist
+
+container:
+	docker build --file Containerfile --tag siggen .
+
+# Pins with the hashes of every file that the package index has of them; again after a change of constraints.txt.
+LOCK := compile pyproject.toml --constraint constraints.txt --generate-hashes --universal --python-version 3.11.5 --no-header --no-annotate --no-emit-index-url
+locks: $(STAMP)
+	$(PYTHON) -m venv $(VENV)/locks
+	$(VENV)/locks/bin/python -m pip install -q uv
+	$(VENV)/locks/bin/uv pip $(LOCK) --output-file locks/siggen.txt
+	$(VENV)/locks/bin/uv pip $(LOCK) --all-extras --output-file locks/all.txt
 
 clean:
 	rm -rf $(VENV) runs build dist site

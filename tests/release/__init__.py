@@ -1,0 +1,1 @@
+"""What is released: pins with hashes, wheel, container file, workflows."""
