@@ -97,7 +97,9 @@ def audit(
         typer.echo(f"- {finding.line()}")
     for note in found.notes:
         typer.echo(f"note: {note}", err=True)
-    typer.echo(str(write_audit(found, dataset, folder)))
+    with terminal_stage("page", 1):
+        page = write_audit(found, dataset, folder)
+    typer.echo(str(page))
     if write_card:
         import siggen
 

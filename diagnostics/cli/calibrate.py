@@ -99,7 +99,8 @@ def calibrate(
     if compared:
         require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
-    config, teeth = rig_teeth(rig)
+    with terminal_stage("the rig", 1):
+        config, teeth = rig_teeth(rig)
     said = dict(named_column(entry) for entry in channel or ())
     names, columns = rig_channels(config, sources[0], said, tacho)
     facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)

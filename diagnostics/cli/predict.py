@@ -78,11 +78,12 @@ def predict(
     from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 
     require_packages("prediction", "sklearn", "skops")
-    from diagnostics.prediction.prediction import predict_recording
-    from diagnostics.prediction.prediction_facts import MEANING, prediction_rows
-    from diagnostics.prediction.released_model import load_model
+    with terminal_stage("reading the models", 1):
+        from diagnostics.prediction.prediction import predict_recording
+        from diagnostics.prediction.prediction_facts import MEANING, prediction_rows
+        from diagnostics.prediction.released_model import load_model
 
-    loaded = load_model(model, load_indicators(indicator))
+        loaded = load_model(model, load_indicators(indicator))
     pair = _teeth(file, teeth, loaded.facts.teeth)
     columns = dict(named_column(entry) for entry in channel or ())
     facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses, row)
@@ -102,7 +103,9 @@ def predict(
     if out:
         from diagnostics.prediction.prediction_page import write_prediction
 
-        typer.echo(str(write_prediction(found, loaded.facts, out)))
+        with terminal_stage("page", 1):
+            page = write_prediction(found, loaded.facts, out)
+        typer.echo(str(page))
 
 
 def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> tuple[int, int]:

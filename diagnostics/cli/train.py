@@ -64,7 +64,8 @@ def train(
         training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
     except DatasetError as error:
         raise DatasetError(f"{directory}: {error}") from error
-    notes = save_models(training, table, dataset, out)
+    with terminal_stage("saving the models", 1):
+        notes = save_models(training, table, dataset, out)
     metrics = {**training_metrics(training), "seed": seed, "file_notes": notes}
     if studies:
         found = run_studies(dataset, feature_matrix(table), training.split, seed, second, terminal_stage)

@@ -103,8 +103,8 @@ def detector_sentence(found: Detectors, best: Detector) -> str:
     first = f"All damage together, the strongest on {gearboxes} is the {_title(best)}: {area}."
     if best.picks:
         first = (
-            f"All damage together, the strongest is {picked(best.picks)}, each chosen on the other gearboxes: {area} "
-            f"on {gearboxes}."
+            f"All damage together, the strongest is {picked(best.picks)}, each chosen on the other groups: "
+            f"{area} on {gearboxes}."
         )
     others = []
     for family in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS):

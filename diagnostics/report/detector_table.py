@@ -64,10 +64,11 @@ def _row(detector: Detector, states: list[str], kinds: list[str], explorer: str)
 
 
 def picked(picks: tuple[tuple[str, int], ...]) -> str:
-    """Return what was chosen in how many folds, the most frequent first; nothing without a choice."""
-    folds = sum(count for _, count in picks)
+    """Return what was chosen for how many groups of gearboxes, the most frequent first; nothing without a choice."""
+    groups = sum(count for _, count in picks)
     said = [
-        f"{name} in {count}{f' of {folds} folds' if not place else ''}" for place, (name, count) in enumerate(picks)
+        f"{name} for {count}{f' of {groups} groups of gearboxes' if not place else ''}"
+        for place, (name, count) in enumerate(picks)
     ]
     return joined(said) if said else ""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.explorer_link import explorer_link, indicator_links, records_line, state_links
 from diagnostics.page.provenance import without_path
@@ -79,10 +80,10 @@ def draw(
 
 
 def distinct_features(found: list[Separability], count: int) -> list[Separability]:
-    """Return the strongest features of different definition (the same one in two channels counts once)."""
+    """Return the strongest features of different definition (one in two channels or bands counts once)."""
     chosen: dict[str, Separability] = {}
     for entry in found:
-        chosen.setdefault(entry.feature.split("__")[0], entry)
+        chosen.setdefault(base_name(entry.feature), entry)
     return list(chosen.values())[:count]
 
 

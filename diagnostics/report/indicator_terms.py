@@ -39,7 +39,7 @@ def in_a_sentence(column: str) -> str:
     return f"{title} at {channel}" if channel else title
 
 
-def panel_title(column: str, width: int = 44) -> str:
+def panel_title(column: str, width: int = 38) -> str:
     """Return title and channel of a column for a figure, in lines of at most so many signs."""
     title, channel = column_title(column), column.partition("__")[2]
     return "\n".join(textwrap.wrap(f"{title} ({channel})" if channel else title, width))

@@ -115,9 +115,10 @@ def write_report(
     metrics["studies"] = studies_metrics(studies) if studies else None
     (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     reported = Reported(dataset, seed, matrix, training, studies, found, detectors, audit, drawing, explorer)
-    pictures = _write_pictures(folder, {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()})
     path = folder / "report.html"
-    path.write_text(report_page(reported, pictures), encoding="utf-8")
+    with stage("page", 1):
+        pictures = _write_pictures(folder, {**({ANSWER: (opening, CAPTION)} if opening else {}), **drawing.figures()})
+        path.write_text(report_page(reported, pictures), encoding="utf-8")
     return path
 
 
@@ -163,7 +164,9 @@ def _trained(
         except DatasetError as error:
             notes.append(f"{'No network' if with_network else 'No classifier'}: {without_path(error, dataset)}")
             continue
-        return training, [*dict.fromkeys(notes), *training.notes, *save_models(training, table, dataset, folder)]
+        with stage("saving the models", 1):
+            saved = save_models(training, table, dataset, folder)
+        return training, [*dict.fromkeys(notes), *training.notes, *saved]
     return None, notes[-1:]
 
 

@@ -113,7 +113,7 @@ def _draw_indicator(
     if (values > 0).all() and values.max() > 30.0 * values.min():
         axis.set_yscale("log")
     axis.set_ylabel(f"[{unit_of(feature)}]")
-    axis.set_title(panel_title(feature, 72), loc="left", fontsize=9, fontweight="bold")
+    axis.set_title(panel_title(feature, 50), loc="left", fontsize=9, fontweight="bold")
 
 
 def unit_of(feature: str) -> str:

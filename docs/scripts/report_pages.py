@@ -146,7 +146,8 @@ def answers() -> str:
         said = [_plain(part) for part in re.findall(r"<p>(.*?)</p>", opening, re.DOTALL)]
         count = re.search(r"identity (\w{12})\w*: (\d+)", _plain(text.rsplit("Made by", 1)[1]))
         made = f"{count[2]} records, identity `{count[1]}`" if count else ""
-        listed = "\n".join(f"* {_folded(sentence)}" for sentence in said)
+        bold = [f"**{question}.** {answer}" for question, _, answer in (one.partition(". ") for one in said)]
+        listed = "\n".join(f"* {_folded(sentence)}" for sentence in bold)
         parts.append(f"## {name}\n\n[Report]({page.name}), {made}.\n\n{listed}\n")
     return "\n".join(parts)
 

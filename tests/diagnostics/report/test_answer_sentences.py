@@ -85,9 +85,9 @@ def test_a_choice_that_differs_from_fold_to_fold_is_said_and_stands_above_what_i
         answers["By what"]
         .replace("\xa0", " ")
         .startswith(
-            "All damage together, the strongest is gradient boosting in 4 of 5 folds and logistic regression in 1, "
-            "each chosen on the other gearboxes: AUC 0.70 (0.60 to 0.80) on all 24 gearboxes. The logistic "
-            "regression has 0.80"
+            "All damage together, the strongest is gradient boosting for 4 of 5 groups of gearboxes and "
+            "logistic regression for 1, each chosen on the other groups: AUC 0.70 (0.60 to 0.80) on all 24 "
+            "gearboxes. The logistic regression has 0.80"
         )
     )
     assert "from 4 mm²" in answers["From which size"].replace("\xa0", " ")
