@@ -42,22 +42,27 @@ def record_background(
     course = record_course(config, specimen, record, instrument.length)
     section = _with_levels(config.background, background.section, course)
     forces, labels = _forces(section, course, background)
-    spectra = {name: np.fft.rfft(force) for name, force in forces.items()}
+    floor: dict[str, ComplexArray] = {}
     if section.floor is not None:
-        for name, spectrum in floor_spectra(section.floor, course).items():
-            spectra[name] = spectra[name] + spectrum if name in spectra else spectrum
+        floor = floor_spectra(section.floor, course)
         labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
         labels["machine_force_n_per_sqrt_hz"] = constant(section.floor.machines_n_per_sqrt_hz)
-    seen = {name: _sum(background, response, spectra) for name, response in background.responses.items()}
-    return RecordBackground(seen, labels)
+    return RecordBackground(_seen(background, forces, floor), labels)
 
 
-def _sum(background: SpecimenBackground, response: ComplexArray, spectra: Mapping[str, ComplexArray]) -> ComplexArray:
-    """Return the spectrum (k,) of one channel."""
-    total = np.zeros(response.shape[1], dtype=np.complex128)
-    for name, spectrum in spectra.items():
-        total += response[background.inputs.index(name)] * spectrum
-    return total
+def _seen(
+    background: SpecimenBackground, forces: dict[str, FloatArray], floor: dict[str, ComplexArray]
+) -> dict[str, ComplexArray]:
+    """Return channel -> spectrum (k,), input after input; `forces` and `floor` are used up, since they are large."""
+    totals = {name: np.zeros(way.shape[1], dtype=np.complex128) for name, way in background.responses.items()}
+    for name in list(dict.fromkeys([*forces, *floor])):
+        spectrum = np.fft.rfft(forces.pop(name)) if name in forces else floor.pop(name)
+        if name in floor:
+            spectrum += floor.pop(name)
+        row = background.inputs.index(name)
+        for channel, way in background.responses.items():
+            totals[channel] += way[row] * spectrum
+    return totals
 
 
 def _with_levels(section: Background, drawn: Background, course: Course) -> Background:

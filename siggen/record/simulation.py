@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -138,8 +138,11 @@ def record_response(
     *,
     internals: bool = False,
     driven: RecordDrive | None = None,
+    motions: Collection[str] | None = None,
 ) -> tuple[Response, OperatingPoint]:
     """Return the clean response of one record and its operating point; `driven` is drawn unless it is at hand.
+
+    Accelerations are those of `motions`, all without them.
 
     Raises
     ------
@@ -162,6 +165,7 @@ def record_response(
                 steps_per_sample=steps,
                 internals=internals,
                 bearing_forces=internals or needs_forces(config),
+                motions=motions,
                 excitation=driven.excitation,
                 settle_s=_settle_s(config, motion),
                 history_s=history_s(config),
@@ -188,7 +192,10 @@ def _simulated(
     with_internals = has_internals(config, planned)
     with refused_as("outside_model"), stage("inputs"):
         driven = _driven(config, specimen, state, planned)
-    response, point = record_response(config, specimen, state, planned, internals=with_internals, driven=driven)
+    seen = None if with_internals else {motion for channel in instrument.channels for motion in channel.motions}
+    response, point = record_response(
+        config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
+    )
     with stage("sensing"):
         channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     with refused_as("outside_model"):

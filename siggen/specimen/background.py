@@ -37,6 +37,8 @@ AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
 MACHINES = {"motor": "pinion", "load": "gear"}
 """What stands beside the gearbox, and the shaft that leads there."""
+BLOCK = 8192
+"""Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +99,14 @@ def specimen_background(
         return SpecimenBackground(section, shafts, (), {})
     seen = tuple(dict.fromkeys(motion for motions, _, _ in channels.values() for motion in motions))
     mesh = mean_mesh(section, specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
-    forced = forced_motion(assembled, mesh, np.array(list(directions.values())), seen, frequency_hz)
-    names = tuple(directions)
-    responses = {name: _response(names, forced, *channel) for name, channel in channels.items()}
+    names, rows = tuple(directions), np.array(list(directions.values()))
+    responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
+    for first in range(0, frequency_hz.size, BLOCK):
+        block = slice(first, first + BLOCK)
+        forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block])
+        for name, (motions, *paths) in channels.items():
+            own = (None if path is None else path[:, block] for path in paths)
+            responses[name][:, block] = _response(names, forced, motions, *own)
     return SpecimenBackground(section, shafts, names, responses)
 
 

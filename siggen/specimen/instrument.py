@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from math import cos, pi, sin
 
 import numpy as np
@@ -133,7 +134,7 @@ def _channel(
     accelerance = None
     if sensor.path is not None:
         one_by_one = (weight * _accelerance(sensor, d, draw, housing, grid) for d, weight in weights.items())
-        accelerance = np.sum(list(one_by_one), axis=0)
+        accelerance = reduce(np.add, one_by_one)
     seen = {d: w for d, w in weights.items() if sensor.sees_model and d != "axial"}
     modal = isinstance(sensor.path, ModalPath) and housing is not None
     return ChannelInstrument(
@@ -194,9 +195,7 @@ def _entries(
         return None
     draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
     weights = _weights(sensor, axis, draw)
-    return np.asarray(
-        np.sum([w * _accelerance(sensor, d, draw, housing, grid, ENTRIES) for d, w in weights.items()], axis=0)
-    )
+    return reduce(np.add, (w * _accelerance(sensor, d, draw, housing, grid, ENTRIES) for d, w in weights.items()))
 
 
 def _sensor_response(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray | None:

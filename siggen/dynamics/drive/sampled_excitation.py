@@ -39,6 +39,7 @@ class SampledExcitation:
             if (np.abs(spline(middle) - wanted) <= LARGEST_ERROR * np.abs(wanted).max(axis=0)).all():
                 self._spline = spline
                 return
+            del spline, knots  # large, before the next ones
             rate *= 2.0
 
     def inputs(self, time_s: FloatArray, drive: Rotation) -> FloatArray:

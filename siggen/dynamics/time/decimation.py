@@ -69,8 +69,8 @@ def _frozen(taps: FloatArray) -> FloatArray:
 class Decimator:
     """Takes states step by step and keeps low-passed linear combinations of them at the output rate.
 
-    The first state taken is the one `half_length` steps before sample 0; `values` (samples, channels) fills as states
-    come.
+    The first state taken is the one `half_length` steps before sample 0; `values` (channels, samples) fills as states
+    come. Rows of it are handed on without a copy.
     """
 
     def __init__(self, rows: FloatArray, taps: FloatArray, steps_per_sample: int, samples: int) -> None:
@@ -79,16 +79,16 @@ class Decimator:
         self._rows[:channels] = rows
         self._taps = taps
         self._steps_per_sample = steps_per_sample
-        self._result = np.empty((samples, len(self._rows)))
+        self._result = np.empty((len(self._rows), samples))
         self._pending = np.empty((0, len(self._rows)))
         self._done = 0
-        self.values = self._result[:, :channels]
+        self.values = self._result[:channels]
 
     def take(self, states: FloatArray) -> None:
         """Filter the next states (steps, 2n) as far as the filter reaches."""
         pending = np.concatenate([self._pending, _project(states, self._rows)])
         ready = max(0, (len(pending) - len(self._taps)) // self._steps_per_sample + 1)
-        _filter(pending, self._taps, self._steps_per_sample, self._result[self._done : self._done + ready])
+        _filter(pending, self._taps, self._steps_per_sample, self._result[:, self._done : self._done + ready])
         self._pending = pending[ready * self._steps_per_sample :]
         self._done += ready
 
@@ -108,13 +108,13 @@ def _project(states: FloatArray, rows: FloatArray) -> FloatArray:
 
 @njit(cache=True)
 def _filter(values: FloatArray, taps: FloatArray, steps_per_sample: int, result: FloatArray) -> None:
-    """Write the filtered values (steps, channels) at every steps_per_sample-th step into `result` (samples, channels).
+    """Write the filtered values (steps, channels) at every steps_per_sample-th step into `result` (channels, samples).
 
     Channels come in groups of four, so that the compiler can work on four at once without reordering sums.
     """
-    for k in range(result.shape[0]):
+    for k in range(result.shape[1]):
         first = k * steps_per_sample
-        for g in range(0, result.shape[1], 4):
+        for g in range(0, result.shape[0], 4):
             a, b, c, d = 0.0, 0.0, 0.0, 0.0
             for m in range(taps.size):
                 tap = taps[m]
@@ -122,4 +122,4 @@ def _filter(values: FloatArray, taps: FloatArray, steps_per_sample: int, result:
                 b += tap * values[first + m, g + 1]
                 c += tap * values[first + m, g + 2]
                 d += tap * values[first + m, g + 3]
-            result[k, g], result[k, g + 1], result[k, g + 2], result[k, g + 3] = a, b, c, d
+            result[g, k], result[g + 1, k], result[g + 2, k], result[g + 3, k] = a, b, c, d

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,11 +15,12 @@ from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.decimation import Decimator, half_length, second_difference_taps, value_taps
+from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.history import History
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
 from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import SolverFailure
 
@@ -64,13 +65,14 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """A motion with its time grid: `steps_per_sample` integration steps per output sample, step 0 at time 0."""
+    """A motion with its time grid, `steps_per_sample` states per sample, step 0 at time 0, and wanted `motions`."""
 
     motion: Motion
     drive: Rotation
     fs_hz: float
     steps_per_sample: int
     excitation: Excitation | SampledExcitation | None = None
+    motions: tuple[str, ...] = ()
 
     @property
     def limit_m(self) -> float:
@@ -147,6 +149,7 @@ def response_of(
     steps_per_sample: int,
     internals: bool = False,
     bearing_forces: bool = True,
+    motions: Collection[str] | None = None,
     excitation: Excitation | None = None,
     settle_s: float = 0.0,
     history_s: float = 0.0,
@@ -155,8 +158,8 @@ def response_of(
 
     Starts from the static equilibrium and discards the transient that the motion states, or `settle_s` if that is
     longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else.
-    Filtering bearing forces costs about a fifth of a response; without `bearing_forces` there are none. The motion must
-    hold the vectors of `excitation`.
+    Filtering costs about a fifth of a response for four forces or motions: without `bearing_forces` there are none, and
+    accelerations are those of the named `motions`; None: all. The motion must hold the vectors of `excitation`.
 
     Raises
     ------
@@ -171,7 +174,8 @@ def response_of(
         half, rate_hz = half_length(steps_per_sample), fs_hz * steps_per_sample
         ends_s = -(settle + half) / rate_hz, (samples * steps_per_sample + half) / rate_hz
         acting = SampledExcitation(excitation, drive, *ends_s, rate_hz)
-    run = _Run(motion, drive, fs_hz, steps_per_sample, acting)
+    wanted = tuple(name for name in motion.structure.motions if motions is None or name in motions)
+    run = _Run(motion, drive, fs_hz, steps_per_sample, acting, wanted)
     try:
         return _simulate(run, samples, internals, bearing_forces, settle, history)
     except SolverFailure as failure:
@@ -201,8 +205,9 @@ def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, se
     begin = -half - history * steps
     for _ in _blocks(run, state, -half - settle, begin):
         pass
-    decimators = [_acceleration_decimator(run, history + samples)]
-    decimators += [_force_decimator(run, history + samples)] if bearing_forces else []
+    structure = run.motion.structure
+    decimators = [acceleration_decimator(structure, run.motions, run.fs_hz, steps, history + samples)]
+    decimators += [force_decimator(structure, steps, history + samples)] if bearing_forces else []
     inner: list[FloatArray] = []
     lost = 0
     for first, states, apart in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
@@ -277,52 +282,36 @@ def _inner_values(run: _Run, first: int, states: FloatArray, samples: int) -> Fl
     return run.motion.internals(states[chosen], pitches[chosen], run.inputs(first, pitches)[chosen])
 
 
-def _acceleration_decimator(run: _Run, samples: int) -> Decimator:
-    """Return what turns displacements into low-passed accelerations."""
-    motions = run.motion.structure.motions.values()
-    rows = np.array([np.concatenate([motion, np.zeros_like(motion)]) for motion in motions])
-    second_rate = second_difference_taps(run.steps_per_sample) * (run.fs_hz * run.steps_per_sample) ** 2
-    return Decimator(rows, second_rate, run.steps_per_sample, samples)
-
-
-def _force_decimator(run: _Run, samples: int) -> Decimator:
-    """Return what filters bearing forces about their static values; a model without bearings has no rows."""
-    structure, steps = run.motion.structure, run.steps_per_sample
-    pairs = [np.concatenate(pair) for pair in structure.bearing_forces.values()]
-    return Decimator(np.array(pairs).reshape(-1, 2 * len(structure.coordinates)), value_taps(steps), steps, samples)
-
-
 def _finished(
     run: _Run, values: list[FloatArray], inner: list[FloatArray], contact_loss_share: float, history: int
 ) -> Response:
-    """Name the columns of accelerations and forces (history + n, channels), forces if there are any, and internals."""
-    motions, count = run.motion.structure.motions, len(values[0]) - history
-    forces = [_with_static_part(run, part) for filtered in values[1:] for part in np.split(filtered, [history])]
-    before, recorded = forces or ({}, {})
+    """Name the rows of accelerations and forces (channels, history + n), forces if there are any, and internals."""
+    motions, names, count = run.motions, run.motion.structure.bearing_forces, values[0].shape[1] - history
+    for forces in values[1:]:
+        _add_static_part(run, forces)
+    before, recorded = [_named(names, p) for f in values[1:] for p in np.split(f, [history], axis=1)] or ({}, {})
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=_named(motions, values[0][history:].T),
+        acceleration_m_s2=_named(motions, values[0][:, history:]),
         bearing_force_n=recorded,
         angle_rad=_frozen(run.drive.angle_rad(np.arange(count) / run.fs_hz)),
         tacho_s=run.drive.tacho_s(count / run.fs_hz),
         contact_loss_share=contact_loss_share,
         status="ok",
         reason="",
-        internals=_named(run.motion.internal_names, np.concatenate(inner).T) if inner else {},
-        history=History(_named(motions, values[0][:history].T), before),
+        internals=_named(run.motion.internal_names, np.concatenate(inner).T.copy()) if inner else {},
+        history=History(_named(motions, values[0][:, :history]), before),
     )
 
 
-def _with_static_part(run: _Run, forces: FloatArray) -> Mapping[str, FloatArray]:
-    """Name the columns of bearing forces (n, places), which were filtered about their static values."""
-    static = run.motion.equations.static_deflection
-    bearings = run.motion.structure.bearing_forces
-    columns = (column + (pair[0] * static).sum() for column, pair in zip(forces.T, bearings.values(), strict=True))
-    return _named(bearings, columns)
+def _add_static_part(run: _Run, forces: FloatArray) -> None:
+    """Add to bearing forces (places, n), which were filtered about their static values, what they are at rest."""
+    static, pairs = run.motion.equations.static_deflection, run.motion.structure.bearing_forces
+    forces += np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
 
 
-def _named(names: Iterable[str], columns: Iterable[FloatArray]) -> Mapping[str, FloatArray]:
-    return {name: _frozen(column) for name, column in zip(names, columns, strict=True)}
+def _named(names: Iterable[str], rows: FloatArray) -> Mapping[str, FloatArray]:
+    return {name: _frozen(row) for name, row in zip(names, rows, strict=True)}
 
 
 def _failed(run: _Run, failure: SolverFailure) -> Response:
@@ -330,7 +319,7 @@ def _failed(run: _Run, failure: SolverFailure) -> Response:
     empty = _frozen(np.empty(0))
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=dict.fromkeys(run.motion.structure.motions, empty),
+        acceleration_m_s2=dict.fromkeys(run.motions, empty),
         bearing_force_n=dict.fromkeys(run.motion.structure.bearing_forces, empty),
         angle_rad=empty,
         tacho_s=empty,
@@ -343,7 +332,6 @@ def _failed(run: _Run, failure: SolverFailure) -> Response:
 
 
 def _frozen(values: FloatArray) -> FloatArray:
-    """Return a contiguous read-only copy."""
-    array = np.array(values)
-    array.setflags(write=False)
-    return array
+    """Return the array, read-only."""
+    values.setflags(write=False)
+    return values

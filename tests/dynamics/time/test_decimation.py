@@ -40,7 +40,7 @@ def decimated(times_to_values, taps: np.ndarray, steps: int, samples: int, block
     decimator = Decimator(np.array([[1.0]]), taps, steps, samples)
     for block in np.split(states, np.cumsum(blocks)):
         decimator.take(block)
-    return decimator.values[:, 0]
+    return decimator.values[0]
 
 
 @pytest.mark.parametrize("frequency", [0.01, 0.2, 0.44])
