@@ -25,7 +25,7 @@ from typing import BinaryIO, Self
 from benchmarks.faults.process_tree import Process, below, seconds_until_gone
 from benchmarks.faults.ray_cluster import OPEN, RayCluster
 from benchmarks.faults.set_files import committed_problems, committed_shards, set_files, whole_set_problems
-from benchmarks.faults.victim_run import PARTS
+from benchmarks.faults.victims import PARTS
 from benchmarks.row import Row
 from siggen.dataset.storage import LocalFolder
 from siggen.engines.worker import ONE_THREAD

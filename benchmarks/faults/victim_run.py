@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from unittest.mock import patch
 
+from benchmarks.faults.victims import PARTS, SPECIMENS
+
 if TYPE_CHECKING:
     from siggen.config import Config
 
-SPECIMENS = 6
-PARTS = 3
 OVERRIDES = (
     "duration_s=0.04",
     "internals={quantities: [mesh_force_n]}",

@@ -87,7 +87,10 @@ class Worker:
 def _work(connection: Connection, pickled: bytes, parent: int) -> None:
     """Run tasks until the parent closes the pipe or dies."""
     end_with(parent)
-    function = ForkingPickler.loads(pickled)
+    try:
+        function = ForkingPickler.loads(pickled)
+    except MemoryError:
+        os._exit(OUT_OF_MEMORY)
     _settle_down()
     with contextlib.suppress(EOFError, OSError):
         connection.send((READY, None))
