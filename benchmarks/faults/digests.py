@@ -11,8 +11,8 @@ from pathlib import Path
 from benchmarks.faults.kills import PART_AND_MERGE, start, steps
 from benchmarks.faults.moto_store import BUCKET, moto_store
 from benchmarks.faults.set_files import committed_problems, digest, set_files
-from benchmarks.faults.victims import SPECIMENS
 from benchmarks.row import Row
+from benchmarks.victim_run import SPECIMENS
 from siggen.dataset.storage import LocalFolder
 from siggen.dataset.storage_at import storage_at
 

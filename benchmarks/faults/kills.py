@@ -25,8 +25,8 @@ from typing import BinaryIO, Self
 from benchmarks.faults.process_tree import Process, below, seconds_until_gone
 from benchmarks.faults.ray_cluster import OPEN, RayCluster
 from benchmarks.faults.set_files import committed_problems, committed_shards, set_files, whole_set_problems
-from benchmarks.faults.victims import PARTS
 from benchmarks.row import Row
+from benchmarks.victim_run import PARTS
 from siggen.dataset.storage import LocalFolder
 from siggen.engines.worker import ONE_THREAD
 
@@ -193,7 +193,7 @@ def steps(engine: str, place: Path) -> list[list[str]]:
 
 def start(step: list[str], said: BinaryIO) -> subprocess.Popen[bytes]:
     """Start a step; what it says goes to a file."""
-    command = [sys.executable, "-m", "benchmarks.faults.victim_run", *step]
+    command = [sys.executable, "-m", "benchmarks.victim_run", *step]
     environment = {**os.environ, **ONE_THREAD}
     return subprocess.Popen(command, env=environment, stdout=said, stderr=said, start_new_session=True)
 

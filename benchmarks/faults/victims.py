@@ -7,9 +7,6 @@ from pathlib import Path
 from benchmarks.shipped import QUICKSTART, shipped
 from siggen.sets.generation import generate
 
-SPECIMENS, PARTS = 6, 3
-"""Of the set that is killed, made in parts or extended (`victim_run`)."""
-
 OVERRIDES = ("specimens=20", "internals={quantities: [mesh_force_n]}")
 
 

@@ -11,7 +11,7 @@ from siggen.columns.record import damage_schema, label_schema
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.manifest import DAMAGE_FOLDER, METADATA_FOLDER
 from siggen.dataset.shard import FileFacts, write_table
-from siggen.dataset.sidecar import Sidecar
+from siggen.dataset.sidecar import Sidecar, read_sidecar
 from siggen.dataset.storage import Storage
 
 if TYPE_CHECKING:
@@ -46,7 +46,9 @@ def write_damage(
 
 
 def _label_batches(storage: Storage, sidecar: Sidecar, columns: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    with parquet_file(storage, sidecar.data.name, sidecar.data.crc32_per_64_kib) as file:
+    # read again, since a run does not keep the checksums of all shards
+    facts = read_sidecar(storage, sidecar.shard).data
+    with parquet_file(storage, facts.name, facts.crc32_per_64_kib) as file:
         yield from file.read(columns=list(columns), use_threads=False).to_batches()
 
 

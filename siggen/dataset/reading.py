@@ -17,9 +17,9 @@ import yaml
 from siggen.columns.column import Column
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.checked_file import parquet_file
+from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
 from siggen.dataset.promises import Promises
-from siggen.dataset.sidecar import in_ranges
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 
 from siggen.columns.record import RecordFailure
 from siggen.columns.versions import FIRST_SIMULATION_VERSION, SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.checked_file import Checksums, checksums
+from siggen.dataset.id_ranges import Range
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage
@@ -16,8 +17,6 @@ from siggen.errors import DatasetError, VerificationError
 
 FOLDER = "shards"
 DATA_FOLDER = "data"
-
-Ranges = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +41,8 @@ class Sidecar:
     split: str
     identity: str
     data: FileFacts
-    specimens: Ranges
-    records: Ranges
+    specimens: Sequence[Range]
+    records: Sequence[Range]
     rows_per_state: Mapping[str, int]
     failures: tuple[RecordFailure, ...]
     environment: Mapping[str, str]
@@ -59,6 +58,12 @@ class Sidecar:
         """The files that the sidecar commits."""
         return (self.data,) if self.internals is None else (self.data, self.internals)
 
+    def without_bulk(self, specimens: Sequence[Range], records: Sequence[Range]) -> Sidecar:
+        """Return what a run keeps of it: equal ranges that take no memory, and no checksums of blocks."""
+        internals = None if self.internals is None else replace(self.internals, crc32_per_64_kib="")
+        data = replace(self.data, crc32_per_64_kib="")
+        return replace(self, data=data, internals=internals, specimens=specimens, records=records)
+
 
 def data_name(shard: str) -> str:
     """Return the object name of a shard's rows."""
@@ -70,25 +75,10 @@ def sidecar_name(shard: str) -> str:
     return f"{FOLDER}/{shard}.json"
 
 
-def id_ranges(ids: Iterable[int]) -> Ranges:
-    """Return ascending ids as inclusive ranges."""
-    ranges: list[tuple[int, int]] = []
-    for i in ids:
-        if ranges and ranges[-1][1] == i - 1:
-            ranges[-1] = (ranges[-1][0], i)
-        else:
-            ranges.append((i, i))
-    return tuple(ranges)
-
-
-def in_ranges(i: int, ranges: Sequence[Sequence[int]]) -> bool:
-    """Tell whether an id lies in inclusive ranges."""
-    return any(first <= i <= last for first, last in ranges)
-
-
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
     """Commit a shard whose rows are already stored."""
-    content = {"schema_version": SCHEMA_VERSION, "simulation_version": SIMULATION_VERSION, **asdict(sidecar)}
+    ranges = {"specimens": list(sidecar.specimens), "records": list(sidecar.records)}
+    content = {"schema_version": SCHEMA_VERSION, "simulation_version": SIMULATION_VERSION, **asdict(sidecar), **ranges}
     if sidecar.internals is None:
         del content["internals"]  # as in sets that were made before internals could be stored
     storage.put(sidecar.name, sealed(content))
@@ -129,7 +119,7 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
         raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error!r})") from error
 
 
-def committed(storage: Storage, shard: str, identity: str, specimens: Ranges) -> Sidecar | None:
+def committed(storage: Storage, shard: str, identity: str, specimens: Sequence[Range]) -> Sidecar | None:
     """Return the sidecar of a shard that an earlier run finished, or None if the shard has to be made.
 
     The rows are read once and hashed, so that a file damaged between two runs is made again instead of being taken

@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any
 
-from siggen.engines.orphan import end_with
+from siggen.engines.orphan import end_with, ending_with_this
 from siggen.engines.protocol import Result, Results, Task
 from siggen.engines.task_failure import task_error
 from siggen.engines.window import windowed
@@ -76,6 +76,7 @@ class DaskEngine:
             return
         options = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50, "env": dict(ONE_THREAD)}
         with ExitStack() as stack:
+            stack.enter_context(ending_with_this())  # to the end: those that die are replaced
             try:
                 cluster = stack.enter_context(LocalCluster(n_workers=self.workers, **options))
                 client = stack.enter_context(Client(cluster))

@@ -8,6 +8,11 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from multiprocessing import current_process
+from multiprocessing.context import get_spawning_popen
+from typing import NamedTuple
 
 SET_PARENT_DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of <sys/prctl.h>."""
@@ -30,6 +35,42 @@ def end_with(parent: int) -> None:
         threading.Thread(target=_look, args=(parent,), daemon=True).start()
     if os.getppid() != parent:  # it died before the kernel was asked
         os._exit(1)
+
+
+@contextmanager
+def ending_with_this() -> Iterator[None]:
+    """Bind processes that `multiprocessing` spawns inside the block to this one, before they import anything.
+
+    For libraries that start processes of their own and import much in them. A child of `multiprocessing` reads the
+    configuration of its parent before the function that it runs, and so before what that function imports.
+    """
+    facts: dict[str, object] = current_process()._config  # type: ignore[attr-defined]
+    facts[_Parent.__name__] = _Parent(os.getpid())
+    try:
+        yield
+    finally:
+        facts.pop(_Parent.__name__, None)
+
+
+class _Parent(NamedTuple):
+    """Read by another process, it is nothing but the start of a look at this one."""
+
+    pid: int
+
+    def __reduce__(self) -> tuple[Callable[[int | None], None], tuple[int | None]]:
+        # with the other methods of starting, this process need not be the parent
+        spawns = getattr(get_spawning_popen(), "method", None) == "spawn"
+        return _watch, (self.pid if spawns else None,)
+
+
+def _watch(parent: int | None) -> None:
+    """Look whether the parent lives, from a thread.
+
+    Not by the kernel, which takes the end of the parent's thread for that of the parent: whoever spawned this process
+    may have done so from a thread that ends.
+    """
+    if parent is not None:
+        threading.Thread(target=_look, args=(parent,), daemon=True).start()
 
 
 def _asked_kernel() -> bool:

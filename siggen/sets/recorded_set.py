@@ -19,6 +19,7 @@ from siggen.columns.column import list_of
 from siggen.columns.record import TACHO_COLUMN, channels, damage_schema, record_schema, schema_metadata
 from siggen.dataset.environment import environment
 from siggen.dataset.folder import config_bytes
+from siggen.dataset.id_ranges import id_ranges
 from siggen.dataset.manifest import (
     CARD,
     CONFIG,
@@ -31,7 +32,7 @@ from siggen.dataset.manifest import (
 )
 from siggen.dataset.seal import json_bytes, sealed
 from siggen.dataset.shard import FileFacts, write_table
-from siggen.dataset.sidecar import Sidecar, data_name, id_ranges, put_sidecar
+from siggen.dataset.sidecar import Sidecar, data_name, put_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 

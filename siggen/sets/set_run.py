@@ -17,11 +17,12 @@ from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.environment import environment
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
+from siggen.dataset.id_ranges import IdRanges
 from siggen.dataset.label_tables import write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
 from siggen.dataset.seal import sealed
 from siggen.dataset.shard import TableFile, table_draft
-from siggen.dataset.sidecar import Sidecar, committed, data_name, id_ranges, put_sidecar
+from siggen.dataset.sidecar import Sidecar, committed, data_name, put_sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
@@ -193,9 +194,10 @@ class SetRun:
         """Find the shards that earlier runs committed."""
         for shard in (shard for shard in wanted if shard.key not in self.sidecars):
             self.interruption.check()
-            sidecar = committed(self.storage, shard.key, self.config.identity, id_ranges(shard.specimens))
+            specimens, records = _ranges(shard)
+            sidecar = committed(self.storage, shard.key, self.config.identity, specimens)
             if sidecar is not None:
-                self.sidecars[shard.key] = sidecar
+                self.sidecars[shard.key] = sidecar.without_bulk(specimens, records)
                 self._advance(sum(last - first + 1 for first, last in sidecar.records))
                 self.journal.taken_over(sidecar, self.done, self.total)
 
@@ -249,22 +251,24 @@ class SetRun:
                 self._advance(len(chunk.records))
             facts = data.finish()
             internal_facts = None if internals is None else internals.finish()
-        self.sidecars[shard.key] = Sidecar(
+        specimens, records = _ranges(shard)
+        sidecar = Sidecar(
             shard=shard.key,
             split=shard.split,
             identity=self.config.identity,
             data=facts,
             internals=internal_facts,
-            specimens=id_ranges(shard.specimens),
-            records=id_ranges(shard.record_ids),
+            specimens=specimens,
+            records=records,
             rows_per_state=rows_per_state,
             failures=tuple(failures),
             environment=self.environment,
         )
-        put_sidecar(self.storage, self.sidecars[shard.key])
+        put_sidecar(self.storage, sidecar)
+        self.sidecars[shard.key] = sidecar.without_bulk(specimens, records)
         self.shards_made += 1
         seconds = self.journal.seconds - begun_s
-        self.journal.shard_done(self.sidecars[shard.key], seconds, self.made, self.done, self.total)
+        self.journal.shard_done(sidecar, seconds, self.made, self.done, self.total)
 
     def _data(self, shard: ShardPlan) -> AbstractContextManager[TableFile]:
         schema, rows = record_schema(self.config), rows_per_group(self.config)
@@ -318,6 +322,11 @@ class SetRun:
     def _advance(self, records: int) -> None:
         self.done += records
         self.progress(self.done, self.total)
+
+
+def _ranges(shard: ShardPlan) -> tuple[IdRanges, IdRanges]:
+    """Return the ranges of specimens and of records of a planned shard."""
+    return IdRanges(shard.specimens), IdRanges(shard.specimens, shard.records_per_specimen)
 
 
 def in_order(results: Iterator[tuple[int, ChunkResult]]) -> Iterator[ChunkResult]:

@@ -15,6 +15,7 @@ from siggen.columns.record import signal_column
 from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation
 from siggen.dataset.environment import environment
+from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
@@ -29,7 +30,7 @@ from siggen.dataset.manifest import (
 from siggen.dataset.promises import has_checksums
 from siggen.dataset.reading import Dataset, as_internals, as_record
 from siggen.dataset.seal import unsealed
-from siggen.dataset.sidecar import DATA_FOLDER, in_ranges
+from siggen.dataset.sidecar import DATA_FOLDER
 from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
 from siggen.dataset.storage import Storage, sha256
 from siggen.dataset.storage_at import storage_at

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dataset.sidecar import committed, id_ranges, in_ranges, read_sidecar
+from siggen.dataset.id_ranges import id_ranges, in_ranges
+from siggen.dataset.sidecar import committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 

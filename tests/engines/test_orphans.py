@@ -27,6 +27,20 @@ if __name__ == "__main__":
     from tests.engines.slow_to_import import same
     list(engine_of(sys.argv[1], 2).map(same, range(8)))
 """
+LIBRARY = """
+import os
+from multiprocessing import get_context
+from siggen.engines.orphan import ending_with_this
+if __name__ == "__main__":
+    os.environ["SIGGEN_TEST_DRIVER"] = str(os.getpid())
+    from tests.engines.slow_to_import import same
+    with ending_with_this():
+        started = [get_context("spawn").Process(target=same, args=(1,)) for _ in range(2)]
+        for one in started:
+            one.start()
+        for one in started:
+            one.join()
+"""
 
 ENGINES = [
     "processes",
@@ -60,6 +74,11 @@ def test_busy_workers_end_with_their_driver(engine: str, tmp_path: Path) -> None
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_workers_that_still_import_the_physics_end_with_their_driver(tmp_path: Path) -> None:
     assert_workers_end_with_their_driver(STARTING, "processes", tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_processes_of_a_library_that_still_import_end_with_their_driver(tmp_path: Path) -> None:
+    assert_workers_end_with_their_driver(LIBRARY, "none", tmp_path)
 
 
 def assert_workers_end_with_their_driver(code: str, engine: str, tmp_path: Path) -> None:

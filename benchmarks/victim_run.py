@@ -1,6 +1,7 @@
-"""`python -m benchmarks.faults.victim_run STEP PLACE ...`: one step of making a small set of the default model.
+"""`python -m benchmarks.victim_run STEP PLACE ...`: one step of making a small set of the default model.
 
 A process of its own, so that it can be killed. Shards hold one gearbox each: a second of work lies between two commits.
+As the command of siggen it imports next to nothing, since its workers import it first.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 from unittest.mock import patch
 
-from benchmarks.faults.victims import PARTS, SPECIMENS
-
 if TYPE_CHECKING:
     from siggen.config import Config
+
+SPECIMENS, PARTS = 6, 3
+"""Of the set that is killed, made in parts or extended."""
 
 OVERRIDES = (
     "duration_s=0.04",
@@ -73,7 +75,7 @@ def _run(given: argparse.Namespace) -> None:
 
 
 def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.faults.victim_run", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.victim_run", description=__doc__)
     parser.add_argument("step", choices=("generate", "part", "merge", "extend"))
     parser.add_argument("place")
     parser.add_argument("sources", nargs="*", help="of merge")
