@@ -49,14 +49,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
                 yield _overhead_row(engine, gearboxes, gearbox_s, folder, repeats=1 if quick else 3)
         yield _rate_row(gearbox_s / config.records_per_specimen)
     small, large = (_driver_bytes(count) for count in PLANNED)
-    yield Row(
-        f"driver, {PLANNED[1]:,} records planned and passed through, without their signals",
-        f"{large / 1e6:.0f} MB",
-        f"{PLANNED[0]:,} records: {small / 1e6:.0f} MB",
-        small / large,
-        f"+ {FLAT_BYTES / 1e6:.0f} MB",
-        large - small <= FLAT_BYTES,
-    )
+    yield from (_memory_row(stage, small[stage], large[stage]) for stage in large)
 
 
 def _overhead_row(engine: str, gearboxes: int, gearbox_s: float, folder: Path, repeats: int) -> Row:
@@ -94,6 +87,17 @@ def _cpu_s(engine: str, specimens: int, place: Path) -> float:
     return found
 
 
-def _driver_bytes(records: int) -> int:
+def _memory_row(stage: str, small: int, large: int) -> Row:
+    return Row(
+        f"driver, {PLANNED[1]:,} records without their signals, {stage}",
+        f"{large / 1e6:.0f} MB",
+        f"{PLANNED[0]:,} records: {small / 1e6:.0f} MB",
+        small / large,
+        f"+ {FLAT_BYTES / 1e6:.0f} MB",
+        large - small <= FLAT_BYTES,
+    )
+
+
+def _driver_bytes(records: int) -> dict[str, int]:
     done = subprocess.run([sys.executable, "-c", PLANNING, str(records)], check=True, capture_output=True, text=True)
-    return int(json.loads(done.stdout))
+    return dict(json.loads(done.stdout))

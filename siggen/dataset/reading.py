@@ -25,6 +25,10 @@ from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 
 
+_Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+"""The safe one, by libyaml where PyYAML was built with it."""
+
+
 @dataclass(frozen=True, slots=True)
 class RowGroup:
     """The smallest piece of a set that is decoded at once: number `number` of `file`, with `rows` records."""
@@ -259,7 +263,7 @@ class Dataset:
 
     def _read_config(self) -> dict[str, Any]:
         try:
-            return dict(yaml.safe_load(self._promises.content(CONFIG)))
+            return dict(yaml.load(self._promises.content(CONFIG), _Loader))  # noqa: S506 - both are safe ones
         except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dataset.id_ranges import id_ranges, in_ranges
+from siggen.dataset.id_ranges import IdRanges, id_ranges, in_ranges
 from siggen.dataset.sidecar import committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
@@ -29,6 +29,13 @@ def test_ranges_hold_exactly_the_ids_and_never_touch(ids: set[int]) -> None:
     ranges = id_ranges(sorted(ids))
     assert {i for i in range(61) if in_ranges(i, ranges)} == ids
     assert all(a[1] + 1 < b[0] for a, b in pairwise(ranges))
+
+
+@given(st.sets(st.integers(0, 60)), st.integers(1, 5))
+def test_ranges_of_groups_are_those_of_their_ids(groups: set[int], size: int) -> None:
+    ids = [one * size + i for one in sorted(groups) for i in range(size)]
+    assert IdRanges(sorted(groups), size) == id_ranges(ids)
+    assert id_ranges(ids) == IdRanges(sorted(groups), size)
 
 
 def test_a_sidecar_tells_what_its_shard_holds(storage: LocalFolder) -> None:
