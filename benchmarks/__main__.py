@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import faults
 from benchmarks.machine import load_average, machine_lines
 from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
@@ -35,7 +36,7 @@ TOPICS = (
 )
 
 
-PARTS = ("faults.digests", "faults.shortages", "faults.kills")
+PARTS = tuple(f"faults.{part}" for part in faults.PARTS)
 """Of a long topic, by themselves."""
 
 
@@ -56,11 +57,16 @@ def main() -> int:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     # no `choices`: argparse would refuse the empty list of a call without topics
-    parser.add_argument("topics", nargs="*", metavar="topic", help=f"one or more of {', '.join(TOPICS)}; default: all")
+    parser.add_argument(
+        "topics",
+        nargs="*",
+        metavar="topic",
+        help=f"one or more of {', '.join(TOPICS)}; default: all; parts: {', '.join(PARTS)}",
+    )
     parser.add_argument("--quick", action="store_true", help="fewer repeats, smaller sets, no whole quickstart")
     arguments = parser.parse_args()
     if unknown := [topic for topic in arguments.topics if topic not in (*TOPICS, *PARTS)]:
-        parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join(TOPICS)}")
+        parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join((*TOPICS, *PARTS))}")
     return arguments
 
 

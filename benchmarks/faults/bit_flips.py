@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
 
 import siggen
+from benchmarks.faults.victims import small_model, small_set
+from benchmarks.row import Row
 from siggen.dataset.reading import Dataset
 from siggen.errors import SiggenError
 
+FLIPS_PER_KIND, QUICK_FLIPS = 40, 10
 REFUSED, SILENT = "refused in words", "read as data"
 
 SET_FILES: dict[str, tuple[tuple[str, ...], Callable[[Dataset], object]]] = {
@@ -23,6 +28,23 @@ SET_FILES: dict[str, tuple[tuple[str, ...], Callable[[Dataset], object]]] = {
     ),
 }
 """Which files of a set are flipped, and how they are read."""
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield a row per kind of file: how many flips the reader found."""
+    flips = QUICK_FLIPS if quick else FLIPS_PER_KIND
+    with tempfile.TemporaryDirectory() as name:
+        victim = small_set(Path(name) / "set")
+        for kind in SET_FILES:
+            yield _row(kind, Counter(flipped_in_set(victim, kind, flips)))
+        yield _row("model folder", Counter(flipped_in_model(small_model(victim, Path(name) / "model"), flips)))
+
+
+def _row(kind: str, outcomes: Counter[str]) -> Row:
+    count, found = outcomes.total(), outcomes[REFUSED]
+    others = ", ".join(f"{outcome}: {number}" for outcome, number in outcomes.items() if outcome != REFUSED)
+    what = f"{count} flipped bits, {kind}"
+    return Row(what, f"{found} found by the reader", others or "no other", None, "all", found == count)
 
 
 def flipped_in_set(folder: Path, kind: str, count: int, seed: int = 0) -> Iterator[str]:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import signal
+import sys
+import tempfile
 import time
 import traceback
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -14,10 +17,13 @@ from typing import Any
 
 import yaml
 
+from benchmarks.row import Row, duration_text
 from siggen.checks.loading import load_config
 from siggen.errors import EXIT_USAGE, SiggenError
 
 PRESETS = Path(__file__).resolve().parents[2] / "configs"
+COUNT, QUICK_COUNT = 2_000, 200
+SAID_EVERY = 100
 LIMIT_S = 10.0
 """CPU time of one configuration, which others on the machine do not stretch; the command has 2 s with its start."""
 
@@ -38,6 +44,38 @@ class Case:
     outcome: str
     message: str
     seconds: float
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield the row of all configurations."""
+    count = QUICK_COUNT if quick else COUNT
+    load_presets()
+    with tempfile.TemporaryDirectory() as folder:
+        cases = (judged(text, Path(folder)) for text in mutated(count))
+        yield outcomes_row(f"{count} mutated configurations", cases, count, "accepted", "CPU")
+
+
+def load_presets() -> None:
+    """Load every preset, so that no mutated one pays for the compiler, which the first run on a machine needs."""
+    for preset in PRESETS.glob("*.yaml"):
+        load_config(preset)
+
+
+def outcomes_row(what: str, cases: Iterable[Case], count: int, accepted: str, clock: str) -> Row:
+    """Return the row of `count` cases; says on the way how many are done, and everything about one that went wrong."""
+    outcomes: Counter[str] = Counter()
+    longest_s = 0.0
+    for number, case in enumerate(cases, start=1):
+        outcomes[case.outcome] += 1
+        longest_s = max(longest_s, case.seconds)
+        if case.outcome in {"traceback", "hang"}:
+            print(f"{case.outcome}: {case.text}\n{case.message}", file=sys.stderr, flush=True)
+        if number % SAID_EVERY == 0:
+            print(f"{what}: {number} done, {dict(outcomes)}", file=sys.stderr, flush=True)
+    longest = f"longest {duration_text(longest_s)} of {clock}"
+    measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} {accepted}, {longest}"
+    others = f"tracebacks: {outcomes['traceback']}, hangs: {outcomes['hang']}"
+    return Row(what, measured, others, None, "no other", outcomes["accepted"] + outcomes["refused"] == count)
 
 
 def mutated(count: int, seed: int = 0) -> Iterator[str]:

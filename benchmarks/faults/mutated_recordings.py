@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -11,14 +12,28 @@ from random import Random
 
 import numpy as np
 
-from benchmarks.faults.mutated_configurations import Case
+from benchmarks.faults.mutated_configurations import Case, outcomes_row
+from benchmarks.faults.recorder_files import recorder_files
+from benchmarks.row import Row
 from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.errors import EXIT_USAGE, SiggenError
 
 FS_HZ, SAMPLES = 4096, 8192
 KINDS = ("csv", "mat", "mat", "wav", "wav", "npy", "npz", "parquet", "parquet")
+COUNT, QUICK_COUNT = 1_000, 45
 LIMIT_S = 60
+
+
+def rows(*, quick: bool) -> Iterator[Row]:
+    """Yield a row of the files that everybody has, and one of those of recorders."""
+    count = QUICK_COUNT if quick else COUNT
+    with tempfile.TemporaryDirectory() as name:
+        for whole in (recordings(Path(name)), recorder_files(Path(name), channels(), FS_HZ)):
+            kinds = ", ".join(dict.fromkeys(path.suffix for path in whole))
+            what = f"{count} mutated recordings ({kinds})"
+            cases = mutated_recordings(count, whole)
+            yield outcomes_row(what, cases, count, "with indicators", "CPU beside the parser's process")
 
 
 def channels() -> dict[str, np.ndarray]:

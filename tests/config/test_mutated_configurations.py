@@ -1,13 +1,14 @@
-"""Mutated configurations: accepted or refused in words, never a traceback or a hang; `python -m benchmarks faults`."""
+"""Mutated configurations: accepted or refused in words, never a traceback or a hang; 2,000 of them in `benchmarks`."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from benchmarks.faults.mutated_configurations import judged, mutated
+from benchmarks.faults.mutated_configurations import judged, load_presets, mutated
 
 
 def test_mutated_configurations_end_in_words(tmp_path: Path) -> None:
+    load_presets()
     cases = [judged(text, tmp_path) for text in mutated(50, seed=3)]
     wrong = [f"{case.outcome}\n{case.message}" for case in cases if case.outcome not in ("accepted", "refused")]
     assert not wrong, wrong[0]
