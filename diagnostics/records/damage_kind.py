@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+
+THROUGH = " through the face"
 
 
 def damage_kind(labels: Mapping[str, np.ndarray], rows: np.ndarray) -> str:
@@ -19,7 +21,12 @@ def damage_kind(labels: Mapping[str, np.ndarray], rows: np.ndarray) -> str:
     """
     fault = str(labels["fault"][rows][0])
     through = "through_face" in labels and bool(np.all(labels["through_face"][rows]))
-    return f"{fault} through the face" if through else fault
+    return f"{fault}{THROUGH}" if through else fault
+
+
+def kind_name(kind: str, others: Iterable[str]) -> str:
+    """Return what a reader calls a kind: of a part of the face, where the same damage through it is a kind as well."""
+    return f"{kind} of a part of the face" if f"{kind}{THROUGH}" in others else kind
 
 
 def damage_kinds(labels: Mapping[str, np.ndarray], states: Sequence[str]) -> dict[str, list[str]]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnostics.page.style import WIDTH_IN, styled
-from diagnostics.statistics.detector import Detector
+from diagnostics.records.damage_kind import kind_name
+from diagnostics.statistics.detector import Detector, FoundSize
 from diagnostics.training.detectors import BOOSTED, CLASSIFIER, INDICATOR, NETWORKS, Detectors
 
 if TYPE_CHECKING:
@@ -39,13 +41,13 @@ def answer_figure(found: Detectors) -> Figure | None:
     if not panels:
         return None
     with styled():
-        figure = Figure(figsize=(WIDTH_IN, 3.5), layout="constrained")
-        axes = figure.subplots(
-            2, len(panels), squeeze=False, sharex=True, sharey="row", gridspec_kw={"height_ratios": [3.4, 1.0]}
-        )
+        kinds = list(dict.fromkeys(s.kind for _, side in panels for one in side.values() for s in one.states.values()))
+        figure = Figure(figsize=(WIDTH_IN, 3.5 + 0.35 * (len(kinds) - 1)), layout="constrained")
+        heights = {"height_ratios": [3.4, 0.5 + 0.5 * len(kinds)]}
+        axes = figure.subplots(2, len(panels), squeeze=False, sharex=True, sharey="row", gridspec_kw=heights)
         for column, (title, detectors) in enumerate(panels):
-            _draw_areas(axes[0, column], detectors)
-            _draw_sizes(axes[1, column], detectors)
+            _draw_areas(axes[0, column], detectors, kinds)
+            _draw_sizes(axes[1, column], detectors, kinds)
             _name_states(axes[0, column], detectors)
             axes[0, column].set_title(title, loc="left", fontweight="bold")
         _scale(axes[1, 0], [detector for _, detectors in panels for detector in detectors.values()])
@@ -55,12 +57,11 @@ def answer_figure(found: Detectors) -> Figure | None:
     return figure
 
 
-def _draw_areas(axis: Any, detectors: dict[str, Detector]) -> None:
+def _draw_areas(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
     axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
     for family, detector in detectors.items():
         place = list(LOOKS).index(family)
         _, colour, marker = LOOKS[family]
-        kinds = list(dict.fromkeys(state.kind for state in detector.states.values()))
         for number, kind in enumerate(kinds):
             shown = sorted(
                 (s for s in detector.states.values() if s.kind == kind and math.isfinite(s.auc.value)),
@@ -87,25 +88,37 @@ def _limits(states: Sequence[Any]) -> tuple[list[float], list[float]]:
     return [state.auc.low for state in states], [state.auc.high for state in states]
 
 
-def _draw_sizes(axis: Any, detectors: dict[str, Detector]) -> None:
-    """Draw from which size on nine of ten are found: a line to the largest, limits as a bar, a cross where none is."""
-    for row, family in enumerate(LOOKS):
-        if family not in detectors or not detectors[family].sizes:
-            continue
-        _, colour, _ = LOOKS[family]
-        for size in detectors[family].sizes.values():
-            found = size.area_mm2
-            if not size.reached:
-                axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=1.8)
-                continue
-            axis.plot([found.value, size.largest_mm2], [row, row], color=colour, linewidth=3.5, solid_capstyle="butt")
-            axis.plot(found.value, row, marker="|", color=colour, markersize=11, markeredgewidth=2.2)
-            high = found.high if math.isfinite(found.high) else size.largest_mm2
-            axis.plot([found.low, high], [row, row], color="#1c2733", linewidth=1.0)
-    axis.set_ylim(len(LOOKS) - 0.4, -0.6)
-    axis.set_yticks([1.0], ["nine of\nten found"])
+def _draw_sizes(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
+    """Draw from which size on nine of ten are found: a line to the largest, limits as a bar, a cross where none is.
+
+    Every kind of damage has a row of its own for every family, with the dashes that it has above.
+    """
+    families = [family for family in LOOKS if family in detectors]
+    for group, kind in enumerate(kinds):
+        for place, family in enumerate(families):
+            if kind in detectors[family].sizes:
+                row = group + 0.8 * ((place + 0.5) / len(families) - 0.5)
+                _draw_size(axis, detectors[family].sizes[kind], row, LOOKS[family][1], DASHES[group % len(DASHES)])
+    axis.set_ylim(len(kinds) - 0.4, -0.6)
+    if len(kinds) == 1:
+        axis.set_yticks([0.0], ["nine of\nten found"])
+    else:
+        names = [textwrap.fill(kind_name(kind, kinds), 17) for kind in kinds]
+        axis.set_yticks(range(len(kinds)), names, fontsize=7.5)
+        axis.set_title("nine of ten found", loc="left", fontsize=9)
     axis.tick_params(axis="y", length=0)
     axis.grid(visible=False, axis="y")
+
+
+def _draw_size(axis: Any, size: FoundSize, row: float, colour: str, dashes: str) -> None:
+    found = size.area_mm2
+    if not size.reached:
+        axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=1.8)
+        return
+    axis.plot([found.value, size.largest_mm2], [row, row], dashes, color=colour, linewidth=2.5)
+    axis.plot(found.value, row, marker="|", color=colour, markersize=8, markeredgewidth=2.2)
+    high = found.high if math.isfinite(found.high) else size.largest_mm2
+    axis.plot([found.low, high], [row, row], color="#1c2733", linewidth=0.9)
 
 
 def _scale(axis: Any, detectors: Sequence[Detector]) -> None:

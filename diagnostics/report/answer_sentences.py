@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
+from diagnostics.records.damage_kind import kind_name
 from diagnostics.report.detector_table import picked
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
@@ -51,7 +52,7 @@ def size_sentence(best: Detector) -> str:
             f"alarms. {_easiest(best)}"
         )
     kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
-    return " ".join(_kind_sentence(best, kind, best.sizes.get(kind)) for kind in kinds)
+    return " ".join(_kind_sentence(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in kinds)
 
 
 def _easiest(best: Detector) -> str:
@@ -59,23 +60,23 @@ def _easiest(best: Detector) -> str:
     return f"The state {name} has the largest AUC: {decimal(best.states[name].auc.value)}."
 
 
-def _kind_sentence(best: Detector, kind: str, size: FoundSize | None) -> str:
+def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
     """Say what is found of one kind; where the smallest or none is, the share of its records says how sure that is."""
-    states = {name: state for name, state in best.states.items() if state.kind == kind}
-    smallest = min(states, key=lambda name: states[name].area_mm2)
-    largest = max(states, key=lambda name: states[name].area_mm2)
+    states = {state: found for state, found in best.states.items() if found.kind == kind}
+    smallest = min(states, key=lambda state: states[state].area_mm2)
+    largest = max(states, key=lambda state: states[state].area_mm2)
     if size is None:
         found = states[largest]
-        return f"{capitalised(kind)} of {_area(found.area_mm2)} gives an alarm in some ({_share(found)})."
+        return f"{capitalised(name)} of {_area(found.area_mm2)} gives an alarm in some ({_share(found)})."
     if size.is_bound:
         return (
-            f"{capitalised(kind)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "
+            f"{capitalised(name)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "
             f"the set ({smallest}: {_share(states[smallest])})."
         )
     if size.reached:
-        return f"{capitalised(kind)} is found in nine of ten records from {_area_limits(size)}."
+        return f"{capitalised(name)} is found in nine of ten records from {_area_limits(size)}."
     return (
-        f"{capitalised(kind)} of up to {_area(size.largest_mm2)} is found in fewer than nine of ten records "
+        f"{capitalised(name)} of up to {_area(size.largest_mm2)} is found in fewer than nine of ten records "
         f"({largest}: {_share(states[largest])})."
     )
 
@@ -141,7 +142,10 @@ def reference_sentence(found: Detectors) -> str:
             "What a healthy record of the same gearbox is worth is not known: the set has one per gearbox (`repeats: "
             "2` gives more)."
         )
-    reached = [f"{kind} from {_area_limits(size)}" for kind, size in beside.sizes.items() if size.reached]
+    kinds = list(dict.fromkeys(state.kind for state in beside.states.values()))
+    reached = [
+        f"{kind_name(kind, kinds)} from {_area_limits(size)}" for kind, size in beside.sizes.items() if size.reached
+    ]
     sizes = f" Nine of ten records are then found of {joined(reached)}." if reached else ""
     return (
         f"Beside a healthy record of the same gearbox: AUC {decimal(beside.every.value)} ({limits(beside.every)}) by "
