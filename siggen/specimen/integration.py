@@ -20,8 +20,8 @@ from siggen.planning.specimen import Specimen
 SMOOTH, KINKED = (1.4, 50.0), (1.1, 66.0)
 """Radians of the mesh's vibration in one step, and steps per base pitch, of contact across the face and of slices.
 
-At 1.84 rad and 38 steps per pitch the worst of 24 records of quickstart, `contact: face`, erred by 1.15e-3
-(`siggen verify DIR --physics 24`): one gearbox of six lay at twice the median. These leave 2.6e-4. Slices touch one
+At 1.84 rad and 38 steps per pitch the worst of 24 records of quickstart, `contact: face`, erred by 1.15e-3;
+at half of that by 2.6e-4 (`siggen verify DIR --physics 24`). The bound lies between. Slices touch one
 by one, so their force has corners.
 """
 USUAL_TOLERANCE = 1e-3
