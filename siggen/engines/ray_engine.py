@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import logging
 import os
+import shlex
 import signal
 import sys
 import threading
@@ -13,6 +14,7 @@ from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from typing import Any
 
+from siggen.engines import orphan
 from siggen.engines.orphan import end_with
 from siggen.engines.processes import TASK_ATTEMPTS
 from siggen.engines.protocol import Result, Results, Task
@@ -28,6 +30,14 @@ RESULT_BYTES = 128 << 20
 
 QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
 """Nothing is reported to anybody, and no warning about graphics cards that no task uses."""
+
+
+LOOKS = {"raylet_death_check_interval_milliseconds": 200, "prestart_worker_first_driver": False}
+"""How often a worker looks whether Ray's own process lives; no workers before the first task, which are not bound."""
+
+
+BOUND_PYTHON = shlex.join([sys.executable, "-I", orphan.__file__])
+"""Binds a worker before it imports Ray, and stays with it."""
 
 
 class RayEngine:
@@ -86,6 +96,8 @@ class RayEngine:
             memory = RESULT_BYTES * max(2, self.workers)
             local = {"num_cpus": self.workers, "include_dashboard": False, "object_store_memory": memory}
             options |= {"address": "local", **local}
+            options["runtime_env"]["py_executable"] = BOUND_PYTHON
+            options["_system_config"] = LOOKS
         else:
             options["address"] = self.address
         logging.getLogger("ray").setLevel(logging.ERROR)
