@@ -24,7 +24,6 @@ from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 
-
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
 
@@ -263,7 +262,7 @@ class Dataset:
 
     def _read_config(self) -> dict[str, Any]:
         try:
-            return dict(yaml.load(self._promises.content(CONFIG), _Loader))  # noqa: S506 - both are safe ones
+            return dict(yaml.load(self._promises.content(CONFIG), _Loader))
         except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 
