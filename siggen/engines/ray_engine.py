@@ -96,7 +96,8 @@ class RayEngine:
             memory = RESULT_BYTES * max(2, self.workers)
             local = {"num_cpus": self.workers, "include_dashboard": False, "object_store_memory": memory}
             options |= {"address": "local", **local}
-            options["runtime_env"]["py_executable"] = BOUND_PYTHON
+            if sys.platform == "linux":  # elsewhere nothing of it outlives the start of another program
+                options["runtime_env"]["py_executable"] = BOUND_PYTHON
             options["_system_config"] = LOOKS
         else:
             options["address"] = self.address
