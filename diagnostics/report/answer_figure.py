@@ -30,6 +30,8 @@ SIDEWAYS = (0.92, 0.973, 1.027, 1.08)
 """Families stand beside each other at one size, so that their limits can be read."""
 
 MOST_NAMES = 4
+LEAST_RATIO = 1.7
+"""Of neighbouring sizes whose names do not touch."""
 
 
 def answer_figure(found: Detectors) -> Figure | None:
@@ -78,7 +80,8 @@ def _draw_areas(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str])
 def _name_states(axis: Any, detectors: dict[str, Detector]) -> None:
     """Write the names of the states over their sizes, where they are few enough to stand beside each other."""
     states = next(iter(detectors.values())).states
-    if len(states) > MOST_NAMES or len(detectors) > len(LOOKS):
+    sizes = np.sort([state.area_mm2 for state in states.values()])
+    if len(states) > MOST_NAMES or (sizes[1:] < LEAST_RATIO * sizes[:-1]).any():
         return
     for name, state in states.items():
         axis.text(state.area_mm2, 0.03, name, ha="center", va="bottom", fontsize=9, color="#566573")

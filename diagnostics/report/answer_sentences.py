@@ -67,7 +67,7 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     largest = max(states, key=lambda state: states[state].area_mm2)
     if size is None:
         found = states[largest]
-        return f"{capitalised(name)} of {_area(found.area_mm2)} gives an alarm in some ({_share(found)})."
+        return f"{capitalised(name)} of {_area(found.area_mm2)} gives an alarm in {_share(found)}."
     if size.is_bound:
         return (
             f"{capitalised(name)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "
