@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations, product
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,26 @@ def healthy_blocks(
     return HealthyBlocks(tuple(found), channels, read[0].fs_hz)
 
 
+def check_held_out(held_out: HealthyBlocks, fitted: HealthyBlocks) -> None:
+    """Refuse a recording that is held out and fitted too, under whatever name.
+
+    Raises
+    ------
+    UsageError
+        Names both.
+    """
+    for one, other in product(held_out.blocks, fitted.blocks):
+        if _same_samples(one.channels, other.channels):
+            raise UsageError(
+                f"--held-out {one.name}: has the same samples as {other.name}, which is fitted; "
+                "allowed: recordings that are not fitted"
+            )
+
+
+def _same_samples(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    return any(np.array_equal(a, b) for a, b in zip(one.values(), other.values(), strict=True))
+
+
 def _check_alike(read: Sequence[MeasuredRecording]) -> None:
     first = read[0]
     for one in read[1:]:
@@ -84,8 +105,9 @@ def _check_alike(read: Sequence[MeasuredRecording]) -> None:
             raise UsageError(
                 f"{one.path}: sampled at {one.fs_hz:g} Hz, {first.path} at {first.fs_hz:g} Hz; allowed: one rate"
             )
-        if any(np.array_equal(a, b) for a, b in zip(one.channels.values(), first.channels.values(), strict=True)):
-            raise UsageError(f"{one.path}: has the same samples as {first.path}; give every recording once")
+    for one, other in combinations(read, 2):
+        if _same_samples(one.channels, other.channels):
+            raise UsageError(f"{other.path}: has the same samples as {one.path}; give every recording once")
     for one in read:
         if note := level_note(one):
             raise UsageError(f"{one.path}: {note}")

@@ -89,7 +89,7 @@ def calibrate(
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
-    from diagnostics.calibration.healthy_blocks import healthy_blocks
+    from diagnostics.calibration.healthy_blocks import check_held_out, healthy_blocks
     from diagnostics.calibration.injected_set import write_injected
     from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
     from diagnostics.cli.progress import terminal_stage
@@ -108,6 +108,10 @@ def calibrate(
     newtons = two_numbers(torque, "--torque", "15,60") if torque else None
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
+        others = [source for entry in held_out or () for source in file_rows(entry)]
+        judges = healthy_blocks(others, names, facts, teeth, span) if others else None
+        if judges is not None:
+            check_held_out(judges, blocks)
         advance()
     with terminal_stage("gearboxes", gearboxes) as advance:
         found = calibrated(rig, blocks, newtons, gearboxes, family_size(paths, len(names)), seed, advance)
@@ -128,6 +132,5 @@ def calibrate(
         with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
             typer.echo(str(write_injected(blocks, out, per_recording, inject, seed, advance)))
     if compared:
-        others = [source for entry in held_out or () for source in file_rows(entry)]
         with terminal_stage("records to compare", 2 * compared) as advance:
-            typer.echo(str(calibration_page(found, out, others, facts, span, (compared, seed), advance)))
+            typer.echo(str(calibration_page(found, out, judges, (compared, seed), advance)))

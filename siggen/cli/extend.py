@@ -41,7 +41,7 @@ def extend(
 
     runner = engine if address is None else engine_of(engine, workers, address)
     count = workers if runner is engine else None
-    with run_shown(log_json) as shown:
+    with run_shown(log_json, folder) as shown:
         generation = extend_set(folder, specimens, count, shown.progress, engine=runner, events=shown.events)
     report(generation, say=shown.say)
     typer.echo(str(generation.path))

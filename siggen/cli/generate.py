@@ -63,7 +63,7 @@ def generate(
 
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
-    with run_shown(log_json) as shown:
+    with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded):
             shown.say(f"implausible: {sentence}")
         if told := compilation_text(loaded, default_workers() if workers is None else workers):

@@ -7,11 +7,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from io import FileIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from siggen.cli.opened_log import opened_log
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -72,40 +73,32 @@ class RunDisplay:
 
 
 @contextmanager
-def run_shown(log_json: str | None = None) -> Iterator[RunDisplay]:
+def run_shown(log_json: str | None = None, out: Path | None = None) -> Iterator[RunDisplay]:
     """Give what shows a run, until it is over.
 
     Parameters
     ----------
     log_json : str, optional
         File to which events are added, or '-' for stderr, which then has nothing else.
+    out : Path, optional
+        Folder of the set, which holds no log.
 
     Raises
     ------
     UsageError
-        If the file cannot be written.
+        If the file cannot be written, is no log of ours, or lies in the set.
     """
     with ExitStack() as stack:
         if log_json == "-":
             yield RunDisplay(_silent, sys.stderr.write, quiet=True)
             return
-        file = None if log_json is None else stack.enter_context(_opened(Path(log_json)))
+        file = None if log_json is None else stack.enter_context(opened_log(Path(log_json), out))
         log = None if file is None else (lambda line: file.write(line.encode()))
         yield RunDisplay(stack.enter_context(_drawn()), log)
 
 
 def _silent(done: int, total: int, failures: int) -> None:
     """Show nothing."""
-
-
-def _opened(path: Path) -> FileIO:
-    """Open without a buffer: every line is in the file at once, and nothing is left to fail when it is closed."""
-    from siggen.errors import UsageError
-
-    try:
-        return path.open("ab", buffering=0)
-    except OSError as error:
-        raise UsageError(f"--log-json: {path} cannot be written ({error.strerror}); allowed: a file, or -") from error
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,10 +14,10 @@ import pytest
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
-from siggen.cli.run_display import run_shown
+from siggen.cli.run_display import RunDisplay, run_shown
 from siggen.dataset.seal import unsealed
 from siggen.errors import DatasetError, EngineError, UsageError
-from siggen.sets.run_journal import EVENTS
+from siggen.sets.run_journal import EVENTS, stamped
 from siggen.sets.run_report import DRIVER, WORKERS, read_run
 from siggen.stage_times import StageTimes, collected, stage
 from tests.dataset.fake_set import simulate_with_a_bug, simulate_with_failures, write_fake_set
@@ -112,20 +113,54 @@ def test_a_run_that_fails_says_why_in_its_last_event(tmp_path: Path) -> None:
 
 def test_a_log_holds_one_object_per_line_is_added_to_and_never_ends_a_run(tmp_path: Path, capsys: Any) -> None:
     log = tmp_path / "run.log"
+    failure = {"shard": 0, "record_id": 1, "status": "failed", "reason": "line\nbreak"}
     for _ in range(2):
         with run_shown(str(log)) as shown:
-            shown.events({"event": "record_failed", "reason": "line\nbreak"})
+            shown.events(stamped("record_failed", failure))
             assert shown.failures == 1
     assert [json.loads(line)["reason"] for line in log.read_text().splitlines()] == ["line\nbreak"] * 2
     with run_shown("-") as shown:
         shown.say("a sentence")
     assert json.loads(capsys.readouterr().err)["sentence"] == "a sentence"
-    with run_shown("/dev/full") as shown:
-        shown.events({"event": "run_started"})
-        shown.events({"event": "run_ended"})
+    with Path("/dev/full").open("wb", buffering=0) as full:
+        display = RunDisplay(lambda *_: None, lambda line: full.write(line.encode()))
+        display.events({"event": "run_started"})
+        display.events({"event": "run_ended"})
     assert capsys.readouterr().err.count("the run goes on") == 1
-    with pytest.raises(UsageError, match=r"--log-json: .* cannot be written"), run_shown(str(tmp_path)):
+    missing = tmp_path / "missing" / "run.log"
+    with pytest.raises(UsageError, match=r"--log-json: .* cannot be written"), run_shown(str(missing)):
         pass
+
+
+@pytest.mark.parametrize("said", ["set", "set/config.yaml", "set/new.log", "aside/../set/new.log"])
+@pytest.mark.parametrize("command", [["generate", "quickstart", "--out"], ["extend", "--specimens", "+1"]])
+def test_a_log_in_the_folder_of_the_set_is_refused_and_nothing_is_written(
+    command: list[str], said: str, tmp_path: Path
+) -> None:
+    write_fake_set(tmp_path / "set")
+    before = {file: file.read_bytes() for file in (tmp_path / "set").rglob("*") if file.is_file()}
+    result = CliRunner().invoke(app, [*command, str(tmp_path / "set"), "--log-json", str(tmp_path / said)])
+    assert isinstance(result.exception, UsageError)
+    assert "which holds the set alone" in str(result.exception)
+    assert {file: file.read_bytes() for file in (tmp_path / "set").rglob("*") if file.is_file()} == before
+
+
+@pytest.mark.parametrize(
+    "held", ["name: mine\n", '{"name": "mine"}\n', "[1]\n", "\n", '{"event": ["said"], "time": 1}']
+)
+def test_a_log_is_not_added_to_what_is_no_log(held: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(held)
+    with pytest.raises(UsageError, match="does not begin with an event"), run_shown(str(file)):
+        pass
+    assert file.read_text() == held
+
+
+def test_a_pipe_without_a_reader_and_a_folder_are_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", tmp_path, Path("/dev/null")):
+        with pytest.raises(UsageError, match="is no regular file"), run_shown(str(path)):
+            pass
 
 
 def test_stages_of_the_driver_add_up_to_the_run(tmp_path: Path) -> None:

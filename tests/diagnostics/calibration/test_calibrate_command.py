@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +111,18 @@ def test_a_call_that_cannot_work_says_why(
     assert result.exit_code != 0
     text = result.output + str(result.exception)
     assert said in text
+
+
+def test_a_recording_that_is_fitted_is_not_held_out_even_under_another_name(
+    recordings: list[Path], calibrated: tuple[Path, Path, str], tmp_path: Path
+) -> None:
+    again = shutil.copy(recordings[1], tmp_path / f"again{recordings[1].suffix}")
+    fitted, out = map(str, recordings[:3]), tmp_path / "x.yaml"
+    options = ["--fs", "25600", "--tacho", "tacho", "--held-out", str(recordings[3]), "--held-out", str(again)]
+    result = CliRunner().invoke(app, ["calibrate", str(calibrated[0]), *fitted, *options, "--out", str(out)])
+    assert isinstance(result.exception, UsageError)
+    assert f"has the same samples as {recordings[1].name}, which is fitted" in str(result.exception)
+    assert not out.exists()
 
 
 @pytest.mark.parametrize("taken", ["x.yaml", "x_data", "set"])

@@ -44,7 +44,10 @@ def test_the_readme_names_every_page_with_the_command_that_makes_it(script: Modu
         re.findall(r"^\| \[(\w+)\.html\]\(\1\.html\) \|.*\| `siggen-diagnostics ([^`]+)` \|$", text, re.MULTILINE)
     )
     made = {name: command for pages in script.REPORTS.values() for name, (_, command) in pages.items()}
-    assert named == {page.stem: made[page.stem] for page in PAGES}
+    assert set(script.MISSING) <= set(made)
+    expected = set(made) - set(script.MISSING)
+    assert {page.stem for page in PAGES} == expected, "a page is gone, or is there and still among MISSING"
+    assert named == {name: made[name] for name in expected}
 
 
 def test_places_on_a_machine_are_found_and_other_words_are_not(script: ModuleType) -> None:
@@ -72,3 +75,13 @@ def test_the_readme_says_how_every_set_is_made(script: ModuleType) -> None:
     for commands in script.SETS.values():
         for command in commands:
             assert f"`{command}`" in page or f"\n{command}\n" in page
+
+
+def test_the_page_of_presets_makes_bench_as_the_pages_do(script: ModuleType) -> None:
+    page = (ROOT / "docs" / "understand" / "presets.md").read_text(encoding="utf-8")
+    (command,) = script.SETS["bench"]
+    count = script.GEARBOXES["bench"]
+    assert f"\n{command.replace('runs/bench', 'runs/detect_bench')}\n" in page
+    assert f"\npython docs/scripts/detectability.py {count} 2 bench " in page
+    records = count * load_config(ROOT / "configs" / "bench.yaml").records_per_specimen
+    assert f"**`bench`: {count} gearboxes, {records} records;" in page
