@@ -78,20 +78,30 @@ def healthy_blocks(
     return HealthyBlocks(tuple(found), channels, read[0].fs_hz)
 
 
-def check_held_out(held_out: HealthyBlocks, fitted: HealthyBlocks) -> None:
-    """Refuse a recording that is held out and fitted too, under whatever name.
+def held_out_blocks(
+    sources: Sequence[Source],
+    fitted: HealthyBlocks,
+    facts: RecordingFacts,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None,
+) -> HealthyBlocks | None:
+    """Return the blocks of recordings that judge a fit, None without any.
 
     Raises
     ------
     UsageError
-        Names both.
+        As `healthy_blocks`; also if a recording is one of the fitted ones, under whatever name.
     """
-    for one, other in product(held_out.blocks, fitted.blocks):
+    if not sources:
+        return None
+    found = healthy_blocks(sources, fitted.channels, facts, teeth, speed_range_hz)
+    for one, other in product(found.blocks, fitted.blocks):
         if _same_samples(one.channels, other.channels):
             raise UsageError(
                 f"--held-out {one.name}: has the same samples as {other.name}, which is fitted; "
                 "allowed: recordings that are not fitted"
             )
+    return found
 
 
 def _same_samples(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:

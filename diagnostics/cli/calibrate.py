@@ -89,7 +89,7 @@ def calibrate(
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
-    from diagnostics.calibration.healthy_blocks import check_held_out, healthy_blocks
+    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks
     from diagnostics.calibration.injected_set import write_injected
     from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
     from diagnostics.cli.progress import terminal_stage
@@ -109,9 +109,7 @@ def calibrate(
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
         others = [source for entry in held_out or () for source in file_rows(entry)]
-        judges = healthy_blocks(others, names, facts, teeth, span) if others else None
-        if judges is not None:
-            check_held_out(judges, blocks)
+        judges = held_out_blocks(others, blocks, facts, teeth, span)
         advance()
     with terminal_stage("gearboxes", gearboxes) as advance:
         found = calibrated(rig, blocks, newtons, gearboxes, family_size(paths, len(names)), seed, advance)

@@ -119,10 +119,13 @@ def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
     assert "healthy_without_sidebands" not in [finding.trap for finding in separability_findings(measured)]
     found = realism(measured)
     assert found is not None
-    # -30 to -8 dB for nine tenths of channels measured; none of 8 channel-records may be far below. Above is no bound:
-    # where a path is weak at the mesh line, its sidebands come near to it or exceed it.
+    # -30 to -8 dB for nine tenths of channels measured. Of 24 gearboxes of bench 76 % lie inside (docs/understand/
+    # presets.md), so of 8 at least 4: fewer have a chance of 2 %. An upper bound of -4 dB does not hold: of the 96
+    # channel-records of that set 4 % lie above it, where the path is weak at the mesh line, and one of these 8 is at
+    # -3.0 dB. None lies above -1.8 dB; at 0 dB a sideband is as strong as what it modulates.
     sideband = measured.values["sideband1_db"]
-    assert np.all(sideband > -34.0)
+    assert np.all((sideband > -34.0) & (sideband < 0.0))
+    assert np.mean((sideband > -30.0) & (sideband < -8.0)) >= 0.5
     assert -30.0 < np.median(sideband) < -8.0
 
 

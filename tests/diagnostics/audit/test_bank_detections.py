@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import PERMUTATIONS, exceeded_by_chance
+from diagnostics.attacks.chance import PERMUTATIONS
+from diagnostics.audit.bank_detections import exceeded_by_chance
 
 DRAWS = 40_000
 
