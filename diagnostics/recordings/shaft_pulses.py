@@ -30,6 +30,9 @@ NARROW_RATIO = 1.05
 CLEAR_ENOUGH = 0.5
 """Clarity, relative to the clearest part, from which a part's speed is a candidate."""
 
+CLEAR_IN_NARROW = 0.25
+"""The same in narrow parts, where lines of another stage are the clearest; both shafts decide."""
+
 POWER_KEPT = 0.99
 """Share of the power in mesh lines that a faster comb must still hold; what lies between true lines is sidebands and
 noise, at -20 dB and below."""
@@ -42,6 +45,9 @@ RATIOS = (0.5, 2.0 / 3.0, 0.75, 1.0, 4.0 / 3.0, 1.5, 2.0)
 
 LEAST_CONTRAST = 0.25
 """Two and a half times what noise reaches: with less, the shaft itself cannot be seen, and mesh lines must do."""
+
+STRONG_CONTRAST = 0.75
+"""Teeth of both gears differ: where lines of one shaft stand out so far, those of the other show, or it is another."""
 
 CLEAR_LEAD = 0.8
 """Contrast, relative to the best one, from which another speed fits alike."""
@@ -109,11 +115,17 @@ def shaft_pulses(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Candidate:
-    """A speed over time, its pulses in the seconds judged, and how far the shaft's lines stand out at it."""
+    """A speed over time, its pulses in the seconds judged, and how far lines of pinion and gear stand out at it."""
 
     speed_hz: np.ndarray
     pulses_s: np.ndarray
-    contrast: float
+    pinion_contrast: float
+    gear_contrast: float
+
+    @property
+    def contrast(self) -> float:
+        """Both together: a second stage on the gear's shaft has one of them at a wrong speed, never both."""
+        return self.pinion_contrast + self.gear_contrast
 
 
 def _from_mesh(
@@ -134,7 +146,7 @@ def _in_wide_parts(
     pinion, gear = teeth
     channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz), speed_range_hz)
     signal, fs_hz = recording.channels[channel], recording.fs_hz
-    chosen = _surest(recording, channel, pinion, speeds, speed_range_hz) if gear % pinion else None
+    chosen = _surest(recording, channel, teeth, speeds, speed_range_hz) if gear % pinion else None
     if chosen is None:
         doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
         judged = signal[: round(JUDGED_S * fs_hz)]
@@ -155,8 +167,9 @@ def _in_narrow_parts(
     if gear % pinion == 0:
         return None
     try:
-        channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz, NARROW_RATIO), speed_range_hz)
-        chosen = _surest(recording, channel, pinion, speeds, speed_range_hz)
+        parts = range_parts(speed_range_hz, NARROW_RATIO)
+        channel, speeds = _candidates(recording, pinion, parts, speed_range_hz, CLEAR_IN_NARROW)
+        chosen = _surest(recording, channel, teeth, speeds, speed_range_hz)
     except UsageError:
         return None
     if chosen is None:
@@ -167,24 +180,20 @@ def _in_narrow_parts(
 def _surest(
     recording: MeasuredRecording,
     channel: str,
-    teeth: int,
+    teeth: tuple[int, int],
     speeds: list[np.ndarray],
     speed_range_hz: tuple[float, float],
 ) -> np.ndarray | None:
-    """Return the speed over time whose shaft shows; None where none does."""
+    """Return the speed over time whose shafts show; None where no pinion does."""
     signal, fs_hz = recording.channels[channel][: round(JUDGED_S * recording.fs_hz)], recording.fs_hz
-    highest_hz = min(LINES_COMPARED * teeth * max(float(np.median(speed)) for speed in speeds), 0.45 * fs_hz)
+    highest_hz = min(LINES_COMPARED * teeth[0] * max(float(np.median(speed)) for speed in speeds), 0.45 * fs_hz)
     found = []
     for speed in _distinct([*speeds, *(ratio * speed for speed in speeds for ratio in RATIOS)]):
-        pulses = _pulses_around(signal, fs_hz, teeth, speed)
-        contrast = [
-            shaft_contrast(other[: signal.size], pulses, fs_hz, teeth, highest_hz)
-            for other in recording.channels.values()
-        ]
-        found.append(_Candidate(speed, pulses, float(np.mean(contrast))))
+        pulses = _pulses_around(signal, fs_hz, teeth[0], speed)
+        found.append(_Candidate(speed, pulses, *_contrasts(recording, signal.size, pulses, teeth, highest_hz)))
     inside = [one for one in found if _within(one, speed_range_hz)]
     best = max(found, key=lambda one: one.contrast)
-    if best.contrast < LEAST_CONTRAST:
+    if best.pinion_contrast < LEAST_CONTRAST:
         return None
     if best not in inside:
         raise UsageError(
@@ -195,7 +204,26 @@ def _surest(
     if rivals:
         listed = ", ".join(f"{_mean_speed(one.pulses_s):.4g}" for one in (best, *rivals))
         raise UsageError(f"speeds of {listed} Hz fit alike. Give a narrower --speed-range, or a tacho.")
+    if best.gear_contrast < LEAST_CONTRAST and best.pinion_contrast > STRONG_CONTRAST:
+        raise UsageError(
+            f"{_mean_speed(best.pulses_s):.4g} Hz fits by lines of the pinion, but the gear has none at it: they "
+            "may be those of another stage. Check teeth, give another --speed-range, or a tacho."
+        )
     return best.speed_hz
+
+
+def _contrasts(
+    recording: MeasuredRecording, samples: int, pulses_s: np.ndarray, teeth: tuple[int, int], highest_hz: float
+) -> tuple[float, float]:
+    """Return how far lines of the pinion, and of the gear, stand out at these pulses of the pinion."""
+    turns = np.arange(0.0, pulses_s.size - 1, teeth[1] / teeth[0])
+    of_gear = np.interp(turns, np.arange(pulses_s.size), pulses_s)
+    signals = [signal[:samples] for signal in recording.channels.values()]
+    found = [
+        [shaft_contrast(signal, pulses, recording.fs_hz, count, highest_hz) for signal in signals]
+        for pulses, count in ((pulses_s, teeth[0]), (of_gear, teeth[1]))
+    ]
+    return float(np.mean(found[0])), float(np.mean(found[1]))
 
 
 def _check_mesh_rules(signal: np.ndarray, fs_hz: float, teeth: int, speed_hz: np.ndarray) -> None:
@@ -259,6 +287,7 @@ def _candidates(
     teeth: int,
     parts: list[tuple[float, float]],
     speed_range_hz: tuple[float, float],
+    clear_enough: float = CLEAR_ENOUGH,
 ) -> tuple[str, list[np.ndarray]]:
     """Return the clearest channel and the speeds over time that its parts of the range show."""
     samples = round(SEARCHED_S * recording.fs_hz)
@@ -273,7 +302,7 @@ def _candidates(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of pinion "
             f"speed (clarity {clearest:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
         )
-    return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
+    return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= clear_enough * clearest]
 
 
 def range_parts(speed_range_hz: tuple[float, float], ratio: float = PART_RATIO) -> list[tuple[float, float]]:

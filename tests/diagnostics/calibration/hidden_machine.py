@@ -41,9 +41,9 @@ def write_recording(record: Any, file: Path) -> Path:
     return file
 
 
-def hidden_recordings(folder: Path) -> list[Path]:
-    """Write four healthy recordings of the hidden machine; return the files."""
-    config = siggen.load_config(HIDDEN)
+def hidden_recordings(folder: Path, **changes: Any) -> list[Path]:
+    """Write four healthy recordings of the hidden machine, with these sections changed; return the files."""
+    config = siggen.load_config({**HIDDEN, **changes})
     records = siggen.simulate(config, range(4))
     return [write_recording(record, folder / f"run{k}.csv") for k, record in enumerate(records)]
 
