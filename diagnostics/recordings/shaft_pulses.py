@@ -30,9 +30,6 @@ NARROW_RATIO = 1.05
 CLEAR_ENOUGH = 0.5
 """Clarity, relative to the clearest part, from which a part's speed is a candidate."""
 
-CLEAR_IN_NARROW = 0.25
-"""The same in narrow parts, where lines of another stage are the clearest; both shafts decide."""
-
 POWER_KEPT = 0.99
 """Share of the power in mesh lines that a faster comb must still hold; what lies between true lines is sidebands and
 noise, at -20 dB and below."""
@@ -46,8 +43,8 @@ RATIOS = (0.5, 2.0 / 3.0, 0.75, 1.0, 4.0 / 3.0, 1.5, 2.0)
 LEAST_CONTRAST = 0.25
 """Two and a half times what noise reaches: with less, the shaft itself cannot be seen, and mesh lines must do."""
 
-STRONG_CONTRAST = 0.75
-"""Teeth of both gears differ: where lines of one shaft stand out so far, those of the other show, or it is another."""
+TIMES_THE_GEAR = range(1, 9)
+"""What passes for the pinion may turn so many times as fast as the gear's shaft, with a second stage for the mesh."""
 
 CLEAR_LEAD = 0.8
 """Contrast, relative to the best one, from which another speed fits alike."""
@@ -119,13 +116,8 @@ class _Candidate:
 
     speed_hz: np.ndarray
     pulses_s: np.ndarray
-    pinion_contrast: float
+    contrast: float
     gear_contrast: float
-
-    @property
-    def contrast(self) -> float:
-        """Both together: a second stage on the gear's shaft has one of them at a wrong speed, never both."""
-        return self.pinion_contrast + self.gear_contrast
 
 
 def _from_mesh(
@@ -167,8 +159,7 @@ def _in_narrow_parts(
     if gear % pinion == 0:
         return None
     try:
-        parts = range_parts(speed_range_hz, NARROW_RATIO)
-        channel, speeds = _candidates(recording, pinion, parts, speed_range_hz, CLEAR_IN_NARROW)
+        channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz, NARROW_RATIO), speed_range_hz)
         chosen = _surest(recording, channel, teeth, speeds, speed_range_hz)
     except UsageError:
         return None
@@ -184,17 +175,28 @@ def _surest(
     speeds: list[np.ndarray],
     speed_range_hz: tuple[float, float],
 ) -> np.ndarray | None:
-    """Return the speed over time whose shafts show; None where no pinion does."""
+    """Return the speed over time whose shaft shows; None where none does.
+
+    Where the gear does not show at it, the comb may be the gear's own at a multiple: a speed at which both show wins.
+    """
     signal, fs_hz = recording.channels[channel][: round(JUDGED_S * recording.fs_hz)], recording.fs_hz
     highest_hz = min(LINES_COMPARED * teeth[0] * max(float(np.median(speed)) for speed in speeds), 0.45 * fs_hz)
-    found = []
-    for speed in _distinct([*speeds, *(ratio * speed for speed in speeds for ratio in RATIOS)]):
+
+    def judged(speed: np.ndarray) -> _Candidate:
         pulses = _pulses_around(signal, fs_hz, teeth[0], speed)
-        found.append(_Candidate(speed, pulses, *_contrasts(recording, signal.size, pulses, teeth, highest_hz)))
-    inside = [one for one in found if _within(one, speed_range_hz)]
+        return _Candidate(speed, pulses, *_contrasts(recording, signal.size, pulses, teeth, highest_hz))
+
+    found = [judged(speed) for speed in _distinct([*speeds, *(ratio * one for one in speeds for ratio in RATIOS)])]
     best = max(found, key=lambda one: one.contrast)
-    if best.pinion_contrast < LEAST_CONTRAST:
+    if best.contrast < LEAST_CONTRAST:
         return None
+    if best.gear_contrast < LEAST_CONTRAST:
+        of_gear = (judged(best.speed_hz * teeth[1] / (teeth[0] * k)) for k in TIMES_THE_GEAR)
+        both = [one for one in of_gear if min(one.contrast, one.gear_contrast) >= LEAST_CONTRAST]
+        if both:
+            found = [max(both, key=lambda one: one.contrast + one.gear_contrast)]
+            best = found[0]
+    inside = [one for one in found if _within(one, speed_range_hz)]
     if best not in inside:
         raise UsageError(
             f"the lines fit {_mean_speed(best.pulses_s):.4g} Hz of pinion speed best, outside of {speed_range_hz[0]:g} "
@@ -204,11 +206,6 @@ def _surest(
     if rivals:
         listed = ", ".join(f"{_mean_speed(one.pulses_s):.4g}" for one in (best, *rivals))
         raise UsageError(f"speeds of {listed} Hz fit alike. Give a narrower --speed-range, or a tacho.")
-    if best.gear_contrast < LEAST_CONTRAST and best.pinion_contrast > STRONG_CONTRAST:
-        raise UsageError(
-            f"{_mean_speed(best.pulses_s):.4g} Hz fits by lines of the pinion, but the gear has none at it: they "
-            "may be those of another stage. Check teeth, give another --speed-range, or a tacho."
-        )
     return best.speed_hz
 
 
@@ -220,8 +217,8 @@ def _contrasts(
     of_gear = np.interp(turns, np.arange(pulses_s.size), pulses_s)
     signals = [signal[:samples] for signal in recording.channels.values()]
     found = [
-        [shaft_contrast(signal, pulses, recording.fs_hz, count, highest_hz) for signal in signals]
-        for pulses, count in ((pulses_s, teeth[0]), (of_gear, teeth[1]))
+        [shaft_contrast(signal, own_s, recording.fs_hz, count, highest_hz) for signal in signals]
+        for own_s, count in ((pulses_s, teeth[0]), (of_gear, teeth[1]))
     ]
     return float(np.mean(found[0])), float(np.mean(found[1]))
 
@@ -287,7 +284,6 @@ def _candidates(
     teeth: int,
     parts: list[tuple[float, float]],
     speed_range_hz: tuple[float, float],
-    clear_enough: float = CLEAR_ENOUGH,
 ) -> tuple[str, list[np.ndarray]]:
     """Return the clearest channel and the speeds over time that its parts of the range show."""
     samples = round(SEARCHED_S * recording.fs_hz)
@@ -302,7 +298,7 @@ def _candidates(
             f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of pinion "
             f"speed (clarity {clearest:.2f}, at least {LEAST_CLARITY:g}). Check range and teeth, or give a tacho."
         )
-    return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= clear_enough * clearest]
+    return channel, [ridge.speed_hz for ridge in found[channel] if ridge.clarity >= CLEAR_ENOUGH * clearest]
 
 
 def range_parts(speed_range_hz: tuple[float, float], ratio: float = PART_RATIO) -> list[tuple[float, float]]:

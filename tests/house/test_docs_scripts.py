@@ -12,8 +12,8 @@ from tests.house.source_tree import ROOT
 
 FOLDER = ROOT / "docs" / "scripts"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
-APART = {"isa_findings": {"isatools"}}
-"""Script -> packages that need an environment of their own, as its first lines say."""
+APART = {"isa_findings": {"isatools"}, "notebook_pages": {"mkdocs"}}
+"""Script -> packages of an environment of their own, as its first lines say, or of the extra that builds the site."""
 
 
 def wanted(path: Path) -> list[tuple[str, str]]:
