@@ -2,10 +2,12 @@
 
 A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits in part at twice, half
 or two thirds of the speed. It is searched in parts narrower than that; what is found, and what stands to it in such a
-ratio, is judged by the lines of the shaft itself (see `shaft_contrast`). Where those are missing, or the gear's teeth
-are a multiple of the pinion's, so that its lines fall between, the fastest comb that holds practically all power in
-mesh lines is taken: slower ones hold it too, with empty lines between, faster ones lose lines. Where two speeds fit
-alike, or the best one lies outside the range, none is taken. Source: derived; the search is in `tacholess_angle`.
+ratio, is judged by the lines of the shaft itself (see `shaft_contrast`). Where the gear has no lines at the best, that
+may turn a whole number of times as fast as the gear's shaft: a speed at which both shafts show wins. Where no lines
+of the shaft show, or the gear's teeth are a multiple of the pinion's, so that its lines fall between, the fastest comb
+that holds practically all power in mesh lines is taken: slower ones hold it too, with empty lines between, faster ones
+lose lines. Where two speeds fit alike, or the best one lies outside the range, none is taken. Source: derived; the
+search is in `tacholess_angle`.
 """
 
 from __future__ import annotations
