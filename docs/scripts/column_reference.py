@@ -22,11 +22,18 @@ FULL = CONFIGS / "transfer_path.yaml"
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
 OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
+CASING = "dynamics.casing={mass_kg: {kind: uniform, low: 8, high: 55}, inertia_kg_m2: null}"
+AROUND = (
+    "background={rubbing: {bursts: {}}, floor: {level_std: 0.3}, shafts: {}, second_stage: {order: 7}, "
+    "auxiliary_drive: {order: 20}}"
+)
 ADDED = {
     "manufacture": MADE,
     "variation": "variation.speed.random_rms=0.001",
     "gears.pairs": PAIR,
     "dynamics.friction.oil": OILS,
+    "dynamics.casing.inertia_kg_m2": CASING,
+    "background": AROUND,
 }
 """With these a configuration that has every part with columns of its own."""
 SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")

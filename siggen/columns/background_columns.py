@@ -34,6 +34,8 @@ def background_columns(config: Config) -> tuple[Column, ...]:
         return ()
     parts = {"floor": FLOOR, "rubbing": RUBBING, "shafts": SHAFTS}
     numbers = [one for part, columns in parts.items() if getattr(section, part) is not None for one in columns]
+    if section.floor is not None and section.floor.level_std != 0.0:
+        numbers.append(("floor_level_std", "", "s of the random level exp(s U - s^2/2) of the bearings' noise"))
     for name in ("second_stage", "auxiliary_drive"):
         if getattr(section, name) is not None:
             what = name.replace("_", " ")

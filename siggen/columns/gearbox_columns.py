@@ -21,6 +21,11 @@ PAIR_COLUMNS = (
     Column("contact_ratio", pa.float64(), "", "transverse contact ratio of the unloaded pair"),
 )
 """Columns of sets with several gear pairs."""
+CASING_COLUMNS = (
+    Column("casing_mass_kg", pa.float64(), "kg", "mass of the casing, without gears and shafts"),
+    Column("casing_bolt_damping_ratio", pa.float64(), "", "damping of a bolt that carries its share of the casing"),
+)
+"""Columns of sets whose casings differ in mass, and in inertia with it."""
 OIL_COLUMN = Column("oil", pa.string(), "", "oil of the gearbox")
 
 
@@ -29,6 +34,7 @@ def gearbox_columns(config: Config) -> tuple[Column, ...]:
     return (
         *(PAIR_COLUMNS if config.gears.pairs else ()),
         *((OIL_COLUMN,) if draws_oil(config) else ()),
+        *(CASING_COLUMNS if draws_casing(config) else ()),
         *(
             Column(name, pa.float64(), MILLIMETRE, _place_text(config, i, axis))
             for i, axis, name in drawn_places(config)
@@ -43,6 +49,12 @@ def _place_text(config: Config, i: int, axis: int) -> str:
 def draws_oil(config: Config) -> bool:
     """Tell whether gearboxes draw their oil."""
     return isinstance(config.dynamics.friction.oil, tuple)
+
+
+def draws_casing(config: Config) -> bool:
+    """Tell whether the inertia of the casing follows from a mass that gearboxes draw."""
+    casing = config.dynamics.casing
+    return config.dynamics.model == "casing" and casing.inertia_kg_m2 is None and not isinstance(casing.mass_kg, float)
 
 
 def drawn_places(config: Config) -> Iterator[tuple[int, int, str]]:

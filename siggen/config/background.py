@@ -122,6 +122,14 @@ class Floor(Section):
     shaft_depth: Annotated[Number, Within(least=0, most=2)] = Field(
         default=LogUniform(low=0.03, high=0.4), description="modulation of a bearing's noise by its shaft (assumed)"
     )
+    level_std: Annotated[Number, Within(least=0, most=2)] = Field(
+        default=0.0,
+        description="s of the random level exp(s U - s²/2) of the bearings' noise, one course per shaft; kurtosis "
+        "3 exp(s²); 0: Gaussian",
+    )
+    level_time_ms: Annotated[Number, Within(above=0, most=1000)] = Field(
+        default=LogUniform(low=1.0, high=8.0), description="correlation time of that level (measured: below 10)"
+    )
     spectrum: Density | None = Field(
         default=None, description="factor on all densities over frequency; null: 1 at all frequencies"
     )

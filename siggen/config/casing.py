@@ -51,7 +51,10 @@ class Casing(Section):
     """A rigid body that carries the bearings: two translations and rocking."""
 
     mass_kg: Annotated[Number, Within(above=0)] = Field(default=20.0, description="without the gears and shafts")
-    inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=0.25, description="about its centre of gravity")
+    inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=0.25,
+        description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
+    )
     pinion_position_mm: Position | None = Field(
         default=None,
         description="axis of the pinion, the gear's lies horizontally beside it; null: shafts on either side of the "

@@ -38,8 +38,10 @@ class Housing(Section):
     damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
         default=Uniform(low=0.01, high=0.04), description="drawn per mode"
     )
-    modal_mass_kg: Annotated[Number, Within(above=0)] = Field(
-        default=20.0, description="modal mass of the lowest mode, whose shape has the mean square 1; drawn per gearbox"
+    modal_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=20.0,
+        description="modal mass of the lowest mode, whose shape has the mean square 1; drawn per gearbox; null: the "
+        "mass of `dynamics.casing`",
     )
     residue_exponent: Annotated[Real, Field(ge=0, le=6)] = Field(
         default=2.0, description="residues fall as frequency to minus this power"

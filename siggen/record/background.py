@@ -47,6 +47,8 @@ def record_background(
         floor = floor_spectra(section.floor, course)
         labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
         labels["machine_force_n_per_sqrt_hz"] = constant(section.floor.machines_n_per_sqrt_hz)
+        if config.background.floor is not None and config.background.floor.level_std != 0.0:
+            labels["floor_level_std"] = constant(section.floor.level_std)
     return RecordBackground(_seen(background, forces, floor), labels)
 
 

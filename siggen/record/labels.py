@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from siggen.columns.gearbox_columns import drawn_places, draws_oil
+from siggen.columns.gearbox_columns import drawn_places, draws_casing, draws_oil
 from siggen.config import Config, State, constant
 from siggen.dynamics.time.response import Response
 from siggen.gears.damage.tooth_damage import Damage
@@ -56,11 +56,21 @@ def damage_labels(
 
 
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    """Return what a gearbox draws as a whole: its pair with sizes, oil, places of sensors; nothing that all share."""
+    """Return what a gearbox draws as a whole: pair, oil, casing, places of sensors; nothing that all share."""
     oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
     positions = {i: sensor.position_mm or () for i, sensor in enumerate(specimen.sensors)}
     places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
-    return {**_pair_labels(config, specimen), **oil, **places}
+    return {**_pair_labels(config, specimen), **oil, **_casing_labels(config, specimen), **places}
+
+
+def _casing_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    if not draws_casing(config):
+        return {}
+    casing = specimen.dynamics.casing
+    return {
+        "casing_mass_kg": constant(casing.mass_kg),
+        "casing_bolt_damping_ratio": constant(casing.bolts.damping_ratio),
+    }
 
 
 def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:

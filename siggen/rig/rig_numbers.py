@@ -17,14 +17,15 @@ from siggen.rig.rig import Pair, Rig
 STEEL_DENSITY_KG_M3 = 7850.0
 SHEAR_N_MM2 = 20.0
 """Allowed in a shaft that also bends; a usual value for a first size."""
-RELIEF_STIFFNESS_N_UM_MM = 14.0
-"""Single stiffness of steel gears in ISO 6336, its round value; tip relief is the deflection at full load over it."""
+RUNNING_IN_UM = 2.0
+"""Relief by running in alone, C_ay of ISO 6336-1 for steel of 1500 N/mm²; the other end is the deflection."""
 LARGEST_BORE = 0.6
 """Diameter of a bore over that of the root circle."""
 BALLS = 9
 BENCH_CENTRE_MM = 97.5
 BENCH_TORQUE_NM = (60.0, 156.7)
 BENCH_FORCE_N = 2365.0
+BENCH_CASING_KG = (8.0, 55.0)
 ASSUMED = "scaled from the gearbox of bench, by size or torque"
 
 
@@ -49,8 +50,7 @@ class RigNumbers(NamedTuple):
     load_inertia_kg_m2: float
     coupling_nm_per_rad: Pair
     coupling_nm_s_per_rad: Pair
-    casing_kg: float
-    casing_inertia_kg_m2: float
+    casing_kg: Pair
     scale: float
     load_share: float
     tip_relief_um: Pair
@@ -70,21 +70,25 @@ def rig_numbers(rig: Rig) -> RigNumbers:
     inertias = (motor, rotors[0].inertia_kg_m2), (load, rotors[1].inertia_kg_m2)
     damping = tuple(0.1 * sqrt(k * a * b / (a + b)) for k, (a, b) in zip(stiffness, inertias, strict=True))
     scale = 0.5 * rig.module_mm * sum(rig.teeth) / BENCH_CENTRE_MM
-    relief = force_n / rig.face_width_mm / RELIEF_STIFFNESS_N_UM_MM
+    relief = sorted((RUNNING_IN_UM, force_n / rig.face_width_mm / single_stiffness_n_um_mm(rig.teeth)))
     return RigNumbers(
         rotors,
         motor,
         load,
         stiffness,
         (damping[0], damping[1]),
-        20.0 * scale**3,
-        0.25 * scale**5,
+        (BENCH_CASING_KG[0] * scale**3, BENCH_CASING_KG[1] * scale**3),
         scale,
         force_n / BENCH_FORCE_N,
-        (max(0.75 * relief, 1.0), max(1.25 * relief, 2.0)),
+        (relief[0], relief[1]),
         sampling_rate_hz(rig),
         duration_s(rig),
     )
+
+
+def single_stiffness_n_um_mm(teeth: tuple[int, int]) -> float:
+    """Return c' of a spur pair, C_M 0.8, C_R 1, C_B 0.975 (ISO 6336-1, method B, without profile shift)."""
+    return 0.8 * 0.975 / (0.04723 + 0.15551 / teeth[0] + 0.25791 / teeth[1])
 
 
 def sampling_rate_hz(rig: Rig) -> float:

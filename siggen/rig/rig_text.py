@@ -90,13 +90,13 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
             )
         ),
         "  casing:",
-        f"    mass_kg: {numbers.casing_kg:.3g}",
-        f"    inertia_kg_m2: {numbers.casing_inertia_kg_m2:.3g}",
+        f"    mass_kg: {_range(numbers.casing_kg, 'loguniform')}",
+        "    inertia_kg_m2: null       # with the mass",
         "    bolts:",
         f"      shear_stiffness_n_per_m: {_spread(8e7 * scale)}",
         f"      axial_stiffness_n_per_m: {_spread(1.5e8 * scale)}",
         f"      positions_mm: [{bolts}]",
-        f"  mesh: {{tip_relief_um: {_range(numbers.tip_relief_um)}}}    # deflection at full load",
+        f"  mesh: {{tip_relief_um: {_range(numbers.tip_relief_um)}}}    # running in alone, deflection at full load",
     ]
     return "\n".join(lines) + "\n"
 

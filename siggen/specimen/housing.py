@@ -9,7 +9,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Config, Housing, Sensor, at
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modal_path import HousingModes, housing_modes, mode_shape
 
 DIRECTIONS = ("vertical", "horizontal", "axial")
@@ -43,19 +43,28 @@ def specimen_housing(config: Config, specimen_id: int) -> SpecimenHousing | None
     section = config.housing
     if section is None:
         return None
-    return SpecimenHousing(config.seed, specimen_id, _modes(config.seed, section, specimen_id))
+    return SpecimenHousing(
+        config.seed, specimen_id, _modes(config.seed, section, specimen_id, _casing_kg(config, specimen_id))
+    )
 
 
-def _modes(seed: int, section: Housing, specimen_id: int) -> HousingModes:
+def _casing_kg(config: Config, specimen_id: int) -> float:
+    """Return the drawn mass of the casing, the same as that of the moving one."""
+    key = "dynamics.casing.mass_kg"
+    return at(config.dynamics.casing.mass_kg, named_uniforms(config.seed, Stage.SUPPORTS, specimen_id)(key))
+
+
+def _modes(seed: int, section: Housing, specimen_id: int, casing_kg: float) -> HousingModes:
     def uniforms(name: str, count: int) -> FloatArray:
         return named_generator(seed, Stage.PATH, specimen_id, name=f"housing.{name}").random(count)
 
     count = max(1, round(at(section.modes, uniforms("modes", 1)[0])))
     # One mode per equal share of the distribution: natural frequencies of one body repel each other.
     shares = (np.arange(count) + uniforms("frequency_hz", count)) / count
+    own = float(uniforms("modal_mass_kg", 1)[0])
     return housing_modes(
         np.sort([at(section.frequency_hz, float(u)) for u in shares]),
         np.array([at(section.damping_ratio, float(u)) for u in uniforms("damping_ratio", count)]),
-        lowest_mass_kg=at(section.modal_mass_kg, uniforms("modal_mass_kg", 1)[0]),
+        lowest_mass_kg=casing_kg if section.modal_mass_kg is None else at(section.modal_mass_kg, own),
         exponent=section.residue_exponent,
     )

@@ -19,6 +19,8 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 
+CASING_GYRATION = 1.15
+"""Radius of gyration of a casing over its centre distance: a box of even wall round the gears (derived)."""
 ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
 
@@ -96,10 +98,11 @@ def _coupling(section: CouplingSection) -> Coupling:
 
 def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
     """Return a drawn casing in SI."""
-    bolts, pinion = section.bolts, section.pinion_position_mm
+    bolts, pinion, inertia = section.bolts, section.pinion_position_mm, section.inertia_kg_m2
+    mass, gyration_m = constant(section.mass_kg), CASING_GYRATION * pair.working_centre_distance_m
     return Casing(
-        mass_kg=constant(section.mass_kg),
-        inertia_kg_m2=constant(section.inertia_kg_m2),
+        mass_kg=mass,
+        inertia_kg_m2=mass * gyration_m**2 if inertia is None else constant(inertia),
         bolts=Bolts(
             shear_stiffness_n_per_m=constant(bolts.shear_stiffness_n_per_m),
             axial_stiffness_n_per_m=constant(bolts.axial_stiffness_n_per_m),

@@ -15,9 +15,10 @@ from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.background import record_background
 from siggen.record.background_course import record_course
+from siggen.record.force_floor import floor_spectra
 from siggen.record.rubbing import force_size_n, rubbing_force
 from siggen.record.simulation import simulate, simulate_specimen
-from siggen.sensing.spectral_filter import record_of
+from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.specimen.background import drawn_background
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
@@ -216,3 +217,35 @@ def test_a_gearbox_without_casing_or_path_has_its_background_too() -> None:
     parts = {name: part for name, part in ALL.items() if name != "base"}
     config = loaded(PLAIN, dynamics__model="8dof", housing=None, background=parts)
     assert added(config)[0]["bearing_vertical"].std() > 1e-3
+
+
+def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> None:
+    """Kurtosis 3 exp(s²) in closed form; both bearings of a shaft swell together, those of the other shaft do not."""
+    found: dict[float, dict[str, np.ndarray]] = {}
+    for std in (0.0, 0.7):
+        floor = {"level_std": std, "level_time_ms": 1.0, "shaft_depth": 0.0}
+        config = loaded(background={"floor": floor}, duration_s=20.0)
+        drawn = drawn_background(config, 0)
+        assert drawn is not None
+        assert drawn.floor is not None
+        course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
+        spectra = floor_spectra(drawn.floor, course)
+        high = frequencies(course.length, course.fs_hz) > 2000.0  # most of the floor's power lies far below
+        found[std] = {name: np.fft.irfft(s * high, course.length) for name, s in spectra.items()}
+    for name, signal in found[0.7].items():
+        level = np.mean(signal**2) / np.mean(found[0.0][name] ** 2)
+        kurtosis = np.mean(signal**4) / np.mean(signal**2) ** 2
+        bearing = name.partition("/")[0] in {"pinion_bearing", "gear_bearing"}
+        # 20 s hold 10,000 independent levels of variance exp(s²) - 1 = 0.63: 0.8 % of power, tails 4 times that
+        assert level == pytest.approx(1.0, rel=0.04 if bearing else 1e-12)
+        assert kurtosis == pytest.approx(3.0 * np.exp(0.49) if bearing else 3.0, rel=0.10 if bearing else 0.02)
+    power = {name: signal**2 - np.mean(signal**2) for name, signal in found[0.7].items()}
+    together = np.corrcoef([power[f"{s}_bearing/{a}"] for s in ("pinion", "gear") for a in ("vertical", "horizontal")])
+    # E[M²] - 1 = 0.63 of E[x⁴] - 1 = 3 * 1.63 - 1 = 3.9
+    assert together[0, 1] == pytest.approx(0.16, abs=0.03)
+    assert abs(together[0, 2]) < 0.03
+
+
+def test_without_a_random_level_the_floor_keeps_its_bytes() -> None:
+    first, second = (added(loaded(background={"floor": floor}))[0] for floor in ({}, {"level_std": 0.0}))
+    assert first["lid_vertical"].tobytes() == second["lid_vertical"].tobytes()
