@@ -84,7 +84,13 @@ def calibrate(
     """
     import siggen
     from diagnostics.base.extras import require_packages
-    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, TOO_FEW, check_new, write_calibration
+    from diagnostics.calibration.calibrated_files import (
+        TOO_FEW,
+        check_new,
+        not_identified,
+        stage_sentence,
+        write_calibration,
+    )
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
@@ -123,7 +129,9 @@ def calibrate(
         )
     if len(blocks.blocks) < FEWEST_RECORDINGS:
         typer.echo(f"recordings: {len(blocks.blocks)}; {TOO_FEW}", err=True)
-    for text in NOT_IDENTIFIED:
+    if found.stage is not None:
+        typer.echo(stage_sentence(found))
+    for text in not_identified(found):
         typer.echo(f"not identified: {text}", err=True)
     typer.echo(str(out))
     if inject is not None:
