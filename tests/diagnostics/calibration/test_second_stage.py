@@ -1,4 +1,4 @@
-"""A second stage on a shaft is found by the comb of its teeth, and not where errors of the teeth alone make the lines."""
+"""A second stage is found by the comb of its teeth, and not where errors of the teeth alone make lines."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def records(seed: int, teeth: tuple[int, int], comb: Comb | None) -> dict[str, l
             phasors = size * np.exp(2j * np.pi * rng.random(number.size))
             if comb is not None and comb[0] == shaft:
                 lines = slice(comb[1] - 1, None, comb[1])
-                phasors[lines] += comb[2] * comb[1] / number[lines] * np.exp(2j * np.pi * rng.random(number[lines].size))
+                phasors[lines] += (
+                    comb[2] * comb[1] / number[lines] * np.exp(2j * np.pi * rng.random(number[lines].size))
+                )
             shafts.append((step, phasors))
         found[channel] = [_record(speed, shafts, teeth, rng) for speed in SPEEDS_HZ]
     return found
