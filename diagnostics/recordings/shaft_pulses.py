@@ -2,10 +2,10 @@
 
 A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits in part at twice, half
 or two thirds of the speed. It is searched in parts narrower than that; what is found is judged by the lines of the
-shafts themselves (see `surest_speed`). Where no lines of the shaft show, or the gear's teeth are a multiple of the pinion's, so that its lines fall between, the fastest comb
-that holds practically all power in mesh lines is taken: slower ones hold it too, with empty lines between, faster ones
-lose lines. Where two speeds fit alike, or the best one lies outside the range, none is taken. Source: derived; the
-search is in `tacholess_angle`.
+shafts themselves (see `surest_speed`). Where no lines of the shaft show, or the gear's teeth are a multiple of the
+pinion's, so that its lines fall between, the fastest comb that holds practically all power in mesh lines is taken:
+slower ones hold it too, with empty lines between, faster ones lose lines. Where two speeds fit alike, or the best one
+lies outside the range, none is taken. Source: derived; the search is in `tacholess_angle`.
 """
 
 from __future__ import annotations
