@@ -13,6 +13,7 @@ import numpy as np
 from diagnostics.calibration.calibration import Calibration, ChannelFit
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.noise_fit import NoiseFit
+from diagnostics.calibration.own_lines import OwnLine
 from diagnostics.calibration.source_library import PLACES
 from siggen.errors import UsageError
 
@@ -58,8 +59,8 @@ def write_calibration(found: Calibration, out: Path) -> Path:
     sensors = sensor_axes(found)
     for channel, (name, axis) in zip(found.channels, sensors, strict=True):
         _write_table(folder / f"noise_{name}.csv", ("frequency_hz", "density"), _noise_rows(channel.noise))
-        if channel.own:
-            rows = [(line.order, line.frequency_hz, line.amplitude) for line in channel.own]
+        if table := _lines(channel):
+            rows = [(line.order, line.frequency_hz, line.amplitude) for line in table]
             _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
         for number in range(len(channel.paths)):
             _write_path(folder / _path_file(name, number), found.grid_hz, axis, channel, number)
@@ -75,6 +76,11 @@ def sensor_axes(found: Calibration) -> list[tuple[str, str]]:
         (sensor["name"], axis, len(sensor["axes"])) for sensor in found.config["sensors"] for axis in sensor["axes"]
     ]
     return [(name if count == 1 else f"{name}_{axis}", axis) for name, axis, count in axes]
+
+
+def _lines(channel: ChannelFit) -> tuple[OwnLine, ...]:
+    """Return all lines of a channel that no gear of the simulation makes."""
+    return (*channel.own, *(one.line for one in channel.stage))
 
 
 def calibrated_text(found: Calibration, out: Path) -> str:
@@ -121,10 +127,11 @@ def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[
     depths = {"pinion_depth": noise.pinion_depth, "gear_depth": noise.gear_depth, "level_std": noise.level_std}
     inner = ", ".join(f"{key}: {_depth(value)}" for key, value in depths.items())
     yield f"      modulation: {{{inner}, level_time_ms: {_range(*MEMORY_MS)}}}"
-    if channel.own:
-        widest = max(line.spread for line in channel.own)
-        usual = float(np.median([line.spread for line in channel.own]))
-        yield f"    lines:                      # {len(channel.own)} beside the mesh"
+    if table := _lines(channel):
+        widest = max(line.spread for line in table)
+        usual = float(np.median([line.spread for line in table]))
+        stage = f", {len(channel.stage)} of the second stage" if channel.stage else ""
+        yield f"    lines:                      # {len(channel.own)} beside the mesh{stage}"
         yield f"      file: {folder}/lines_{name}.csv"
         yield f"      factor: {_range(1.0 / usual, usual, 'loguniform')}    # the widest differs by {widest:.2g}"
 
@@ -140,6 +147,9 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
         "interval": TOO_FEW
         if len(found.blocks.blocks) < FEWEST_RECORDINGS
         else "90 %, from leaving recordings out (jackknife, Student's t)",
+        "second_stage": None
+        if found.stage is None
+        else {"shaft": found.stage.shaft, "teeth": found.stage.teeth, "order": found.stage.order},
         "channels": {
             channel.name: {
                 "line_level_db": {
@@ -152,16 +162,41 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
                 "gear_depth": _fact(channel.noise.gear_depth),
                 "level_std": _fact(channel.noise.level_std),
                 "lines_beside_the_mesh": len(channel.own),
+                "second_stage_level_db": {one.name: _fact(one.level_db) for one in channel.stage},
                 "step_m_s2": channel.sensor.step_m_s2,
             }
             for channel in found.channels
         },
         "gearboxes_simulated": int(found.library.energy_n2.shape[0]),
-        "not_identified": list(NOT_IDENTIFIED),
+        "not_identified": list(not_identified(found)),
     }
 
 
-NOT_IDENTIFIED = (
+def not_identified(found: Calibration) -> tuple[str, ...]:
+    """Return what the recordings of a calibration do not tell, a sentence each."""
+    return (*ALWAYS_OPEN, NO_STAGE if found.stage is None else WEAK_STAGE_LINES)
+
+
+def stage_sentence(found: Calibration) -> str:
+    """Return what was found of a second stage."""
+    if found.stage is None:
+        return "No second stage was found."
+    counts = ", ".join(f"{len(channel.stage)} lines on {channel.name}" for channel in found.channels)
+    return (
+        f"A second stage: {found.stage.teeth} teeth on the {found.stage.shaft}'s shaft, order "
+        f"{found.stage.order:.4g} of the pinion; {counts}."
+    )
+
+
+NO_STAGE = (
+    "a second stage: no comb of whole teeth on either shaft stands out of the lines that errors of the teeth make. One "
+    "whose lines are less than about 8 dB above those is not excluded; its lines count as errors of the teeth"
+)
+WEAK_STAGE_LINES = (
+    "lines of the second stage at the gears' own mesh lines, two shaft orders beside them, or less than 6 dB above the "
+    "errors of the teeth: they count as these errors"
+)
+ALWAYS_OPEN = (
     "path and source apart: only their product shows at a line. Paths are drawn: direction of the bearing forces, "
     "simulated gearboxes and recordings differ from path to path",
     "phase of the path: minimum phase is assumed",
@@ -169,8 +204,8 @@ NOT_IDENTIFIED = (
     "give an accuracy class if you know it",
     "structure and tip relief: as wide as in the rig",
     "torque and its variation: as in the rig, or --torque",
-    "lines at multiples of a shaft's order above the fourth: they count as errors of the teeth, which are simulated, "
-    "so a further stage on one of these shafts is left out",
+    "lines at multiples of a shaft's order above the fourth that are no second stage's: they count as errors of the "
+    "teeth, which are simulated",
     "correlation time of the noise's level: 1 to 8 ms",
     "range of the sensor: four times the largest value",
     "other gearboxes of this type: one assembly was measured",

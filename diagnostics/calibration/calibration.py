@@ -28,6 +28,13 @@ from diagnostics.calibration.order_record import (
 )
 from diagnostics.calibration.own_lines import OwnLine, own_lines
 from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path
+from diagnostics.calibration.second_stage import (
+    SecondStage,
+    StageLine,
+    machine_multiples,
+    second_stage,
+    stage_lines,
+)
 from diagnostics.calibration.sensor_fit import SensorFit, sensor_fit
 from diagnostics.calibration.source_library import PLACES, SourceLibrary, source_library
 from siggen.errors import UsageError
@@ -44,13 +51,17 @@ LARGEST_RANDOM_RMS = 0.05
 
 @dataclass(frozen=True, slots=True)
 class ChannelFit:
-    """One channel: levels [dB re 1 (m/s²)²] of its groups of lines, noise, own lines, recorder, possible paths."""
+    """One channel: levels [dB re 1 (m/s²)²] of its groups of lines, noise, own lines, recorder, possible paths.
+
+    `stage` holds the lines of a second stage, none where none was found.
+    """
 
     name: str
     levels: tuple[Fitted, ...]
     lines: ChannelLines
     noise: NoiseFit
     own: tuple[OwnLine, ...]
+    stage: tuple[StageLine, ...]
     sensor: SensorFit
     paths: tuple[PathDraw, ...]
 
@@ -74,6 +85,8 @@ class Calibration:
     library : SourceLibrary
     blocks : HealthyBlocks
     teeth : (int, int)
+    stage : SecondStage or None
+        Another pair on one of the shafts, where the recordings show it.
     """
 
     rig: Path
@@ -85,6 +98,7 @@ class Calibration:
     library: SourceLibrary
     blocks: HealthyBlocks
     teeth: tuple[int, int]
+    stage: SecondStage | None
 
 
 def rig_teeth(rig: Path) -> tuple[dict[str, Any], tuple[int, int]]:
@@ -135,15 +149,34 @@ def calibrated(
     """
     config, teeth = rig_teeth(rig)
     point = {"speed_hz": _speeds(blocks), "torque_nm": _torque(config, torque_nm)}
-    groups = line_groups(teeth, HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks))
-    seen = {name: _seen(name, blocks, groups, teeth) for name in blocks.channels}
+    records = {name: _records(name, blocks, teeth) for name in blocks.channels}
+    stage, lines = _stage(records, teeth)
+    foreign = tuple(dict.fromkeys(line.line.order for own in lines.values() for line in own))
+    top = HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks)
+    groups = line_groups(teeth, top, foreign)
+    seen = {name: _seen(name, blocks, own, groups, lines[name]) for name, own in records.items()}
     library = source_library(rig, point, blocks.fs_hz, groups, gearboxes, advance)
     draws = _Draws.of(len(blocks.blocks), library.energy_n2.shape[0], paths, seed)
     grid_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, GRID_STEPS + 1)
     channels = tuple(
         _channel(one, number, blocks, library, draws, grid_hz, teeth) for number, one in enumerate(seen.values())
     )
-    return Calibration(rig, config, point, _random_rms(blocks), grid_hz, channels, library, blocks, teeth)
+    return Calibration(rig, config, point, _random_rms(blocks), grid_hz, channels, library, blocks, teeth, stage)
+
+
+def _records(name: str, blocks: HealthyBlocks, teeth: tuple[int, int]) -> tuple[OrderRecord, ...]:
+    return tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
+
+
+def _stage(
+    records: dict[str, tuple[OrderRecord, ...]], teeth: tuple[int, int]
+) -> tuple[SecondStage | None, dict[str, tuple[StageLine, ...]]]:
+    """Return the second stage, if one shows, and its lines in every channel."""
+    multiples = machine_multiples(records, teeth)
+    found = second_stage(multiples, teeth)
+    if found is None:
+        return None, dict.fromkeys(records, ())
+    return found, {name: stage_lines(found, multiples[found.shaft][name]) for name in records}
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,15 +196,21 @@ class _Draws:
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """Spectra of one channel, one per block, and its lines."""
+    """Spectra of one channel, one per block, its lines, and those of a second stage."""
 
     name: str
     records: tuple[OrderRecord, ...]
     lines: ChannelLines
+    stage: tuple[StageLine, ...]
 
 
-def _seen(name: str, blocks: HealthyBlocks, groups: tuple[LineGroup, ...], teeth: tuple[int, int]) -> _Seen:
-    records = tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
+def _seen(
+    name: str,
+    blocks: HealthyBlocks,
+    records: tuple[OrderRecord, ...],
+    groups: tuple[LineGroup, ...],
+    stage: tuple[StageLine, ...],
+) -> _Seen:
     points_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, CEPSTRUM_POINTS)
     hz, energy, floors, visible, sure = [], [], [], [], []
     for record in records:
@@ -184,7 +223,7 @@ def _seen(name: str, blocks: HealthyBlocks, groups: tuple[LineGroup, ...], teeth
         floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
     lines = ChannelLines(np.array(hz), np.array(energy), np.array(visible), np.array(floors))
     _check_lines(name, blocks, sure)
-    return _Seen(name, records, lines)
+    return _Seen(name, records, lines, stage)
 
 
 def _check_lines(name: str, blocks: HealthyBlocks, counts: list[int]) -> None:
@@ -220,6 +259,7 @@ def _channel(
         seen.lines,
         noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
         own_lines(seen.records, teeth),
+        seen.stage,
         sensor_fit(blocks.blocks, seen.name),
         found,
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, TOO_FEW
+from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.likeness import LEVELS, RANGE, Likeness, Sample, band_edges_hz
@@ -54,9 +54,10 @@ def write_calibration_page(
         html.heading("Lines, floors, modulation and tails"),
         _level_table(real, before, after),
         html.heading("What was fitted"),
+        html.paragraph(stage_sentence(found)),
         _fitted_table(found),
         html.heading("What recordings do not tell"),
-        *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in NOT_IDENTIFIED),
+        *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
     ]
     path = folder / PAGE
     path.write_text(html.page(f"Calibration of {found.rig.stem}", parts), encoding="utf-8")
@@ -135,6 +136,7 @@ def _fitted_table(found: Calibration) -> str:
             for group, level in zip(found.library.groups, channel.levels, strict=True)
             if np.isfinite(level.value) and group.name.startswith("mesh")
         }
+        facts |= {f"second stage, {one.name} [dB re 1 (m/s²)²]": one.level_db for one in channel.stage}
         rows += [
             [Cell(channel.name), Cell(name), _number(v.value), _number(v.low), _number(v.high)]
             for name, v in facts.items()

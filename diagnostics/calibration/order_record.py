@@ -20,6 +20,7 @@ PINION_SIDEBANDS = (-4, -3, -2, -1, 1, 2, 3, 4)
 GEAR_SIDEBANDS = (-5, -4, -2, -1, 1, 2, 4, 5)
 HIGHEST_SHARE = 0.45
 """Of the sampling rate: up to here bearing forces are simulated."""
+SAME_ORDER = 1e-3
 LEAST_SHARE = 0.2
 """Of a line's bins that counts as line at least, where the floor hides it."""
 
@@ -109,6 +110,16 @@ def _floor(power: np.ndarray, free: np.ndarray) -> np.ndarray:
     return np.asarray(np.exp(np.interp(np.arange(power.size), places, np.log(middle))))
 
 
+def line_places(power: np.ndarray, bins: np.ndarray) -> np.ndarray:
+    """Return where lines lie whose highest bins are known, (lines,) in bins: 0.02 off at most.
+
+    A parabola through three logarithms.
+    """
+    low, middle, high = (np.log(np.maximum(power[bins + k], 1e-300)) for k in (-1, 0, 1))
+    beside = 0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-12)
+    return np.asarray(bins + np.clip(beside, -0.5, 0.5))
+
+
 @dataclass(frozen=True, slots=True)
 class LineGroup:
     """Orders of lines whose mean energy is taken together: a mesh line, or its sidebands of one shaft."""
@@ -118,8 +129,11 @@ class LineGroup:
     orders: tuple[float, ...]
 
 
-def line_groups(teeth: tuple[int, int], top_order: float) -> tuple[LineGroup, ...]:
-    """Return the groups below an order: of every mesh harmonic the line, pinion sidebands and gear sidebands."""
+def line_groups(teeth: tuple[int, int], top_order: float, foreign: tuple[float, ...] = ()) -> tuple[LineGroup, ...]:
+    """Return the groups below an order: of every mesh harmonic the line, pinion sidebands and gear sidebands.
+
+    Sidebands at `foreign` orders are left out: lines of another stage are there.
+    """
     found = []
     for h in range(1, MOST_MESH_LINES + 1):
         mesh = float(h * teeth[0])
@@ -128,10 +142,16 @@ def line_groups(teeth: tuple[int, int], top_order: float) -> tuple[LineGroup, ..
         step = teeth[0] / teeth[1]
         found += [
             LineGroup(f"mesh {h}", mesh, (mesh,)),
-            LineGroup(f"pinion sidebands of mesh {h}", mesh, tuple(mesh + k for k in PINION_SIDEBANDS)),
-            LineGroup(f"gear sidebands of mesh {h}", mesh, tuple(mesh + k * step for k in GEAR_SIDEBANDS)),
+            LineGroup(f"pinion sidebands of mesh {h}", mesh, _own([mesh + k for k in PINION_SIDEBANDS], foreign)),
+            LineGroup(f"gear sidebands of mesh {h}", mesh, _own([mesh + k * step for k in GEAR_SIDEBANDS], foreign)),
         ]
     return tuple(found)
+
+
+def _own(orders: list[float], foreign: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the orders that are no foreign ones; all, where nothing would be left."""
+    kept = tuple(order for order in orders if all(abs(order - other) > SAME_ORDER for other in foreign))
+    return kept or tuple(orders)
 
 
 def group_levels(record: OrderRecord, groups: tuple[LineGroup, ...]) -> tuple[np.ndarray, np.ndarray]:

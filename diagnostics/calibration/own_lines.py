@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
-from diagnostics.calibration.order_record import LINE_BINS, OrderRecord
+from diagnostics.calibration.order_record import LINE_BINS, OrderRecord, line_places
 
 OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 300, 1.6
 SHAFT_ORDERS = 4
@@ -61,7 +61,7 @@ def _peaks(record: OrderRecord, gear_order: float) -> np.ndarray:
     places = np.flatnonzero(top & (record.power > OVER_FLOOR * record.floor * math.log(2.0)))
     places = places[record.power[places] > OVER_FLOOR * record.floor[places]]
     places = places[(places > LINE_BINS) & (places + LINE_BINS < record.power.size)]
-    order = (places + _beside(record.power, places)) / record.revolutions
+    order = line_places(record.power, places) / record.revolutions
     order = order[~_of_teeth(order, record.revolutions, gear_order)]
     energy = np.array([record.line(one)[0] for one in order.tolist()])
     known = np.isfinite(energy)
@@ -78,12 +78,6 @@ def _of_teeth(order: np.ndarray, revolutions: int, gear_order: float) -> np.ndar
         low |= on & (number <= SHAFT_ORDERS)
         multiple |= on
     return np.asarray(multiple & ~low)
-
-
-def _beside(power: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return how far beside its bin each line lies, from a parabola through three logarithms: 0.02 bins off at most."""
-    low, middle, high = (np.log(np.maximum(power[places + k], 1e-300)) for k in (-1, 0, 1))
-    return np.asarray(np.clip(0.5 * (low - high) / np.minimum(low - 2.0 * middle + high, -1e-12), -0.5, 0.5))
 
 
 def _matched(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,6 +20,9 @@ from diagnostics.cli.recording_options import (
     named_column,
     two_numbers,
 )
+
+if TYPE_CHECKING:
+    from diagnostics.calibration.calibration import Calibration
 
 
 def calibrate(
@@ -84,14 +87,13 @@ def calibrate(
     """
     import siggen
     from diagnostics.base.extras import require_packages
-    from diagnostics.calibration.calibrated_files import NOT_IDENTIFIED, TOO_FEW, check_new, write_calibration
+    from diagnostics.calibration.calibrated_files import check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.channel_names import rig_channels
     from diagnostics.calibration.comparison import calibration_page
     from diagnostics.calibration.family_size import family_size
     from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks
     from diagnostics.calibration.injected_set import write_injected
-    from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.recordings.measured_recording import RecordingFacts
 
@@ -115,16 +117,7 @@ def calibrate(
         found = calibrated(rig, blocks, newtons, gearboxes, family_size(paths, len(names)), seed, advance)
     write_calibration(found, out)
     siggen.load_config(out)  # what would be refused is said now
-    for fit in found.channels:
-        noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
-        typer.echo(
-            f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
-            f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
-        )
-    if len(blocks.blocks) < FEWEST_RECORDINGS:
-        typer.echo(f"recordings: {len(blocks.blocks)}; {TOO_FEW}", err=True)
-    for text in NOT_IDENTIFIED:
-        typer.echo(f"not identified: {text}", err=True)
+    _tell(found)
     typer.echo(str(out))
     if inject is not None:
         with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
@@ -132,3 +125,22 @@ def calibrate(
     if compared:
         with terminal_stage("records to compare", 2 * compared) as advance:
             typer.echo(str(calibration_page(found, out, judges, (compared, seed), advance)))
+
+
+def _tell(found: Calibration) -> None:
+    """Say what was fitted, and to stderr what was not identified."""
+    from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
+    from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
+
+    for fit in found.channels:
+        noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
+        typer.echo(
+            f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
+            f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
+        )
+    if len(found.blocks.blocks) < FEWEST_RECORDINGS:
+        typer.echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
+    if found.stage is not None:
+        typer.echo(stage_sentence(found))
+    for text in not_identified(found):
+        typer.echo(f"not identified: {text}", err=True)

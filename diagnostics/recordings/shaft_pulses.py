@@ -1,13 +1,11 @@
 """Pulse times of the pinion of a recording: from its tacho, or from the mesh lines in a range of speed of any width.
 
 A range wider than one to two holds several candidates, since a comb of mesh harmonics also fits in part at twice, half
-or two thirds of the speed. It is searched in parts narrower than that; what is found, and what stands to it in such a
-ratio, is judged by the lines of the shaft itself (see `shaft_contrast`). Where the gear has no lines at the best, that
-may turn a whole number of times as fast as the gear's shaft: a speed at which both shafts show wins. Where no lines
-of the shaft show, or the gear's teeth are a multiple of the pinion's, so that its lines fall between, the fastest comb
-that holds practically all power in mesh lines is taken: slower ones hold it too, with empty lines between, faster ones
-lose lines. Where two speeds fit alike, or the best one lies outside the range, none is taken. Source: derived; the
-search is in `tacholess_angle`.
+or two thirds of the speed. It is searched in parts narrower than that; what is found is judged by the lines of the
+shafts themselves (see `surest_speed`). Where no lines of the shaft show, or the gear's teeth are a multiple of the
+pinion's, so that its lines fall between, the fastest comb that holds practically all power in mesh lines is taken:
+slower ones hold it too, with empty lines between, faster ones lose lines. Where two speeds fit alike, or the best one
+lies outside the range, none is taken. Source: derived; the search is in `tacholess_angle`.
 """
 
 from __future__ import annotations
@@ -17,10 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.recordings.comb_pulses import distinct_speeds, mean_speed, pulses_around
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.recordings.shaft_contrast import shaft_contrast
+from diagnostics.recordings.surest_speed import JUDGED_S, LINES_COMPARED, surest_speed
 from diagnostics.signal.order_spectrum import order_spectrum
-from diagnostics.signal.tacholess_angle import LEAST_CLARITY, MeshRidge, mesh_ridge, tacholess_pulses
+from diagnostics.signal.tacholess_angle import LEAST_CLARITY, MeshRidge, mesh_ridge
 from siggen.errors import UsageError
 
 PART_RATIO = 1.6
@@ -36,26 +35,8 @@ POWER_KEPT = 0.99
 """Share of the power in mesh lines that a faster comb must still hold; what lies between true lines is sidebands and
 noise, at -20 dB and below."""
 
-LINES_COMPARED = 10
-SAME_SPEED = 0.01
-
-RATIOS = (0.5, 2.0 / 3.0, 0.75, 1.0, 4.0 / 3.0, 1.5, 2.0)
-"""Speeds over the one that a part shows, at which mesh harmonics fall on each other."""
-
-LEAST_CONTRAST = 0.25
-"""Two and a half times what noise reaches: with less, the shaft itself cannot be seen, and mesh lines must do."""
-
-TIMES_THE_GEAR = range(1, 9)
-"""What passes for the pinion may turn so many times as fast as the gear's shaft, with a second stage for the mesh."""
-
-CLEAR_LEAD = 0.8
-"""Contrast, relative to the best one, from which another speed fits alike."""
-
 LEAST_MESH_SHARE = 0.5
 """Share of the power that mesh lines must hold where the shaft does not show."""
-
-JUDGED_S = 3.0
-"""Seconds on which candidates are compared."""
 
 FEWEST_REVOLUTIONS = 2
 SEARCHED_S = 12.0
@@ -112,16 +93,6 @@ def shaft_pulses(
     return found
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Candidate:
-    """A speed over time, its pulses in the seconds judged, and how far lines of pinion and gear stand out at it."""
-
-    speed_hz: np.ndarray
-    pulses_s: np.ndarray
-    contrast: float
-    gear_contrast: float
-
-
 def _from_mesh(
     recording: MeasuredRecording, teeth: tuple[int, int], speed_range_hz: tuple[float, float]
 ) -> ShaftPulses:
@@ -140,14 +111,14 @@ def _in_wide_parts(
     pinion, gear = teeth
     channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz), speed_range_hz)
     signal, fs_hz = recording.channels[channel], recording.fs_hz
-    chosen = _surest(recording, channel, teeth, speeds, speed_range_hz) if gear % pinion else None
+    chosen = surest_speed(recording, channel, teeth, speeds, speed_range_hz) if gear % pinion else None
     if chosen is None:
         doubled = [2.0 * speed for speed in speeds if 2.0 * np.median(speed) <= speed_range_hz[1]]
         judged = signal[: round(JUDGED_S * fs_hz)]
-        chosen = _by_power(judged, fs_hz, pinion, _distinct([*speeds, *doubled]))
+        chosen = _by_power(judged, fs_hz, pinion, distinct_speeds([*speeds, *doubled]))
         if gear % pinion:
             _check_mesh_rules(judged, fs_hz, pinion, chosen)
-    return ShaftPulses(_pulses_around(signal, fs_hz, pinion, chosen), channel)
+    return ShaftPulses(pulses_around(signal, fs_hz, pinion, chosen), channel)
 
 
 def _in_narrow_parts(
@@ -162,121 +133,40 @@ def _in_narrow_parts(
         return None
     try:
         channel, speeds = _candidates(recording, pinion, range_parts(speed_range_hz, NARROW_RATIO), speed_range_hz)
-        chosen = _surest(recording, channel, teeth, speeds, speed_range_hz)
+        chosen = surest_speed(recording, channel, teeth, speeds, speed_range_hz)
     except UsageError:
         return None
     if chosen is None:
         return None
-    return ShaftPulses(_pulses_around(recording.channels[channel], recording.fs_hz, pinion, chosen), channel)
-
-
-def _surest(
-    recording: MeasuredRecording,
-    channel: str,
-    teeth: tuple[int, int],
-    speeds: list[np.ndarray],
-    speed_range_hz: tuple[float, float],
-) -> np.ndarray | None:
-    """Return the speed over time whose shaft shows; None where none does.
-
-    Where the gear does not show at it, the comb may be the gear's own at a multiple: a speed at which both show wins.
-    """
-    signal, fs_hz = recording.channels[channel][: round(JUDGED_S * recording.fs_hz)], recording.fs_hz
-    highest_hz = min(LINES_COMPARED * teeth[0] * max(float(np.median(speed)) for speed in speeds), 0.45 * fs_hz)
-
-    def judged(speed: np.ndarray) -> _Candidate:
-        pulses = _pulses_around(signal, fs_hz, teeth[0], speed)
-        return _Candidate(speed, pulses, *_contrasts(recording, signal.size, pulses, teeth, highest_hz))
-
-    found = [judged(speed) for speed in _distinct([*speeds, *(ratio * one for one in speeds for ratio in RATIOS)])]
-    best = max(found, key=lambda one: one.contrast)
-    if best.contrast < LEAST_CONTRAST:
-        return None
-    if best.gear_contrast < LEAST_CONTRAST:
-        of_gear = (judged(best.speed_hz * teeth[1] / (teeth[0] * k)) for k in TIMES_THE_GEAR)
-        both = [one for one in of_gear if min(one.contrast, one.gear_contrast) >= LEAST_CONTRAST]
-        if both:
-            found = [max(both, key=lambda one: one.contrast + one.gear_contrast)]
-            best = found[0]
-    inside = [one for one in found if _within(one, speed_range_hz)]
-    if best not in inside:
-        raise UsageError(
-            f"the lines fit {_mean_speed(best.pulses_s):.4g} Hz of pinion speed best, outside of {speed_range_hz[0]:g} "
-            f"to {speed_range_hz[1]:g} Hz. Check range and teeth, or give a tacho."
-        )
-    rivals = [one for one in inside if one.contrast >= CLEAR_LEAD * best.contrast and one is not best]
-    if rivals:
-        listed = ", ".join(f"{_mean_speed(one.pulses_s):.4g}" for one in (best, *rivals))
-        raise UsageError(f"speeds of {listed} Hz fit alike. Give a narrower --speed-range, or a tacho.")
-    return best.speed_hz
-
-
-def _contrasts(
-    recording: MeasuredRecording, samples: int, pulses_s: np.ndarray, teeth: tuple[int, int], highest_hz: float
-) -> tuple[float, float]:
-    """Return how far lines of the pinion, and of the gear, stand out at these pulses of the pinion."""
-    turns = np.arange(0.0, pulses_s.size - 1, teeth[1] / teeth[0])
-    of_gear = np.interp(turns, np.arange(pulses_s.size), pulses_s)
-    signals = [signal[:samples] for signal in recording.channels.values()]
-    found = [
-        [shaft_contrast(signal, own_s, recording.fs_hz, count, highest_hz) for signal in signals]
-        for own_s, count in ((pulses_s, teeth[0]), (of_gear, teeth[1]))
-    ]
-    return float(np.mean(found[0])), float(np.mean(found[1]))
+    return ShaftPulses(pulses_around(recording.channels[channel], recording.fs_hz, pinion, chosen), channel)
 
 
 def _check_mesh_rules(signal: np.ndarray, fs_hz: float, teeth: int, speed_hz: np.ndarray) -> None:
     """Check that mesh lines hold most of the power; without lines of the shaft nothing else speaks for a comb."""
-    pulses = _pulses_around(signal, fs_hz, teeth, speed_hz)
+    pulses = pulses_around(signal, fs_hz, teeth, speed_hz)
     share = 0.5 * line_power(signal, fs_hz, teeth, pulses, 0.45 * fs_hz) / float(np.var(signal))
     if share < LEAST_MESH_SHARE:
         raise UsageError(
-            f"{_mean_speed(pulses):.4g} Hz would fit, but neither do lines of that shaft show nor is most power "
+            f"{mean_speed(pulses):.4g} Hz would fit, but neither do lines of that shaft show nor is most power "
             "in its mesh lines. Check teeth, give a narrower --speed-range, or a tacho."
         )
-
-
-def _distinct(speeds: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the speeds, those within one per cent of each other once."""
-    distinct: list[np.ndarray] = []
-    for speed in speeds:
-        if all(abs(np.median(speed) / np.median(known) - 1.0) > SAME_SPEED for known in distinct):
-            distinct.append(speed)
-    return distinct
-
-
-def _within(one: _Candidate, speed_range_hz: tuple[float, float]) -> bool:
-    low, high = speed_range_hz
-    return (1.0 - SAME_SPEED) * low <= _mean_speed(one.pulses_s) <= (1.0 + SAME_SPEED) * high
 
 
 def _by_power(signal: np.ndarray, fs_hz: float, teeth: int, speeds: list[np.ndarray]) -> np.ndarray:
     """Return the fastest speed over time whose mesh lines hold practically all of the power."""
     if len(speeds) == 1:
         return speeds[0]
-    pulses = [_pulses_around(signal, fs_hz, teeth, speed) for speed in speeds]
-    highest_hz = min(LINES_COMPARED * teeth * max(_mean_speed(own) for own in pulses), 0.45 * fs_hz)
+    pulses = [pulses_around(signal, fs_hz, teeth, speed) for speed in speeds]
+    highest_hz = min(LINES_COMPARED * teeth * max(mean_speed(own) for own in pulses), 0.45 * fs_hz)
     power = np.array([line_power(signal, fs_hz, teeth, own, highest_hz) for own in pulses])
     kept = np.flatnonzero(power >= POWER_KEPT * power.max())
-    return speeds[max(kept, key=lambda k: _mean_speed(pulses[k]))]
-
-
-def _mean_speed(pulses_s: np.ndarray) -> float:
-    return float((pulses_s.size - 1) / (pulses_s[-1] - pulses_s[0]))
-
-
-def _pulses_around(signal: np.ndarray, fs_hz: float, teeth: int, speeds_hz: np.ndarray) -> np.ndarray:
-    margin = 0.02 * float(speeds_hz.mean())
-    limits = (float(speeds_hz.min()) - margin, float(speeds_hz.max()) + margin)
-    # In so narrow a range the lines' own skirts are the median that clarity counts from; half and double are compared
-    # by the caller.
-    return tacholess_pulses(signal, fs_hz, teeth, limits, least_clarity=0.0, doubts=False)
+    return speeds[max(kept, key=lambda k: mean_speed(pulses[k]))]
 
 
 def line_power(signal: np.ndarray, fs_hz: float, teeth: int, pulses_s: np.ndarray, highest_hz: float) -> float:
     """Return the power in the mesh lines up to a frequency, in squared units of the signal."""
     spectrum = order_spectrum(signal, pulses_s, fs_hz, teeth)
-    count = max(1, int(highest_hz / (teeth * _mean_speed(pulses_s))))
+    count = max(1, int(highest_hz / (teeth * mean_speed(pulses_s))))
     lines = np.arange(1, count + 1) * teeth * spectrum.revolutions
     return float(np.sum(spectrum.amplitude_m_s2[lines[lines < spectrum.order.size]] ** 2))
 

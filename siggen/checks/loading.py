@@ -25,6 +25,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     """
     # compile nothing, but load the physics
     from siggen.checks.density_files import with_density_files
+    from siggen.checks.emptied_pairs import emptied_pairs
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.quantity_names import quantity_problems
     from siggen.specimen.measured_path import response_problems, with_measured_responses
@@ -37,7 +38,15 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
     filled, unread = with_measured_responses(with_densities, folder)
     parsed = parse(filled)
-    problems = [*parsed.problems, *physical_problems(parsed), *unread, *unusable, *response_problems(parsed.sections)]
+    written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
+    problems = [
+        *written,
+        *parsed.problems,
+        *physical_problems(parsed),
+        *unread,
+        *unusable,
+        *response_problems(parsed.sections),
+    ]
     if parsed.config is not None and not problems:
         problems = quantity_problems(parsed.config)
     if parsed.config is None or problems:

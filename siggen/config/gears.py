@@ -51,7 +51,7 @@ class Gears(Section):
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
         description="pairs of the set, each gearbox has one; sizes, masses, torques and damage of the whole file are "
-        "those of the pair above and are carried over to each; none: all gearboxes have the pair above",
+        "those of the pair above and are carried over to each; null: all gearboxes have the pair above",
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:

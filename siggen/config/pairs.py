@@ -97,7 +97,9 @@ def _gear_teeth(pinion: int, wanted: int, *, hunting: bool) -> int:
 
 
 def _listed(value: object) -> object:
-    """Turn ranges into the list they stand for; leave anything else to validation."""
+    """Turn ranges into the list they stand for, null into none; leave anything else to validation."""
+    if value is None:
+        return ()
     if not isinstance(value, Mapping):
         return value
     try:
@@ -108,6 +110,6 @@ def _listed(value: object) -> object:
 
 PAIRS = AllowedText(
     "a list of mappings with teeth, module_mm and face_width_mm, or one mapping with count, pinion_teeth, ratio, "
-    "module_mm and face_width_over_module"
+    "module_mm and face_width_over_module; null for none"
 )
-Pairs = Annotated[tuple[Pair, ...], BeforeValidator(_listed, json_schema_input_type=list[Pair] | DrawnPairs)]
+Pairs = Annotated[tuple[Pair, ...], BeforeValidator(_listed, json_schema_input_type=list[Pair] | DrawnPairs | None)]

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
+from siggen.config import yaml_text
 from siggen.errors import ConfigError
 
 SOUND = "{teeth: [18, 47], module_mm: 3, face_width_mm: 20}"
@@ -24,6 +27,20 @@ def test_a_pair_that_cannot_be_is_refused_by_name_and_the_others_are_not(pair: s
     (problem,) = refused.value.problems
     assert problem.path == ("fs_hz" if told == "fs_hz" else "gears.pairs.1")
     assert told in f"{problem.path}: {problem.received}"
+
+
+def test_an_empty_list_is_refused_where_someone_wrote_it_and_not_in_a_stored_configuration(tmp_path: Path) -> None:
+    own = tmp_path / "own.yaml"
+    own.write_text("extends: linear_pits\ngears:\n  pairs: []\n")
+    for source, overrides, where in ((own, [], "line 3"), ("linear_pits", ["gears.pairs=[]"], "--set gears.pairs")):
+        with pytest.raises(ConfigError, match="a list without a pair; allowed: one pair at least, or null") as refused:
+            load_config(source, overrides)
+        assert refused.value.problems[0].where == where
+    plain = load_config("linear_pits", ["gears.pairs=null"])
+    stored = tmp_path / "config.yaml"
+    stored.write_text(yaml_text(plain.canonical()))
+    assert "pairs: []" in stored.read_text()
+    assert load_config(stored).identity == load_config("linear_pits").identity
 
 
 def test_damage_that_may_be_on_either_gear_is_checked_on_both() -> None:

@@ -39,8 +39,8 @@ def distance_db(source: Path, held_out: list[Path]) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    # lines of a second stage lie at whole orders of the gear's shaft: they are not fitted, and hide what is
-    return hidden_recordings(tmp_path_factory.mktemp("hidden"), background={"second_stage": None})
+    # its second stage has 27 teeth on the gear's shaft
+    return hidden_recordings(tmp_path_factory.mktemp("hidden"))
 
 
 @pytest.fixture(scope="module")
@@ -63,8 +63,9 @@ def test_the_calibrated_set_lies_nearer_to_held_out_recordings_than_the_rig(
 ) -> None:
     rig, mine, _ = calibrated
     before, after = distance_db(rig, recordings[3:]), distance_db(mine, recordings[3:])
-    # of this machine 9 and 8 dB before, 4.6 and 4.4 dB after; what the simulated source adds keeps it from 0
-    assert (after < 0.75 * before).all(), (before, after)
+    # of this machine 8.8 and 8.3 dB before, 4.7 and 4.4 dB after (7.2 and 6.4 dB without the lines of its second
+    # stage); what the simulated source adds keeps it from 0
+    assert (after < 0.7 * before).all(), (before, after)
 
 
 def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path, Path, str]) -> None:
@@ -74,6 +75,10 @@ def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path
     lines = facts["channels"]["sensor_1_vertical"]["line_level_db"]
     assert all(low <= value <= high for value, low, high in lines.values() if low is not None)
     assert "mesh 1" in lines
+    assert facts["second_stage"] == {"shaft": "gear", "teeth": 27, "order": pytest.approx(27 * 18 / 47)}
+    stage = facts["channels"]["sensor_1_vertical"]["second_stage_level_db"]
+    assert all(low <= value <= high for value, low, high in stage.values())
+    assert "27 teeth on the gear's shaft" in said
     assert any("path and source" in text for text in facts["not_identified"])
     assert "path and source" in said
     assert "background: null" in mine.read_text()
