@@ -67,8 +67,7 @@ def picked(picks: tuple[tuple[str, int], ...]) -> str:
     """Return what was chosen for how many groups of gearboxes, the most frequent first; nothing without a choice."""
     groups = sum(count for _, count in picks)
     said = [
-        f"{name} for {count}{f' of {groups} groups of gearboxes' if not place else ''}"
-        for place, (name, count) in enumerate(picks)
+        f"{name} for {count}{f' of {groups} groups' if not place else ''}" for place, (name, count) in enumerate(picks)
     ]
     return joined(said) if said else ""
 
