@@ -79,8 +79,8 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     if size.reached:
         return f"{capitalised(name)} is found in nine of ten records from {_area_limits(size)}."
     return (
-        f"{capitalised(name)}: nine of ten records are found at no size of the set. At the largest, "
-        f"{_area(size.largest_mm2)} ({largest}), it is {_share(states[largest])}."
+        f"{capitalised(name)}: nine of ten records are found at no size of the set. Of the largest ({largest}, up to "
+        f"{_area(size.largest_mm2)}) it is {_share(states[largest])}."
     )
 
 

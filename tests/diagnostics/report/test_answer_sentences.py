@@ -44,8 +44,8 @@ def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_o
     )
     never = said(**{CLASSIFIER: detector(0.8, math.inf)})["From which size"]
     assert never == (
-        "Pitting: nine of ten records are found at no size of the set. At the largest, 8 mm² (severe), it is 40 % of "
-        f"records (30 % to 50 %). {FOUND_MEANS}"
+        "Pitting: nine of ten records are found at no size of the set. Of the largest (severe, up to 8 mm²) it is 40 % "
+        f"of records (30 % to 50 %). {FOUND_MEANS}"
     )
 
 
