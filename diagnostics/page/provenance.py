@@ -7,6 +7,9 @@ from importlib.metadata import version
 from diagnostics.page.wording import counted
 from siggen.dataset.reading import Dataset
 
+INJECTED = "injected.json"
+"""File of a set that holds recordings, and the same with damage added."""
+
 
 def provenance(dataset: Dataset, seed: int) -> str:
     """Return what a reader needs to cite the page and to make it again: program, set, identity, seed."""
@@ -17,6 +20,16 @@ def provenance(dataset: Dataset, seed: int) -> str:
         f"{counted(len(dataset.channels), 'channel')} at {dataset.fs_hz:g}\N{NO-BREAK SPACE}Hz. The identity names the "
         "configuration. The same configuration gives the same records."
     )
+
+
+def origin_sentence(dataset: Dataset) -> str:
+    """Return what the records are, so that nobody takes a simulation for a measurement."""
+    labels = dataset.labels(columns=["specimen_id"])
+    gearboxes = len(set(labels.column("specimen_id").to_pylist()))
+    records = f"{counted(labels.num_rows, 'vibration record')} of {counted(gearboxes, 'gearbox')}"
+    if INJECTED in dataset.manifest.get("files", ()):
+        return f"{records}: healthy recordings, and the same with the vibration of simulated damage added."
+    return f"{records}, all simulated. No real machine was measured."
 
 
 def without_path(error: Exception, dataset: Dataset) -> str:

@@ -12,22 +12,25 @@ import numpy as np
 from diagnostics.page.style import WIDTH_IN, styled
 from diagnostics.records.damage_kind import kind_name
 from diagnostics.statistics.detector import Detector, FoundSize
-from diagnostics.training.detectors import BOOSTED, CLASSIFIER, INDICATOR, NETWORKS, Detectors
+from diagnostics.training.detectors import BOOSTED, CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LOOKS = {
+    CHOSEN: ("chosen", "#111820", "o"),
     INDICATOR: ("indicator", "#1f6f8b", "s"),
-    CLASSIFIER: ("logistic", "#b01e3c", "o"),
-    BOOSTED: ("boosting", "#6a1b6e", "D"),
+    CLASSIFIER: ("logistic", "#b01e3c", "v"),
+    BOOSTED: ("boosting", "#8e44ad", "D"),
     NETWORKS: ("network", "#e3a21a", "^"),
 }
-"""Name in the legend, colour and marker of each family."""
+"""Name in the legend, colour and marker of each family; the answer itself in black."""
 
 DASHES = ("-", "--", ":", "-.")
-SIDEWAYS = (0.92, 0.973, 1.027, 1.08)
-"""Families stand beside each other at one size, so that their limits can be read."""
+"""By kind of damage."""
+
+SIDEWAYS = (1.0, 0.92, 0.96, 1.04, 1.08)
+"""Families stand beside each other at one size, so that all can be seen."""
 
 MOST_NAMES = 4
 LEAST_RATIO = 1.7
@@ -44,8 +47,8 @@ def answer_figure(found: Detectors) -> Figure | None:
         return None
     with styled():
         kinds = list(dict.fromkeys(s.kind for _, side in panels for one in side.values() for s in one.states.values()))
-        figure = Figure(figsize=(WIDTH_IN, 3.5 + 0.35 * (len(kinds) - 1)), layout="constrained")
-        heights = {"height_ratios": [3.4, 0.5 + 0.5 * len(kinds)]}
+        figure = Figure(figsize=(WIDTH_IN, 3.3 + 0.4 * (len(kinds) - 1)), layout="constrained")
+        heights = {"height_ratios": [3.4, 0.6 + 0.65 * len(kinds)]}
         axes = figure.subplots(2, len(panels), squeeze=False, sharex=True, sharey="row", gridspec_kw=heights)
         for column, (title, detectors) in enumerate(panels):
             _draw_areas(axes[0, column], detectors, kinds)
@@ -55,24 +58,38 @@ def answer_figure(found: Detectors) -> Figure | None:
         _scale(axes[1, 0], [detector for _, detectors in panels for detector in detectors.values()])
         axes[0, 0].set_ylabel("AUC against\nhealthy [-]")
         figure.supxlabel("Damaged area [mm²]", fontsize=10)
-        figure.legend(*_legend(panels[0][1]), loc="outside upper center", ncols=4, fontsize=9, handletextpad=0.3)
+        _show_dashes(axes[1, 0], kinds, 0.15 * len(panels))
+        shown = [family for family in LOOKS if any(family in detectors for _, detectors in panels)]
+        figure.legend(
+            *_legend(shown), loc="outside upper left", ncols=5, fontsize=9, handletextpad=0.3, columnspacing=1.2
+        )
     return figure
 
 
 def _draw_areas(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
-    axis.axhline(0.5, color="#8a97a3", linestyle="--", linewidth=0.9)
+    axis.axhline(0.5, color="#8a97a3", linewidth=0.9)
     for family, detector in detectors.items():
         place = list(LOOKS).index(family)
         _, colour, marker = LOOKS[family]
+        answer = family == CHOSEN
         for number, kind in enumerate(kinds):
             shown = sorted(
                 (s for s in detector.states.values() if s.kind == kind and math.isfinite(s.auc.value)),
                 key=lambda state: state.area_mm2,
             )
             size = SIDEWAYS[place] * np.array([state.area_mm2 for state in shown])
-            dashes = DASHES[number % len(DASHES)]
-            axis.plot(size, [state.auc.value for state in shown], dashes, color=colour, marker=marker, markersize=5)
-            axis.vlines(size, *_limits(shown), color=colour, linewidth=1.4, alpha=0.6)
+            axis.plot(
+                size,
+                [state.auc.value for state in shown],
+                DASHES[number % len(DASHES)],
+                color=colour,
+                marker=marker,
+                markersize=5.5 if answer else 3.5,
+                linewidth=1.8 if answer else 0.8,
+                zorder=3 if answer else 2,
+            )
+            if answer:
+                axis.vlines(size, *_limits(shown), color=colour, linewidth=1.2, zorder=3)
     axis.set_ylim(0.0, 1.04)
     axis.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "", "0.5", "", "1"])
 
@@ -92,17 +109,16 @@ def _limits(states: Sequence[Any]) -> tuple[list[float], list[float]]:
 
 
 def _draw_sizes(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
-    """Draw from which size on nine of ten are found: a line to the largest, limits as a bar, a cross where none is.
-
-    Every kind of damage has a row of its own for every family, with the dashes that it has above.
-    """
-    families = [family for family in LOOKS if family in detectors]
+    """Draw from which size on nine of ten are found; every kind of damage has a row of its own for every family."""
+    families = [family for family in LOOKS if family in detectors and detectors[family].sizes]
     for group, kind in enumerate(kinds):
         for place, family in enumerate(families):
             if kind in detectors[family].sizes:
                 row = group + 0.8 * ((place + 0.5) / len(families) - 0.5)
-                _draw_size(axis, detectors[family].sizes[kind], row, LOOKS[family][1], DASHES[group % len(DASHES)])
-    axis.set_ylim(len(kinds) - 0.4, -0.6)
+                _draw_size(axis, detectors[family].sizes[kind], row, family)
+        if not any(kind in detectors[family].sizes for family in families):
+            axis.text(0.03, group, "too few sizes", transform=axis.get_yaxis_transform(), va="center", fontsize=8)
+    axis.set_ylim(len(kinds) - 0.5, -0.5)
     if len(kinds) == 1:
         axis.set_yticks([0.0], ["nine of\nten found"])
     else:
@@ -113,15 +129,18 @@ def _draw_sizes(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str])
     axis.grid(visible=False, axis="y")
 
 
-def _draw_size(axis: Any, size: FoundSize, row: float, colour: str, dashes: str) -> None:
-    found = size.area_mm2
+def _draw_size(axis: Any, size: FoundSize, row: float, family: str) -> None:
+    """Draw a point with limits, and broadly what lies above it; a cross at the largest where it is not found."""
+    _, colour, marker = LOOKS[family]
+    answer = family == CHOSEN
     if not size.reached:
-        axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=1.8)
+        axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=2.2 if answer else 1.4)
         return
-    axis.plot([found.value, size.largest_mm2], [row, row], dashes, color=colour, linewidth=2.5)
-    axis.plot(found.value, row, marker="|", color=colour, markersize=8, markeredgewidth=2.2)
+    found = size.area_mm2
+    axis.plot([found.value, size.largest_mm2], [row, row], color=colour, linewidth=4.5, alpha=0.35)
     high = found.high if math.isfinite(found.high) else size.largest_mm2
-    axis.plot([found.low, high], [row, row], color="#1c2733", linewidth=0.9)
+    axis.plot([found.low, high], [row, row], color=colour, linewidth=1.1)
+    axis.plot(found.value, row, marker=marker, color=colour, markersize=5.5 if answer else 4)
 
 
 def _scale(axis: Any, detectors: Sequence[Detector]) -> None:
@@ -140,9 +159,22 @@ def _scale(axis: Any, detectors: Sequence[Detector]) -> None:
     axis.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _legend(detectors: dict[str, Detector]) -> tuple[list[Any], list[str]]:
+def _show_dashes(axis: Any, kinds: Sequence[str], length: float) -> None:
+    """Underline the name of every kind of damage with the dashes that its line has in the figure above."""
+    from matplotlib.transforms import blended_transform_factory
+
+    if len(kinds) == 1:
+        return
+    place = blended_transform_factory(axis.transAxes, axis.transData)
+    for group in range(len(kinds)):
+        dashes = DASHES[group % len(DASHES)]
+        ends, height = [-0.03 - length, -0.03], [group + 0.42] * 2
+        axis.plot(ends, height, dashes, color="#111820", linewidth=1.6, transform=place, clip_on=False)
+
+
+def _legend(families: Sequence[str]) -> tuple[list[Any], list[str]]:
     from matplotlib.lines import Line2D
 
-    shown = [LOOKS[family] for family in LOOKS if family in detectors]
-    lines = [Line2D([], [], color=colour, marker=marker, markersize=6) for _, colour, marker in shown]
-    return lines, [name for name, _, _ in shown]
+    looks = [LOOKS[family] for family in families]
+    lines = [Line2D([], [], color=colour, marker=marker, markersize=5) for _, colour, marker in looks]
+    return lines, [name for name, _, _ in looks]

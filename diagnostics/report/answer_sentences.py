@@ -1,4 +1,4 @@
-"""The answer of a report in three sentences: which damage from which size on, by what, and how sure that is."""
+"""The answer of a report in a few sentences: which damage from which size on, by what, and how sure that is."""
 
 from __future__ import annotations
 
@@ -16,10 +16,12 @@ ERROR_FREE = (
     "The gears have no manufacturing errors, so any damage above the noise is trivial to separate: this says nothing "
     "about a real machine."
 )
+FOUND_MEANS = f"Found: the record gives an alarm, as 5{SPACE}% of healthy records do."
+ON_ALL = " on all indicators"
 
 
 def answer_sentences(found: Detectors, *, error_free: bool = False) -> list[tuple[str, str]]:
-    """Return three answers, each with its question in two or three words.
+    """Return the answers, each with its question in a few words.
 
     Parameters
     ----------
@@ -36,23 +38,24 @@ def answer_sentences(found: Detectors, *, error_free: bool = False) -> list[tupl
                 f"{FEWEST_SPECIMENS} gearboxes or more.",
             )
         ]
-    sure = [*([ERROR_FREE] if error_free else []), certainty_sentence(best), reference_sentence(found)]
     return [
         ("From which size", size_sentence(best)),
         ("By what", detector_sentence(found, best)),
-        ("How sure", " ".join(sure)),
+        ("With a healthy record of the same gearbox", reference_sentence(found)),
+        ("How sure", " ".join([*([ERROR_FREE] if error_free else []), certainty_sentence(best)])),
     ]
 
 
 def size_sentence(best: Detector) -> str:
-    """Say of every kind of damage from which area on nine of ten records give an alarm, or how many do."""
+    """Say of every kind of damage from which area on nine of ten records are found, or how many of its largest are."""
     if not best.sizes:
         return (
             f"No size can be named: {counted(best.healthy, 'healthy record')} set no threshold with 5{SPACE}% false "
             f"alarms. {_easiest(best)}"
         )
     kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
-    return " ".join(_kind_sentence(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in kinds)
+    said = [_kind_sentence(best, kind, best.sizes.get(kind), kind_name(kind, kinds)) for kind in kinds]
+    return " ".join([*said, FOUND_MEANS])
 
 
 def _easiest(best: Detector) -> str:
@@ -67,7 +70,7 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     largest = max(states, key=lambda state: states[state].area_mm2)
     if size is None:
         found = states[largest]
-        return f"{capitalised(name)} of {_area(found.area_mm2)} gives an alarm in {_share(found)}."
+        return f"{capitalised(name)} of {_area(found.area_mm2)} is found in {_share(found)}."
     if size.is_bound:
         return (
             f"{capitalised(name)} is found in nine of ten records from {_area(size.smallest_mm2)} on, the smallest of "
@@ -76,14 +79,14 @@ def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str)
     if size.reached:
         return f"{capitalised(name)} is found in nine of ten records from {_area_limits(size)}."
     return (
-        f"{capitalised(name)} of up to {_area(size.largest_mm2)} is found in fewer than nine of ten records "
-        f"({largest}: {_share(states[largest])})."
+        f"{capitalised(name)}: nine of ten records are found at no size of the set. Of the largest ({largest}, up to "
+        f"{_area(size.largest_mm2)}) it is {_share(states[largest])}."
     )
 
 
 def _area_limits(size: FoundSize) -> str:
     """Return the area from which on damage is found, with its limits."""
-    high = _area(size.area_mm2.high) if math.isfinite(size.area_mm2.high) else "beyond the largest"
+    high = _area(size.area_mm2.high) if math.isfinite(size.area_mm2.high) else "beyond the largest of the set"
     return f"{_area(size.area_mm2.value)} on ({_area(size.area_mm2.low)} to {high})"
 
 
@@ -94,30 +97,33 @@ def _area(area_mm2: float) -> str:
 def _share(state: StateFound) -> str:
     if state.share is None:
         return "an unknown share"
-    return f"{percent(state.share.value)} of records, {percent_limits(state.share)}"
+    return f"{percent(state.share.value)} of records ({percent_limits(state.share)})"
 
 
 def detector_sentence(found: Detectors, best: Detector) -> str:
-    """Name the strongest detector and the others beside it, with their AUC."""
-    area = f"AUC {decimal(best.every.value)} ({limits(best.every)})"
-    gearboxes = f"all {counted(best.specimens, 'gearbox')}"
-    first = f"All damage together, the strongest on {gearboxes} is the {_title(best)}: {area}."
-    if best.picks:
-        first = (
-            f"All damage together, the strongest is {picked(best.picks)}, each chosen on the other groups: "
-            f"{area} on {gearboxes}."
-        )
-    others = []
-    for family in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS):
-        detector = found.alone.get(family)
-        if detector is None or detector is best:
-            continue
-        where = f" on {counted(detector.specimens, 'test gearbox')}" if family == NETWORKS else ""
-        value = f"{decimal(detector.every.value)} ({limits(detector.every)})"
-        others.append(f"The {_title(detector)} has {value}{where}.")
+    """Say what was chosen without a look at what it judges, and what each detector reaches by itself."""
+    taken = picked(best.picks) if best.picks else f"always the {_title(best)}"
+    first = (
+        "Each group of gearboxes is judged by the detector that is best on the others (nested cross-validation): "
+        f"{taken}. AUC {decimal(best.every.value)} ({limits(best.every)}) for all damage together; 0.5 is chance."
+    )
+    others = [
+        _other(family, detector)
+        for family in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS)
+        if (detector := found.alone.get(family)) is not None and detector is not best
+    ]
+    said = [f"Each alone: {', '.join(others)}."] if others else []
+    rivals = [found.alone[name].every.value for name in (BOOSTED, CLASSIFIER, INDICATOR) if name in found.alone]
+    if max(rivals, default=0.0) > best.every.value:
+        said.append("To pick the largest of these would use the answer.")
     if NETWORKS not in found.alone:
-        others.append("No network was trained.")
-    return " ".join([first, *others])
+        said.append("No network was trained.")
+    return " ".join([first, *said])
+
+
+def _other(family: str, detector: Detector) -> str:
+    where = f" on {counted(detector.specimens, 'test gearbox')} alone" if family == NETWORKS else ""
+    return f"{_title(detector).removesuffix(ON_ALL)} {decimal(detector.every.value)} ({limits(detector.every)}){where}"
 
 
 def _title(detector: Detector) -> str:
@@ -130,7 +136,7 @@ def certainty_sentence(best: Detector) -> str:
     """Say on what the numbers rest."""
     return (
         f"Judged on {counted(best.records, 'record')} of {counted(best.specimens, 'gearbox')}, each unseen by what "
-        f"judges it, at 5{SPACE}% false alarms. In brackets: 95{SPACE}% limits over gearboxes."
+        f"judges it. In brackets: 95{SPACE}% limits over gearboxes."
     )
 
 
@@ -138,16 +144,11 @@ def reference_sentence(found: Detectors) -> str:
     """Say what a healthy record of the same gearbox is worth, or why that is not known."""
     beside = found.strongest_referenced
     if beside is None:
-        return (
-            "What a healthy record of the same gearbox is worth is not known: the set has one per gearbox (`repeats: "
-            "2` gives more)."
-        )
+        return "Not known: the set has one healthy record per gearbox (`repeats: 2` gives more)."
     kinds = list(dict.fromkeys(state.kind for state in beside.states.values()))
     reached = [
         f"{kind_name(kind, kinds)} from {_area_limits(size)}" for kind, size in beside.sizes.items() if size.reached
     ]
     sizes = f" Nine of ten records are then found of {joined(reached)}." if reached else ""
-    return (
-        f"Beside a healthy record of the same gearbox: AUC {decimal(beside.every.value)} ({limits(beside.every)}) by "
-        f"{picked(beside.picks) or f'the {beside.title}'}.{sizes}"
-    )
+    by = picked(beside.picks) or f"the {beside.title}"
+    return f"AUC {decimal(beside.every.value)} ({limits(beside.every)}) by {by}.{sizes}"

@@ -15,7 +15,7 @@ from diagnostics.training.detectors import Detectors
 CAPTION = (
     "Detectors that give one alarm for all damage. Indicator and classifiers are judged on all gearboxes, each fold by "
     "what was chosen or trained on the others; the network on the test gearboxes. Where folds differ in which of them "
-    "is the strongest, a row of its own has the choice that the other gearboxes make. Alarms: share of the records of "
+    "is best, a row of its own has the choice that the other gearboxes make. Alarms: share of the records of "
     "a state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
     "give an alarm. Limits of 95 % come from resampled gearboxes."
 )
@@ -67,8 +67,7 @@ def picked(picks: tuple[tuple[str, int], ...]) -> str:
     """Return what was chosen for how many groups of gearboxes, the most frequent first; nothing without a choice."""
     groups = sum(count for _, count in picks)
     said = [
-        f"{name} for {count}{f' of {groups} groups of gearboxes' if not place else ''}"
-        for place, (name, count) in enumerate(picks)
+        f"{name} for {count}{f' of {groups} groups' if not place else ''}" for place, (name, count) in enumerate(picks)
     ]
     return joined(said) if said else ""
 

@@ -40,7 +40,7 @@ from diagnostics.training.training import Training
 FEWEST_SPECIMENS = 4
 INDICATOR, CLASSIFIER = "best single indicator", "logistic regression on all indicators"
 BOOSTED, NETWORKS, CHOSEN = "gradient boosting on all indicators", "network", "chosen"
-CHOICE = "strongest by the other gearboxes"
+CHOICE = "chosen by the other gearboxes"
 SMALLEST = 1e-12
 """Probability below which odds are cut off."""
 

@@ -34,6 +34,13 @@ from tests.diagnostics.conftest import memory_dataset  # noqa: E402
 
 GEARBOXES, DURATION_S, TIMES = 33, 3.0, 10
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+SEEN: tuple[tuple[str, tuple[int, int], tuple[str, ...]], ...] = (
+    ("1280 x 800", (1280, 800), ()),
+    ("500 x 844", (500, 844), ()),
+    ("dark", (1280, 800), ("--blink-settings=preferredColorScheme=0",)),
+)
+"""How pages are looked at: name, window, flags of the browser."""
+
 WATCH = """<script>window.found={errors:[]};
 addEventListener("error",(e)=>found.errors.push(String(e.message)));
 addEventListener("unhandledrejection",(e)=>found.errors.push(String(e.reason)));
@@ -138,14 +145,14 @@ def check_pages(pages: Sequence[str]) -> None:
     axe, program = axe_source(), browser()
     if not axe:
         raise SystemExit("axe-core is not installed: pip install axe-core-python")
-    print("| page | width | errors on the console | beyond the screen | findings of axe-core |")
+    print("| page | seen | errors on the console | beyond the screen | findings of axe-core |")
     print("|---|---|---|---|---|")
     for name in pages:
         text = instrumented(Path(name).read_text(encoding="utf-8"), axe, ASK)
-        for size in ((1280, 800), (500, 844)):
-            found = measured(program, text, size)
+        for seen, size, flags in SEEN:
+            found = measured(program, text, size, flags)
             said = json.dumps(found["axe"]) if found["axe"] else "none"
-            print(f"| {Path(name).name} | {size[0]} | {found['errors'] or 'none'} | {found['wide']} px | {said} |")
+            print(f"| {Path(name).name} | {seen} | {found['errors'] or 'none'} | {found['wide']} px | {said} |")
 
 
 def main() -> None:
@@ -164,15 +171,10 @@ def main() -> None:
     print(f"| another record | {median([statistics.median(run['open']) for run in runs])} |")
     print(f"| errors and warnings on the console | {sum(len(run['errors']) for run in runs)} |")
     axe = axe_source()
-    dark = ("--blink-settings=preferredColorScheme=0",)
-    for name, size, flags in (
-        ("1280 x 800", (1280, 800), ()),
-        ("500 x 844", (500, 844), ()),
-        ("dark", (1280, 800), dark),
-    ):
+    for seen, size, flags in SEEN:
         found = measured(program, instrumented(text, axe), size, flags).get("axe") if axe else None
         said = "not checked: axe-core is not installed" if found is None else json.dumps(found) if found else "none"
-        print(f"| findings of axe-core, {name} | {said} |")
+        print(f"| findings of axe-core, {seen} | {said} |")
 
 
 if __name__ == "__main__":

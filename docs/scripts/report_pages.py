@@ -13,6 +13,7 @@ import argparse
 import getpass
 import os
 import re
+import resource
 import shlex
 import shutil
 import socket
@@ -66,11 +67,15 @@ Printed by `python docs/scripts/report_pages.py` from the [pages](README.md): th
 
 
 def run(command: str) -> None:
-    """Print a command and run it with the programs of this Python."""
+    """Print a command, run it with the programs of this Python, and print what it cost."""
     print(f"$ {command}", flush=True)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     program, *arguments = shlex.split(command)
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     subprocess.run([program, *arguments], check=True, env={**os.environ, "PATH": path})
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
+    print(f"{cpu_s:.0f} s of CPU time", flush=True)
 
 
 def places(page: str) -> list[str]:

@@ -21,9 +21,11 @@ def working(what: str, *, compiles: bool = True) -> Iterator[None]:
     """
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.table import Column
 
     console = Console(stderr=True)
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    text = TextColumn("{task.description}", table_column=Column(no_wrap=False))  # whole on a narrow terminal too
+    columns = (SpinnerColumn(), text, TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as line:
         line.add_task(f"{what} ({FIRST_TIME})" if compiles else what, total=None)
         yield

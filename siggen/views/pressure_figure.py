@@ -60,8 +60,8 @@ def pressure_figure(pressure: FacePressure, positions: Sequence[int]) -> Figure:
     _draw_course(course, pressure, positions)
     figure.suptitle(
         f"{view.state}: {view.gear} tooth {view.tooth} at {pressure.point.torque_nm:.3g} N m, "
-        f"{pressure.point.speed_hz:.3g} Hz; {largest_text(pressure)}",
-        fontsize=11,
+        f"{pressure.point.speed_hz:.3g} Hz\n{largest_text(pressure)}",
+        fontsize=10,
     )
     return figure
 
@@ -107,7 +107,7 @@ def _draw_flank(figure: Figure, axis: Axes, pressure: FacePressure, positions: S
     image = axis.pcolormesh(
         pressure.face_mm, pressure.arc_mm, loaded, norm=norm, cmap="magma_r", shading="nearest", rasterized=True
     )
-    figure.colorbar(image, ax=axis, label="largest pressure [MPa]", location="left", shrink=0.9)
+    figure.colorbar(image, ax=axis, label="largest pressure [MPa]", location="top", aspect=45, shrink=0.9)
     for corners in view.outlines_mm:
         axis.add_patch(Polygon(corners, closed=True, fc="none", ec="C5", lw=1.4))
     axis.axhline(view.pitch_mm, color="tab:cyan", lw=1.0, ls="-.")
@@ -116,8 +116,9 @@ def _draw_flank(figure: Figure, axis: Axes, pressure: FacePressure, positions: S
         axis.axhline(float(pressure.arc_mm[at]), color=colour, lw=1.0, ls="--")
     axis.set_xlim(0.0, view.face_width_mm)
     axis.set_ylim(float(pressure.arc_mm.min()), float(pressure.arc_mm.max()))
+    axis.set_xlabel("across the face [mm]")
     axis.set_ylabel("arc above the base circle [mm]")
-    axis.set_title("pressure while the tooth goes through mesh; green: damage", fontsize=10)
+    axis.set_title("pressure while the tooth goes through mesh; white: no load; green: damage", fontsize=10)
 
 
 def _draw_along(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -> None:
@@ -131,7 +132,9 @@ def _draw_along(axis: Axes, pressure: FacePressure, positions: Sequence[int]) ->
     for colour, at in zip(COLOURS, positions, strict=False):
         axis.axhline(float(pressure.arc_mm[at]), color=colour, lw=1.0, ls="--")
     axis.set_xlim(left=0.0)
-    axis.set_xlabel("largest across the face [MPa]")
+    axis.set_xlabel("largest pressure across the face [MPa]")
+    axis.set_ylabel("arc above the base circle [mm]")
+    axis.locator_params(axis="x", nbins=5)
     axis.legend(fontsize=8, loc="best")
 
 
@@ -143,7 +146,7 @@ def _draw_across(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -
     axis.set_ylim(bottom=0.0)
     axis.set_xlabel("across the face [mm]")
     axis.set_ylabel("load per length [N/mm]")
-    axis.legend(fontsize=8, loc="best")
+    axis.legend(fontsize=8, title_fontsize=8, title="pinion angle since first contact, force of the pair")
 
 
 def _draw_course(axis: Axes, pressure: FacePressure, positions: Sequence[int]) -> None:

@@ -46,7 +46,7 @@ def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> 
         axes = parts[1].subplots(1, len(harmonics), squeeze=False)[0]
         for harmonic, ax in zip(harmonics, axes, strict=True):
             _draw_harmonic(ax, frequency_hz, amplitude, record, harmonic)
-        axes[0].set_ylabel(f"amplitude [{channel.unit}]")
+        axes[0].set_ylabel(f"amplitude [{channel.unit.replace('^2', '²')}]")
         parts[1].legend(*axes[0].get_legend_handles_labels(), frameon=False, loc="outside lower center", ncols=3)
     return figure
 

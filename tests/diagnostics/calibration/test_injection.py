@@ -22,6 +22,7 @@ from diagnostics.calibration.injection import (
     injected,
     simulated_differences,
 )
+from diagnostics.page.provenance import origin_sentence
 from siggen.sets.verification import verify
 
 SPEED_HZ, FS_HZ = 34.0, 25_600.0
@@ -131,6 +132,7 @@ def test_every_row_says_what_it_was_made_of_and_a_recording_is_on_one_side(
         np.testing.assert_allclose(recorded["accel_lid_vertical_m_s2"], own["lid_vertical"][:15_360], rtol=1e-6)
     assert json.loads((tmp_path / "set" / "injected.json").read_text())["recordings"] == ["run", "other"]
     assert verify(tmp_path / "set", sample=1).mismatches == ()
+    assert "healthy recordings, and the same with the vibration of simulated damage" in origin_sentence(found)
 
 
 @pytest.mark.parametrize("recordings", range(1, 12))

@@ -38,13 +38,16 @@ def folder(dataset: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_answer_stands_first_and_says_that_error_free_gears_separate_trivially(folder: Path) -> None:
     text = (folder / "report.html").read_text()
-    opening = re.search(r'</h1>\s*<section class="answer".*?</section>', text, re.DOTALL)
+    opening = re.search(
+        r'</h1>\s*<p>[^<]*all simulated[^<]*</p>\s*<section class="answer".*?</section>', text, re.DOTALL
+    )
     assert opening is not None
-    said = [re.sub(r"<[^>]*>", "", part) for part in re.findall(r"<p>(.*?)</p>", opening.group())]
-    assert [part.split(".")[0] for part in said] == ["From which size", "By what", "How sure"]
+    said = [re.sub(r"<[^>]*>", "", part) for part in re.findall(r"<p>(<b>.*?)</p>", opening.group())]
+    questions = ["From which size", "By what", "With a healthy record of the same gearbox", "How sure"]
+    assert [part.split(".")[0] for part in said] == questions
     assert "Pitting is found in nine of ten records from 1\xa0mm² on, the smallest of the set" in said[0]
-    assert "no manufacturing errors, so any damage above the noise is trivial to separate" in said[2]
-    assert "says nothing about a real machine" in said[2]
+    assert "no manufacturing errors, so any damage above the noise is trivial to separate" in said[3]
+    assert "says nothing about a real machine" in said[3]
     limits = text.split('id="what-limits-the-answer"')[1].split("<h2")[0]
     assert "They do not show that such damage could be found on a real machine" in limits
     assert "The audit was not run" in limits
@@ -111,7 +114,7 @@ def feature_columns(folder: Path) -> list[str]:
 def test_an_indicator_has_a_human_name_and_its_definition_on_hover(folder: Path) -> None:
     text = (folder / "report.html").read_text().replace("<wbr>", "")
     (table,) = (part for part in text.split("<table")[1:] if ">Feature<" in part)
-    assert '<a href="#term-rms">RMS</a> <small>bearing_vertical, rms</small>' in table
+    assert '<a href="#term-rms">RMS</a> <small>bearing, vertical; rms</small>' in table
     assert 'id="term-rms" data-hint="sqrt(mean x²); from record"' in text  # a script gives it to the links
 
 
