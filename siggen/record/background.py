@@ -13,7 +13,7 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, ForeignMesh, ShaftLines, constant, draw
+from siggen.config import Background, Config, Floor, ForeignMesh, ShaftLines, constant, draw
 from siggen.dynamics.drive.comb import Comb, turns_of
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
@@ -40,15 +40,12 @@ def record_background(
     if background is None or config.background is None:
         return None
     course = record_course(config, specimen, record, instrument.length)
-    section = _with_levels(config.background, background.section, course)
+    section = with_levels(config.background, background.section, course)
     forces, labels = _forces(section, course, background)
     floor: dict[str, ComplexArray] = {}
     if section.floor is not None:
         floor = floor_spectra(section.floor, course)
-        labels["floor_force_n_per_sqrt_hz"] = constant(section.floor.density_n_per_sqrt_hz)
-        labels["machine_force_n_per_sqrt_hz"] = constant(section.floor.machines_n_per_sqrt_hz)
-        if config.background.floor is not None and config.background.floor.level_std != 0.0:
-            labels["floor_level_std"] = constant(section.floor.level_std)
+        labels |= floor_labels(config.background.floor, section.floor)
     return RecordBackground(_seen(background, forces, floor), labels)
 
 
@@ -67,12 +64,22 @@ def _seen(
     return totals
 
 
-def _with_levels(section: Background, drawn: Background, course: Course) -> Background:
+def with_levels(section: Background, drawn: Background, course: Course) -> Background:
     """Return what was drawn for the gearbox, its noise drawn anew if levels belong to the record."""
     if section.redraw == "gearbox":
         return drawn
     levels = draw(section, course.level, "background")
     return drawn.model_copy(update={"rubbing": levels.rubbing, "floor": levels.floor})
+
+
+def floor_labels(asked: Floor | None, floor: Floor) -> dict[str, object]:
+    """Return the labels of a drawn floor; one that was `asked` to have random levels says how large they are."""
+    random = asked is not None and asked.level_std != 0.0
+    return {
+        "floor_force_n_per_sqrt_hz": constant(floor.density_n_per_sqrt_hz),
+        "machine_force_n_per_sqrt_hz": constant(floor.machines_n_per_sqrt_hz),
+        **({"floor_level_std": constant(floor.level_std)} if random else {}),
+    }
 
 
 def _forces(
@@ -81,15 +88,25 @@ def _forces(
     """Return input -> force (length,), and labels."""
     forces: dict[str, FloatArray] = {}
     labels: dict[str, object] = {}
+    if section.rubbing is not None:
+        force, labels = rubbing_force(section, course, section.rubbing)
+        if "mesh" in background.inputs:
+            forces["mesh"] = force
+    lines, found = line_forces(section, course, background)
+    return {**forces, **lines}, {**labels, **found}
+
+
+def line_forces(
+    section: Background, course: Course, background: SpecimenBackground
+) -> tuple[dict[str, FloatArray], dict[str, object]]:
+    """Return input -> force (length,) of what follows the angle alone, and labels."""
+    forces: dict[str, FloatArray] = {}
+    labels: dict[str, object] = {}
 
     def add(name: str, force: FloatArray) -> None:
         if name in background.inputs:
             forces[name] = forces[name] + force if name in forces else force
 
-    if section.rubbing is not None:
-        force, found = rubbing_force(section, course, section.rubbing)
-        add("mesh", force)
-        labels |= found
     for shaft, drawn in background.shafts.items():
         for name, force in _shaft(drawn, course, shaft):
             add(name, force)

@@ -25,7 +25,7 @@ from siggen.specimen.gears import gear_pair
 class Course:
     """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
 
-    `turns` are exp(i order Θ) (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives
+    Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ) (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives
     uniforms of what noise levels belong to, `uniform` those of the gearbox, `of_gearbox` and `of_record` generators.
     """
 
@@ -69,11 +69,16 @@ class Course:
 
 def record_course(config: Config, specimen: Specimen, record: PlannedRecord, length: int) -> Course:
     """Return the course of one record over `length` samples, the last of which are the record's."""
+    return course_at(config, specimen, record, config.samples - length, length)
+
+
+def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: int, count: int) -> Course:
+    """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
     pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)
     rotation = record_rotation(config, point, record, start_angle_rad(config, pair, record))
-    history, owner = length - config.samples, record_owner(record)
+    owner = record_owner(record)
     # a fast length may reach further back than any force is followed; there the shaft stands still
-    time_s = np.maximum((np.arange(length) - history) / config.fs_hz, -TRANSIENT_CAP_S)
+    time_s = np.maximum((np.arange(count) + first) / config.fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
     orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
     return Course(
@@ -81,7 +86,7 @@ def record_course(config: Config, specimen: Specimen, record: PlannedRecord, len
         orders,
         {shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
         config.fs_hz,
-        history,
+        -first,
         pair,
         point,
         named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),

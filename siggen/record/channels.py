@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, MeasuredPath, NoiseFloor, NoiseRatio, at
+from siggen.config import Config
 from siggen.dynamics.time.response import Response
+from siggen.dynamics.time.response_stream import ResponseStream
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background import record_background
-from siggen.record.background_course import noise_levels
-from siggen.record.disturbance import channel_disturbance
+from siggen.record.block_channels import block_channels
+from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
+from siggen.record.disturbance import ChannelDisturbance, NoiseLength
 from siggen.record.forces import RecordForces, record_forces
-from siggen.record.measured_disturbance import Draws, Turning
-from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensing.measurement import Measurement, measure
+from siggen.record.measured_disturbance import Turning
+from siggen.sensing.measurement import measure
 from siggen.sensing.spectral_filter import record_of, record_spectrum
 from siggen.specimen.instrument import ChannelInstrument, Instrument, specimen_instrument
 
@@ -27,47 +27,53 @@ def measured_channels(
     config: Config,
     specimen: Specimen,
     record: PlannedRecord,
-    response: Response,
+    response: Response | ResponseStream,
     instrument: Instrument | None = None,
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
     """Return channel name -> float32 signal (n,) in m/s^2, and the labels of all channels.
 
     Every channel has its own generators, so that adding a sensor leaves the others as they were. `instrument` is that
-    of the specimen, if it is there already.
+    of the specimen, if it is there already. With `filters: blocks` a stream is stepped here, piece after piece.
+
+    Raises
+    ------
+    SolverFailure, ValueError
+        As a stream, where one is given.
     """
     instrument = instrument or specimen_instrument(config, specimen)
-    owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
+    if instrument.blocks is not None:
+        return block_channels(config, specimen, record, response, instrument)
+    if isinstance(response, ResponseStream):
+        raise TypeError("response: received a stream; allowed with `filters: record` is a whole response")
+    return _whole(config, specimen, record, response, instrument)
+
+
+def _whole(
+    config: Config, specimen: Specimen, record: PlannedRecord, response: Response, instrument: Instrument
+) -> tuple[dict[str, np.ndarray], dict[str, object]]:
+    """Return signals and labels of a record that is filtered at once."""
     forces = record_forces(config, specimen, record, response, instrument)
     motions = _motion_spectra(instrument, response)
-    background, levels = record_background(config, specimen, record, instrument), noise_levels(config, record)
-    gears = specimen.gears
-    turning = Turning(response.angle_rad, gears.pinion.teeth / gears.gear.teeth)
+    background = record_background(config, specimen, record, instrument)
+    angle, gears = response.angle_rad, specimen.gears
+    turning = Turning(gears.pinion.teeth / gears.gear.teeth, float(np.diff(angle).max(initial=0.0)))
+    noise_length = NoiseLength(instrument.length, config.fs_hz, in_blocks=False)
     signals: dict[str, np.ndarray] = {}
     labels: dict[str, object] = {}
     for channel in instrument.channels:
-        named = partial(_named, config.seed, owner, channel.name)
-        draws = Draws(
-            named_uniforms(config.seed, Stage.PATH, record.specimen_id),
-            named_uniforms(config.seed, Stage.NOISE, *owner),
-            named,
-            None if levels is None else partial(_level, levels, channel.name),
-        )
-        disturbance = channel_disturbance(channel, draws, turning, fs_hz=config.fs_hz, length=instrument.length)
-        rng = named_generator(config.seed, Stage.NOISE, *owner, name=channel.name)
+        draws = channel_draws(config, record, channel.name)
+        disturbance = ChannelDisturbance(channel, draws, turning, noise_length)
+        disturbed = disturbance.take(0, angle)
         added = None if background is None else background.spectra.get(channel.name)
         clean = _sensed(channel, response, motions, forces, instrument.length, added)
-        measured = _measured(channel, clean, disturbance.signal_m_s2, rng, draws)
+        rng, floor, snr_db = white_noise(config, record, channel, draws)
+        measured = measure(
+            clean, gain=channel.gain, range_m_s2=channel.sensor.range_m_s2, bits=channel.sensor.bits, rng=rng,
+            noise_floor_m_s2=floor, snr_db=snr_db, disturbance_m_s2=disturbed,
+        )  # fmt: skip
         signals[channel.name] = measured.accel_m_s2
-        labels |= {**_labels(channel, measured), **disturbance.labels}
+        labels |= {**channel_labels(channel, measured), **disturbance.labels}
     return signals, {**labels, **forces.labels, **(background.labels if background else {})}
-
-
-def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.random.Generator:
-    return named_generator(seed, Stage.NOISE, *owner, name=f"{channel} {part}")
-
-
-def _level(levels: Callable[[str], float], channel: str, name: str) -> float:
-    return levels(f"sensors.{channel}.{name}")
 
 
 def _motion_spectra(instrument: Instrument, response: Response) -> dict[str, ComplexArray]:
@@ -98,37 +104,3 @@ def _sensed(
     if channel.sensor_response is not None:
         spectrum *= channel.sensor_response
     return record_of(spectrum, length, len(response.angle_rad))
-
-
-def _measured(
-    channel: ChannelInstrument,
-    clean: FloatArray,
-    disturbance: FloatArray | None,
-    rng: np.random.Generator,
-    draws: Draws,
-) -> Measurement:
-    noise, u = channel.sensor.noise, draws.level("noise", rng)
-    return measure(
-        clean,
-        gain=channel.gain,
-        range_m_s2=channel.sensor.range_m_s2,
-        bits=channel.sensor.bits,
-        rng=rng,
-        noise_floor_m_s2=at(noise.floor_m_s2, u) if isinstance(noise, NoiseFloor) else None,
-        snr_db=at(noise.snr_db, u) if isinstance(noise, NoiseRatio) else None,
-        disturbance_m_s2=disturbance,
-    )
-
-
-def _labels(channel: ChannelInstrument, measured: Measurement) -> dict[str, object]:
-    labels: dict[str, object] = {
-        f"noise_floor_{channel.name}_m_s2": measured.noise_floor_m_s2,
-        f"snr_{channel.name}_db": measured.snr_db,
-        f"clipped_share_{channel.name}": measured.clipped_share,
-    }
-    if channel.accelerance is not None:
-        labels[f"path_modes_{channel.name}"] = channel.path_modes
-        labels[f"path_accelerance_{channel.name}_m_s2_per_n"] = channel.path_rms_m_s2_per_n
-        if isinstance(channel.sensor.path, MeasuredPath) and channel.sensor.path.files:
-            labels[f"path_number_{channel.name}"] = channel.path_number
-    return labels

@@ -6,83 +6,137 @@ is drawn from the state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
-from siggen.record.measured_disturbance import Draws, Turning, noise_strength, table_lines
+from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines, Turning
 from siggen.sensing.force_density import noise_of, tabulated
 from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.pink_noise import PinkNoise
+from siggen.sensing.sensor_response import high_pass_response
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies, record_of
+from siggen.sensing.spread import Spread
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
 
-@dataclass(frozen=True, slots=True)
-class Disturbance:
-    """What is added to a channel behind its amplifier (n,), None for nothing, and the labels of its parts."""
+SPECTRUM_TAPS = 16_384
+"""Of the filter of a sensor's noise, if it is made in blocks: at 25.6 kHz densities are smoothed over 1.6 Hz."""
 
-    signal_m_s2: FloatArray | None
-    labels: dict[str, object]
+Part = Callable[[int, FloatArray], FloatArray]
+"""From the first sample and the pinion's angles (k,) to what is added there (k,); parts of a record in order."""
 
 
-def channel_disturbance(
-    channel: ChannelInstrument, draws: Draws, turning: Turning, *, fs_hz: float, length: int
-) -> Disturbance:
-    """Return everything that does not come from the gears but white noise.
+class ChannelDisturbance:
+    """What is added to a channel of one record behind its amplifier, part after part, and the labels of it.
 
     Vibrations of other machines pass the sensor as those of the gears do; hum, 1/f noise, noise of a given density and
     given lines are as they are stored.
     """
-    samples = turning.angle_rad.size
-    sensor, name = channel.sensor, channel.name
-    signal = np.zeros(samples)
-    labels: dict[str, object] = {}
-    if sensor.pink_noise is not None:
-        pink, density = _pink(sensor.pink_noise, channel, draws, fs_hz, length)
-        signal += record_of(pink, length, samples)
-        labels[f"pink_noise_{name}_m_s2_per_sqrt_hz"] = density
-    if sensor.noise_spectrum is not None:
-        added = _of_spectrum(sensor.noise_spectrum, channel, draws, fs_hz, length)[length - samples :]
-        if sensor.noise_spectrum.modulation is not None:
-            added = added * np.sqrt(noise_strength(sensor.noise_spectrum.modulation, draws, turning, fs_hz))
-        signal += added
-        labels[f"noise_spectrum_{name}_m_s2"] = float(added.std())
-    if sensor.lines is not None:
-        added = table_lines(sensor.lines, draws, turning, fs_hz)
-        signal += added
-        labels[f"lines_{name}_m_s2"] = float(added.std())
-    for part, lines in _lines(sensor, draws):
-        response = np.ones(lines.frequency_hz.size, dtype=complex)
-        if part != "mains":
-            response *= channel.gain
-        if part != "mains" and channel.sensor_response is not None:
-            response *= _between(channel.sensor_response, lines.frequency_hz * length / fs_hz)
-        signal += lines_signal(lines, response, fs_hz, samples)
-        labels[f"{part}_{name}_m_s2"] = lines.rms_m_s2
-    return Disturbance(signal if labels else None, labels)
+
+    def __init__(self, channel: ChannelInstrument, draws: Draws, turning: Turning, record: NoiseLength) -> None:
+        self._labels: dict[str, object] = {}
+        self._spreads: dict[str, Spread] = {}
+        self._parts: list[tuple[str | None, Part]] = []
+        sensor, name = channel.sensor, channel.name
+        if sensor.pink_noise is not None:
+            self._parts.append((None, self._pink(sensor.pink_noise, channel, draws, record)))
+        if sensor.noise_spectrum is not None:
+            part = _of_spectrum(sensor.noise_spectrum, channel, draws, turning, record)
+            self._parts.append((f"noise_spectrum_{name}_m_s2", part))
+        if sensor.lines is not None:
+            table = TableLines(sensor.lines, draws, record.fs_hz, turning.largest_step_rad)
+            self._parts.append((f"lines_{name}_m_s2", lambda first, angle: table.at(angle, first)))
+        for part_name, lines in _lines(sensor, draws):
+            self._parts.append((None, _line_part(part_name, lines, channel, record)))
+            self._labels[f"{part_name}_{name}_m_s2"] = lines.rms_m_s2
+
+    def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:
+        """Return what is added (k,) from sample `first` on, where the pinion's angles (k,) are given; None for nothing."""
+        if not self._parts:
+            return None
+        signal = np.zeros(angle_rad.size)
+        for label, part in self._parts:
+            added = part(first, angle_rad)
+            signal += added
+            if label is not None:
+                self._spreads.setdefault(label, Spread()).take(added)
+        return signal
+
+    @property
+    def labels(self) -> dict[str, object]:
+        """The labels, complete when all was taken."""
+        return {**self._labels, **{label: spread.std for label, spread in self._spreads.items()}}
+
+    def _pink(self, section: PinkNoise, channel: ChannelInstrument, draws: Draws, record: NoiseLength) -> Part:
+        rng = draws.record("pink_noise")
+        density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
+        corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
+        self._labels[f"pink_noise_{channel.name}_m_s2_per_sqrt_hz"] = density
+        if record.in_blocks:
+            pink = PinkNoise(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
+            return lambda _, angle: pink.take(angle.size)
+        spectrum = noise_spectrum(density, record.length, record.fs_hz, rng, pink_corner_hz=corner_hz)
+        spectrum = spectrum if channel.high_pass is None else spectrum * channel.high_pass
+        return lambda _, angle: record_of(spectrum, record.length, angle.size)
 
 
-def _pink(
-    section: PinkNoise, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
-) -> tuple[ComplexArray, float]:
-    rng = draws.record("pink_noise")
-    density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
-    corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
-    spectrum = noise_spectrum(density, length, fs_hz, rng, pink_corner_hz=corner_hz)
-    return (spectrum if channel.high_pass is None else spectrum * channel.high_pass), density
+class NoiseLength(NamedTuple):
+    """Samples that the responses of channels stand for; whether noise comes in blocks or has that period."""
+
+    length: int
+    fs_hz: float
+    in_blocks: bool
 
 
 def _of_spectrum(
-    section: SensorDensity, channel: ChannelInstrument, draws: Draws, fs_hz: float, length: int
-) -> FloatArray:
+    section: SensorDensity, channel: ChannelInstrument, draws: Draws, turning: Turning, record: NoiseLength
+) -> Part:
     rng = draws.record("noise_spectrum")
     factor = at(section.factor, draws.level("noise_spectrum.factor", rng))
-    density = factor * tabulated(frequencies(length, fs_hz), section.frequency_hz, section.density)
-    return noise_of(density if channel.high_pass is None else density * np.abs(channel.high_pass), length, fs_hz, rng)
+    noise = (_shaped if record.in_blocks else _periodic)(section, factor, channel, record, rng)
+    if section.modulation is None:
+        return lambda _, angle: noise(angle.size)
+    strength = NoiseStrength(section.modulation, draws, turning.gear_order, record.fs_hz)
+    return lambda _, angle: noise(angle.size) * np.sqrt(strength.take(angle))
+
+
+def _periodic(
+    section: SensorDensity, factor: float, channel: ChannelInstrument, record: NoiseLength, rng: np.random.Generator
+) -> Callable[[int], FloatArray]:
+    density = factor * tabulated(frequencies(record.length, record.fs_hz), section.frequency_hz, section.density)
+    density = density if channel.high_pass is None else density * np.abs(channel.high_pass)
+    values = noise_of(density, record.length, record.fs_hz, rng)
+    return lambda count: values[record.length - count :]
+
+
+def _shaped(
+    section: SensorDensity, factor: float, channel: ChannelInstrument, record: NoiseLength, rng: np.random.Generator
+) -> Callable[[int], FloatArray]:
+    def density(frequency_hz: FloatArray) -> FloatArray:
+        found = tabulated(frequency_hz, section.frequency_hz, section.density)
+        if channel.high_pass_hz is None:
+            return found
+        # no logarithm of nothing: at frequency 0 as at the first one above
+        over_zero = np.maximum(frequency_hz, frequency_hz[1])
+        return np.asarray(found * np.abs(high_pass_response(over_zero, channel.high_pass_hz)))
+
+    noise = ShapedNoise(factor * shape_taps(density, SPECTRUM_TAPS, record.fs_hz), record.fs_hz, rng)
+    return noise.take
+
+
+def _line_part(part: str, lines: Lines, channel: ChannelInstrument, record: NoiseLength) -> Part:
+    response = np.ones(lines.frequency_hz.size, dtype=complex)
+    if part != "mains":
+        response *= channel.gain
+    if part != "mains" and channel.sensor_response is not None:
+        response *= _between(channel.sensor_response, lines.frequency_hz * record.length / record.fs_hz)
+    return lambda first, angle: lines_signal(lines, response, record.fs_hz, angle.size, first)
 
 
 def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:

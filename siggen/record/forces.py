@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import hypot
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from siggen.arrays import ComplexArray
+from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config, ForceNoise, at
 from siggen.dynamics.time.response import Response
 from siggen.planning.plan import PlannedRecord
@@ -18,6 +18,7 @@ from siggen.record.background_course import noise_levels
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.spectral_filter import frequencies, record_spectrum
+from siggen.specimen.drive import record_owner
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.instrument import Instrument
 from siggen.specimen.measured_path import INPUTS
@@ -35,24 +36,51 @@ def record_forces(
     config: Config, specimen: Specimen, record: PlannedRecord, response: Response, instrument: Instrument
 ) -> RecordForces:
     """Return the forces of one record; all sensors see the same ones."""
-    owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
-    noise = None if config.housing is None else config.housing.force_noise
-    level = _levels(config, record, owner)
-    density = 0.0 if noise is None else _density(config, noise, specimen, owner, level)
-    labels: dict[str, object] = {} if noise is None else {"force_noise_n_per_sqrt_hz": density}
+    noise = force_noise(config, specimen, record)
     if not instrument.has_path:
-        return RecordForces((), labels)
-    rolled_off = _roll_off(config, noise, instrument, level)
+        return RecordForces((), noise.labels)
+    rolled_off = noise.roll_off(frequencies(instrument.length, config.fs_hz))
     spectra = []
     for name in INPUTS:
         spectrum = record_spectrum(
             response.history.bearing_force_n[name], response.bearing_force_n[name], instrument.length
         )
-        if density > 0.0:
-            rng = named_generator(config.seed, Stage.FORCE_NOISE, *owner, name=name)
-            spectrum += rolled_off * noise_spectrum(density, instrument.length, config.fs_hz, rng)
+        if noise.density > 0.0:
+            spectrum += rolled_off * noise_spectrum(
+                noise.density, instrument.length, config.fs_hz, force_generator(config, record, name)
+            )
         spectra.append(spectrum)
-    return RecordForces(tuple(spectra), labels)
+    return RecordForces(tuple(spectra), noise.labels)
+
+
+class DrawnForceNoise(NamedTuple):
+    """Density [N/√Hz] of the noise of every bearing force, corner of its roll-off (None: white), and labels."""
+
+    density: float
+    corner_hz: float | None
+    labels: dict[str, object]
+
+    def roll_off(self, frequency_hz: FloatArray) -> FloatArray:
+        """Return the factor (k,) on the amplitude: first-order low-pass, 1 if it is white."""
+        over = 0.0 if self.corner_hz is None else frequency_hz / self.corner_hz
+        return np.asarray(1.0 / np.hypot(1.0, over))
+
+
+def force_noise(config: Config, specimen: Specimen, record: PlannedRecord) -> DrawnForceNoise:
+    """Return the noise of one record's bearing forces; of density 0 without the section."""
+    noise = None if config.housing is None else config.housing.force_noise
+    if noise is None:
+        return DrawnForceNoise(0.0, None, {})
+    owner = record_owner(record)
+    level = _levels(config, record, owner)
+    density = _density(config, noise, specimen, owner, level)
+    corner_hz = None if noise.corner_hz is None else at(noise.corner_hz, level("corner_hz"))
+    return DrawnForceNoise(density, corner_hz, {"force_noise_n_per_sqrt_hz": density})
+
+
+def force_generator(config: Config, record: PlannedRecord, name: str) -> np.random.Generator:
+    """Return the generator of the noise of one force."""
+    return named_generator(config.seed, Stage.FORCE_NOISE, *record_owner(record), name=name)
 
 
 def _levels(config: Config, record: PlannedRecord, owner: tuple[int, ...]) -> Callable[[str], float]:
@@ -61,17 +89,6 @@ def _levels(config: Config, record: PlannedRecord, owner: tuple[int, ...]) -> Ca
     if of_gearbox is None:
         return named_uniforms(config.seed, Stage.FORCE_NOISE, *owner)
     return lambda key: of_gearbox(f"housing.force_noise.{key}")
-
-
-def _roll_off(
-    config: Config, noise: ForceNoise | None, instrument: Instrument, level: Callable[[str], float]
-) -> NDArray[np.float64] | float:
-    """Return the factor (k,) on the amplitude of the noise: first-order low-pass, 1 if it is white."""
-    if noise is None or noise.corner_hz is None:
-        return 1.0
-    corner_hz = at(noise.corner_hz, level("corner_hz"))
-    factor: NDArray[np.float64] = 1.0 / np.hypot(1.0, frequencies(instrument.length, config.fs_hz) / corner_hz)
-    return factor
 
 
 def _density(

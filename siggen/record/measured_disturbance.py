@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import LineTable, NoiseModulation, at
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
-from siggen.sensing.modulation import SHAFT_LINES, level_course, shaft_course, shaft_phasors
+from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,41 +37,53 @@ class Draws:
         return own if self.levels is None else self.levels(name)
 
 
-@dataclass(frozen=True, slots=True)
-class Turning:
-    """Angle of the pinion at the samples of a record (n,) [rad], and turns of the gear per turn of the pinion."""
+class Turning(NamedTuple):
+    """Turns of the gear per turn of the pinion, and how far this turns in a sample of the record at most [rad]."""
 
-    angle_rad: FloatArray
     gear_order: float
+    largest_step_rad: float
 
 
-def noise_strength(section: NoiseModulation, draws: Draws, turning: Turning, fs_hz: float) -> FloatArray:
-    """Return M (n,) of mean 1; the phases of the shafts belong to the gearbox, what chance does to the record."""
-    rng = draws.record("noise_spectrum.modulation")
-    numbers = {
-        name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
-        for name in ("pinion_depth", "gear_depth", "level_std", "level_time_ms")
-    }
-    lines = []
-    for shaft, order in (("pinion", 1.0), ("gear", turning.gear_order)):
-        uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
-        phasors = shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))
-        lines.append(harmonic_sum(turns_of(turning.angle_rad, order), phasors))
-    memory = 1e-3 * numbers["level_time_ms"] * fs_hz
-    level = level_course(turning.angle_rad.size, numbers["level_std"], memory, rng)
-    return np.asarray(shaft_course(lines) * level)
+class NoiseStrength:
+    """M of mean 1, part after part; the phases of the shafts belong to the gearbox, what chance does to the record."""
+
+    def __init__(self, section: NoiseModulation, draws: Draws, gear_order: float, fs_hz: float) -> None:
+        rng = draws.record("noise_spectrum.modulation")
+        numbers = {
+            name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
+            for name in ("pinion_depth", "gear_depth", "level_std", "level_time_ms")
+        }
+        self._phasors = []
+        for shaft, order in (("pinion", 1.0), ("gear", gear_order)):
+            uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
+            self._phasors.append((order, shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))))
+        self._level = LevelCourse(numbers["level_std"], 1e-3 * numbers["level_time_ms"] * fs_hz, rng)
+
+    def take(self, angle_rad: FloatArray) -> FloatArray:
+        """Return M (k,) at the next samples, whose pinion angles (k,) are given."""
+        lines = [harmonic_sum(turns_of(angle_rad, order), phasors) for order, phasors in self._phasors]
+        return np.asarray(shaft_course(lines) * self._level.take(angle_rad.size))
 
 
-def table_lines(section: LineTable, draws: Draws, turning: Turning, fs_hz: float) -> FloatArray:
-    """Return the sum of all lines (n,); those from half the sampling rate on are left out."""
-    rng = draws.record("lines")
-    time_s = np.arange(turning.angle_rad.size) / fs_hz
-    top_rad_s = pi * fs_hz
-    angle, total = turning.angle_rad, np.zeros(turning.angle_rad.size)
-    for order, hz, amplitude in zip(section.order, section.frequency_hz, section.amplitude_m_s2, strict=True):
-        phase = 2.0 * pi * rng.random()
-        size = amplitude * at(section.factor, rng.random())
-        fastest = 2.0 * pi * hz + order * float(np.diff(angle).max()) * fs_hz
-        if fastest < top_rad_s:
-            total += size * np.cos(2.0 * pi * hz * time_s + order * angle + phase)
-    return total
+class TableLines:
+    """The sum of all lines, part after part; those from half the sampling rate on are left out.
+
+    `largest_step_rad` is the largest turn of the pinion in a sample of the record.
+    """
+
+    def __init__(self, section: LineTable, draws: Draws, fs_hz: float, largest_step_rad: float) -> None:
+        rng, self._fs_hz = draws.record("lines"), fs_hz
+        self._lines = []
+        for order, hz, amplitude in zip(section.order, section.frequency_hz, section.amplitude_m_s2, strict=True):
+            phase = 2.0 * pi * rng.random()
+            size = amplitude * at(section.factor, rng.random())
+            if 2.0 * pi * hz + order * largest_step_rad * fs_hz < pi * fs_hz:
+                self._lines.append((order, hz, size, phase))
+
+    def at(self, angle_rad: FloatArray, first: int) -> FloatArray:
+        """Return the sum (k,) from sample `first` on, where the pinion's angles (k,) are given."""
+        time_s = (np.arange(angle_rad.size) + first) / self._fs_hz
+        total = np.zeros(angle_rad.size)
+        for order, hz, size, phase in self._lines:
+            total += size * np.cos(2.0 * pi * hz * time_s + order * angle_rad + phase)
+        return total

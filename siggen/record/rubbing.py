@@ -7,8 +7,10 @@ of the contact's width, M of mean 1 by mesh, shafts and chance (`siggen.sensing.
 from __future__ import annotations
 
 from math import pi, sqrt, tan
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -16,7 +18,7 @@ from siggen.config import Background, Bursts, Rubbing, at, constant
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.record.background_course import Course
 from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter, noise_of
-from siggen.sensing.modulation import level_course, periodic_course, replayed, shaft_course
+from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course
 from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.spectral_filter import frequencies
 
@@ -29,18 +31,23 @@ def rubbing_force(section: Background, course: Course, rubbing: Rubbing) -> tupl
     """Return the force (length,) [N] of a drawn section, and its labels."""
     size = force_size_n(section, rubbing, course)
     noise = _noise(rubbing, course)
-    strength = np.sqrt(_modulation(rubbing, course))
-    labels: dict[str, object] = {
-        "rubbing_force_n": size,
+    strength = np.sqrt(modulation(rubbing, course, level_process(rubbing, course).take(course.length)))
+    labels = rubbing_labels(rubbing, size)
+    if rubbing.bursts is not None:
+        drawn = drawn_bursts(rubbing.bursts, course, course.length)
+        strength += burst_rise(drawn, 0, course.length)
+        labels["burst_count"] = drawn.recorded
+    return size * noise * strength, labels
+
+
+def rubbing_labels(rubbing: Rubbing, size_n: float) -> dict[str, object]:
+    """Return the labels but for bursts."""
+    return {
+        "rubbing_force_n": size_n,
         "rubbing_level_std": constant(rubbing.level_std),
         "rubbing_pinion_depth": constant(rubbing.pinion_depth),
         "rubbing_gear_depth": constant(rubbing.gear_depth),
     }
-    if rubbing.bursts is not None:
-        rise, count = _bursts(rubbing.bursts, course)
-        strength += rise
-        labels["burst_count"] = count
-    return size * noise * strength, labels
 
 
 def force_size_n(section: Background, rubbing: Rubbing, course: Course) -> float:
@@ -90,35 +97,51 @@ def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str
     return np.asarray(np.fft.irfft(spectrum * density, points))
 
 
-def _modulation(rubbing: Rubbing, course: Course) -> FloatArray:
-    """Return M (length,)."""
+def level_process(rubbing: Rubbing, course: Course) -> LevelCourse:
+    """Return the random level, from the first sample on."""
+    memory = 1e-3 * constant(rubbing.level_time_ms) * course.fs_hz
+    return LevelCourse(constant(rubbing.level_std), memory, course.of_record("background.rubbing.level"))
+
+
+def modulation(rubbing: Rubbing, course: Course, level: FloatArray) -> FloatArray:
+    """Return M (length,) of a random level (length,)."""
     table = rubbing_course(course.pair, constant(rubbing.sliding_exponent))
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
     depths = {"pinion": constant(rubbing.pinion_depth), "gear": constant(rubbing.gear_depth)}
     shafts = [course.shaft_lines(shaft, depth) for shaft, depth in depths.items()]
-    memory = 1e-3 * constant(rubbing.level_time_ms) * course.fs_hz
-    level = level_course(
-        course.length, constant(rubbing.level_std), memory, course.of_record("background.rubbing.level")
-    )
     return np.asarray(mesh * shaft_course(shafts) * level)
 
 
-def _bursts(bursts: Bursts, course: Course) -> tuple[FloatArray, int]:
-    """Return the rise (length,) by all bursts, and how many begin within the record."""
+class DrawnBursts(NamedTuple):
+    """First samples, peaks and decays in samples (bursts,), and how many begin within the record."""
+
+    begin: NDArray[np.int64]
+    peak: FloatArray
+    decay: FloatArray
+    recorded: int
+
+
+def drawn_bursts(bursts: Bursts, course: Course, length: int) -> DrawnBursts:
+    """Return the bursts of `length` samples from the first one of the course on."""
     rng = course.of_record("background.rubbing.bursts")
-    count = int(rng.poisson(constant(bursts.rate_hz) * course.length / course.fs_hz))
-    begin = np.floor(rng.random(count) * course.length).astype(np.int64)
+    count = int(rng.poisson(constant(bursts.rate_hz) * length / course.fs_hz))
+    begin = np.floor(rng.random(count) * length).astype(np.int64)
     peak = np.array([at(bursts.peak, float(u)) for u in rng.random(count)])
     decay = np.array([1e-3 * at(bursts.decay_ms, float(u)) * course.fs_hz for u in rng.random(count)])
-    rise = np.zeros(course.length)
-    for first, high, memory in zip(begin, peak, decay, strict=True):
-        _add_burst(rise, first, high, memory)
-    return rise, int((begin >= course.history).sum())
+    return DrawnBursts(begin, peak, decay, int((begin >= course.history).sum()))
+
+
+def burst_rise(drawn: DrawnBursts, first: int, count: int) -> FloatArray:
+    """Return the rise (count,) by all bursts from sample `first` on."""
+    rise = np.zeros(count)
+    for begin, high, memory in zip(drawn.begin, drawn.peak, drawn.decay, strict=True):
+        _add_burst(rise, begin - first, high, memory)
+    return rise
 
 
 @njit(cache=True)
 def _add_burst(rise: FloatArray, first: int, peak: float, memory: float) -> None:
-    """Add peak e^(-i/memory) from sample `first` on, as long as it matters."""
+    """Add peak e^(-i/memory) from sample `first` on, which may lie before the array, as long as it matters."""
     last = min(rise.size, first + int(memory * 12.0))
-    for i in range(first, last):
+    for i in range(max(first, 0), last):
         rise[i] += peak * np.exp(-(i - first) / memory)

@@ -12,7 +12,8 @@ import numpy as np
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, collected_response, response_stream
+from siggen.dynamics.time.response_stream import ResponseStream
 from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -24,6 +25,7 @@ from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import internal_quantities
+from siggen.sensing.block_filter import AHEAD
 from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
@@ -149,30 +151,50 @@ def record_response(
     SolverFailure
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
-    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
     with refused_as("outside_model"):
-        driven = _driven(config, specimen, state, record) if driven is None else driven
-        with stage("inputs"):
-            step_s = 1.0 / (config.fs_hz * steps)
-            motion = specimen_motion(specimen.dynamics, state.mesh, point, step_s, driven, stride=stride)
+        stream, point = _stream(config, specimen, state, record, internals=internals, driven=driven, motions=motions)
         with stage("loop"):
-            response = response_of(
-                motion,
-                driven.rotation,
-                fs_hz=config.fs_hz,
-                samples=config.samples,
-                steps_per_sample=steps,
-                internals=internals,
-                bearing_forces=internals or needs_forces(config),
-                motions=motions,
-                excitation=driven.excitation,
-                settle_s=_settle_s(config, motion),
-                history_s=history_s(config),
-            )
+            response = collected_response(stream)
     if response.status != "ok":
         raise SolverFailure(response.status, response.reason)
     return response, point
+
+
+def _stream(
+    config: Config,
+    specimen: Specimen,
+    state: SpecimenState,
+    record: PlannedRecord,
+    *,
+    internals: bool = False,
+    driven: RecordDrive | None = None,
+    motions: Collection[str] | None = None,
+) -> tuple[ResponseStream, OperatingPoint]:
+    """Return the response of one record before it is stepped, and its operating point; arguments as `record_response`."""
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
+    driven = _driven(config, specimen, state, record) if driven is None else driven
+    with stage("inputs"):
+        step_s = 1.0 / (config.fs_hz * steps)
+        motion = specimen_motion(specimen.dynamics, state.mesh, point, step_s, driven, stride=stride)
+    in_blocks = config.filters == "blocks"
+    with stage("loop"):
+        stream = response_stream(
+            motion,
+            driven.rotation,
+            fs_hz=config.fs_hz,
+            samples=config.samples,
+            steps_per_sample=steps,
+            internals=internals,
+            bearing_forces=internals or needs_forces(config),
+            motions=motions,
+            excitation=driven.excitation,
+            settle_s=_settle_s(config, motion),
+            history_s=history_s(config),
+            ahead=AHEAD if in_blocks else 0,
+            in_blocks=in_blocks,
+        )
+    return stream, point
 
 
 def _settle_s(config: Config, motion: Motion) -> float:

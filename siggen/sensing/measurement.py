@@ -68,19 +68,26 @@ def measure(
     floor = noise_floor_m_s2 if snr_db is None else rms / 10.0 ** (snr_db / 20.0)
     noisy = amplified if floor is None else amplified + floor * rng.standard_normal(amplified.size)
     noisy = noisy if disturbance_m_s2 is None else noisy + disturbance_m_s2
-    step = 0.0 if bits is None else power_of_two_from(2.0 * range_m_s2 / 2.0**bits)
-    limit = math.floor(range_m_s2 / step) * step if step else range_m_s2
-    clipped = np.abs(noisy) > limit
-    kept = np.clip(noisy, -limit, limit)
-    stored = (np.round(kept / step) * step if step else kept).astype(np.float32)
+    stored, clipped, step = converted(noisy, range_m_s2, bits)
     stored.setflags(write=False)
     return Measurement(
         accel_m_s2=stored,
         noise_floor_m_s2=float(floor or 0.0),
-        snr_db=_ratio_db(rms, floor or 0.0),
-        clipped_share=float(np.mean(clipped)),
+        snr_db=ratio_db(rms, floor or 0.0),
+        clipped_share=clipped / stored.size,
         step_m_s2=step,
     )
+
+
+def converted(
+    analogue_m_s2: NDArray[np.float64], range_m_s2: float, bits: int | None
+) -> tuple[NDArray[np.float32], int, float]:
+    """Return what a converter stores (n,), how many values were clipped, and its step, 0 without quantisation."""
+    step = 0.0 if bits is None else power_of_two_from(2.0 * range_m_s2 / 2.0**bits)
+    limit = math.floor(range_m_s2 / step) * step if step else range_m_s2
+    clipped = int((np.abs(analogue_m_s2) > limit).sum())
+    kept = np.clip(analogue_m_s2, -limit, limit)
+    return (np.round(kept / step) * step if step else kept).astype(np.float32), clipped, step
 
 
 def power_of_two_from(value: float) -> float:
@@ -89,7 +96,8 @@ def power_of_two_from(value: float) -> float:
     return math.ldexp(1.0, exponent - 1 if mantissa == 0.5 else exponent)
 
 
-def _ratio_db(rms: float, floor: float) -> float:
+def ratio_db(rms: float, floor: float) -> float:
+    """Return the level of a signal over a noise floor [dB]."""
     if floor == 0.0:
         return math.inf
     return 20.0 * math.log10(rms / floor) if rms > 0.0 else -math.inf

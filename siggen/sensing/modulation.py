@@ -29,8 +29,22 @@ def shaft_phasors(depth: float, phase_rad: FloatArray) -> ComplexArray:
 
 def level_course(samples: int, std: float, memory_samples: float, rng: np.random.Generator) -> FloatArray:
     """Return exp(s U - s²/2) (n,), U Gaussian of variance 1 whose correlation falls to 1/e over `memory_samples`."""
-    drawn = rng.standard_normal(samples)
-    return np.asarray(np.exp(std * _process(drawn, float(np.exp(-1.0 / memory_samples))) - 0.5 * std**2))
+    return LevelCourse(std, memory_samples, rng).take(samples)
+
+
+class LevelCourse:
+    """The same course block after block."""
+
+    def __init__(self, std: float, memory_samples: float, rng: np.random.Generator) -> None:
+        self._std, self._keep, self._rng = std, float(np.exp(-1.0 / memory_samples)), rng
+        self._last: float | None = None
+
+    def take(self, count: int) -> FloatArray:
+        """Return the next values (count,), from 1 on."""
+        drawn = self._rng.standard_normal(count)
+        process = _process(drawn, self._keep, 0.0 if self._last is None else self._last, self._last is None)
+        self._last = float(process[-1])
+        return np.asarray(np.exp(self._std * process - 0.5 * self._std**2))
 
 
 def periodic_course(angle_rad: FloatArray, teeth: int, table: FloatArray) -> FloatArray:
@@ -44,10 +58,10 @@ def replayed(angle_rad: FloatArray, order: float, pattern: FloatArray) -> FloatA
 
 
 @njit(cache=True)
-def _process(normals: FloatArray, keep: float) -> FloatArray:
+def _process(normals: FloatArray, keep: float, last: float, begins: bool) -> FloatArray:
     result = np.empty_like(normals)
-    result[0] = normals[0]
     fresh = np.sqrt(1.0 - keep * keep)
+    result[0] = normals[0] if begins else keep * last + fresh * normals[0]
     for i in range(1, normals.size):
         result[i] = keep * result[i - 1] + fresh * normals[i]
     return result

@@ -50,8 +50,8 @@ def single_lines(frequency_hz: FloatArray, amplitude_m_s2: FloatArray, rng: np.r
     return Lines(frequency_hz, amplitude_m_s2, _phases(frequency_hz.size, rng))
 
 
-def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: int) -> FloatArray:
-    """Return the lines (samples,) after a filter with `response` (lines,) at their frequencies.
+def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: int, first: int = 0) -> FloatArray:
+    """Return the lines (samples,) from sample `first` on, after a filter with `response` (lines,) at their frequencies.
 
     Lines from half the sampling rate on are left out, as the anti-aliasing filter of a recorder does.
     """
@@ -59,7 +59,8 @@ def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: in
     phasors = lines.amplitude_m_s2 * np.exp(1j * lines.phase_rad) * response
     for frequency, phasor in zip(lines.frequency_hz, phasors, strict=True):
         if frequency < 0.5 * fs_hz:
-            _add_line(signal, 2.0 * np.pi * frequency / fs_hz, abs(phasor), float(np.angle(phasor)))
+            step_rad = 2.0 * np.pi * frequency / fs_hz
+            _add_line(signal, step_rad, abs(phasor), float(np.angle(phasor)) + step_rad * first)
     return signal
 
 

@@ -37,6 +37,8 @@ AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
 MACHINES = {"motor": "pinion", "load": "gear"}
 """What stands beside the gearbox, and the shaft that leads there."""
+FLOOR_INPUTS = ("mesh", *INPUTS, *MACHINES)
+"""Where noise of the floor acts."""
 BLOCK = 8192
 """Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
 

@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from math import cos, pi, sin
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, MeasuredPath, ModalPath, Number, Resonance, Sensor, at, constant
+from siggen.config import Config, Floor, MeasuredPath, ModalPath, Number, Resonance, Sensor, at, constant
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
+from siggen.sensing.block_filter import BlockGrid, block_grid
 from siggen.sensing.modal_path import modal_accelerance
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensing.spectral_filter import filter_length, frequencies
 from siggen.specimen.background import (
     ENTRIES,
+    FLOOR_INPUTS,
     SpecimenBackground,
     background_history_s,
     drawn_background,
     specimen_background,
+)
+from siggen.specimen.block_responses import (
+    BACKGROUND,
+    FLOOR,
+    FORCE,
+    MOTION,
+    BlockResponses,
+    Input,
+    block_responses,
+    floor_response,
 )
 from siggen.specimen.housing import DIRECTIONS, SpecimenHousing, specimen_housing
 from siggen.specimen.measured_path import INPUTS, decoded_response
@@ -45,6 +57,7 @@ class ChannelInstrument:
     sensor_response : (k,) of mounting, sensor and coupling, high_pass: (k,) of the coupling alone; None without
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
     path_number : which of several measured paths
+    high_pass_hz : corner of the coupling, None without
     """
 
     name: str
@@ -57,6 +70,7 @@ class ChannelInstrument:
     path_modes: int
     path_rms_m_s2_per_n: float
     path_number: int = 0
+    high_pass_hz: float | None = None
 
     @property
     def is_plain(self) -> bool:
@@ -66,12 +80,16 @@ class ChannelInstrument:
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """All channels of one specimen, and the length of the records that they filter."""
+    """All channels of one specimen, and the length whose frequencies their responses have.
+
+    It is that of the records that they filter, or what `blocks` of a record remember.
+    """
 
     length: int
     fs_hz: float
     channels: tuple[ChannelInstrument, ...]
     background: SpecimenBackground | None = None
+    blocks: BlockResponses | None = None
 
     @property
     def has_path(self) -> bool:
@@ -99,7 +117,9 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
     section = drawn_background(config, specimen.specimen_id)
     history = max(history_s(config), background_history_s(section))
-    length = filter_length(round(history * config.fs_hz), config.samples)
+    history_samples = round(history * config.fs_hz)
+    blocks = block_grid(history_samples, config.samples) if config.filters == "blocks" else None
+    length = filter_length(history_samples, config.samples) if blocks is None else blocks.memory
     housing = specimen_housing(config, specimen.specimen_id)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     grid = frequencies(length, config.fs_hz)
@@ -109,11 +129,39 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
         for axis, gain in zip(sensor.axes, gains, strict=True):
             draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
             channels.append(_channel(sensor, axis, constant(gain), draw, housing, grid))
-    if section is None:
-        return Instrument(length, config.fs_hz, tuple(channels))
-    ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, housing, grid)) for c in channels}
-    background = specimen_background(config, specimen, section, ways, grid)
-    return Instrument(length, config.fs_hz, tuple(channels), background)
+    background = None
+    if section is not None:
+        ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, housing, grid)) for c in channels}
+        background = specimen_background(config, specimen, section, ways, grid)
+    found = Instrument(length, config.fs_hz, tuple(channels), background)
+    return found if blocks is None else replace(found, blocks=_in_blocks(found, blocks))
+
+
+def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
+    """Return the filters of all channels; those of the floor if it belongs to the gearbox."""
+    section = None if instrument.background is None else instrument.background.section
+    floor = section.floor if section is not None and section.redraw == "gearbox" else None
+    ways = {channel.name: channel_ways(instrument, channel, floor) for channel in instrument.channels}
+    return block_responses(grid, ways)
+
+
+def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floor | None) -> dict[Input, ComplexArray]:
+    """Return input -> response (length // 2 + 1,) of a channel, sensor included; a plain one shows motions as they are."""
+    ways: dict[Input, ComplexArray] = {}
+    sensed = np.ones(instrument.length // 2 + 1) if channel.sensor_response is None else channel.sensor_response
+    if not channel.is_plain:
+        ways |= {Input(MOTION, motion): weight * sensed for motion, weight in channel.motions.items()}
+    if channel.accelerance is not None:
+        ways |= {Input(FORCE, n): row * sensed for n, row in zip(INPUTS, channel.accelerance, strict=True)}
+    background = instrument.background
+    if background is None or not background.inputs:
+        return ways
+    rows = dict(zip(background.inputs, background.responses[channel.name], strict=True))
+    ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows.items()}
+    if floor is not None:
+        shaped = sensed * floor_response(floor, instrument.length, instrument.fs_hz)
+        ways |= {Input(FLOOR, name): rows[name] * shaped for name in FLOOR_INPUTS}
+    return ways
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +193,7 @@ def _channel(
         accelerance=accelerance,
         sensor_response=_sensor_response(sensor, draw, grid),
         high_pass=None if sensor.high_pass_hz is None else _high_pass(sensor, draw, grid),
+        high_pass_hz=None if sensor.high_pass_hz is None else draw(sensor.high_pass_hz, "high_pass_hz"),
         path_modes=housing.modes.frequency_hz.size if modal and housing is not None else 0,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
         path_number=path_number(sensor, draw.uniform),

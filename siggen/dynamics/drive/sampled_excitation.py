@@ -22,28 +22,53 @@ MARGIN = 4
 
 
 class SampledExcitation:
-    """Inputs of an excitation from `first_s` to `last_s`; at `finest_hz` and above it asks the excitation itself."""
+    """Inputs of an excitation from `first_s` to `last_s`; at `finest_hz` and above it asks the excitation itself.
+
+    With `window_s` a spline covers that much from the first time asked for, and the next one follows when it is passed:
+    memory does not grow with the duration.
+    """
 
     def __init__(
-        self, excitation: Excitation, drive: Rotation, first_s: float, last_s: float, finest_hz: float
+        self,
+        excitation: Excitation,
+        drive: Rotation,
+        first_s: float,
+        last_s: float,
+        finest_hz: float,
+        window_s: float | None = None,
     ) -> None:
-        self._excitation = excitation
+        self._excitation, self._drive = excitation, drive
+        self._last_s, self._finest_hz, self._window_s = last_s, finest_hz, window_s
+        self._rate_hz, self._until_s = COARSEST_HZ, -np.inf
         self._spline: CubicSpline | None = None
-        rate = COARSEST_HZ
-        while rate < finest_hz:
-            knots = first_s + np.arange(-MARGIN, np.ceil((last_s - first_s) * rate) + MARGIN + 1) / rate
-            spline = CubicSpline(knots, excitation.inputs(knots, drive))
-            chosen = np.linspace(MARGIN, knots.size - MARGIN - 2, CHECKED).astype(np.int64)
-            middle = 0.5 * (knots[chosen] + knots[chosen + 1])
-            wanted = excitation.inputs(middle, drive)
-            if (np.abs(spline(middle) - wanted) <= LARGEST_ERROR * np.abs(wanted).max(axis=0)).all():
-                self._spline = spline
-                return
-            del spline, knots  # large, before the next ones
-            rate *= 2.0
+        if window_s is None:
+            self._cover(first_s, last_s)
 
     def inputs(self, time_s: FloatArray, drive: Rotation) -> FloatArray:
-        """Return the inputs (k, m) at the times (k,) [s]."""
+        """Return the inputs (k, m) at the times (k,) [s], which ascend, from one call to the next too."""
+        if self._window_s is not None and time_s[-1] > self._until_s:
+            self._cover(time_s[0], min(max(time_s[0] + self._window_s, time_s[-1]), self._last_s))
         if self._spline is None:
             return self._excitation.inputs(time_s, drive)
         return np.ascontiguousarray(self._spline(time_s))
+
+    def _cover(self, first_s: float, last_s: float) -> None:
+        """Make the spline of a span; no coarser than the one before, none where the grid would be finer than the steps."""
+        self._spline, self._until_s = None, last_s
+        while self._rate_hz < self._finest_hz:
+            spline = self._tried(first_s, last_s, self._rate_hz)
+            if spline is not None:
+                self._spline = spline
+                return
+            self._rate_hz *= 2.0
+
+    def _tried(self, first_s: float, last_s: float, rate_hz: float) -> CubicSpline | None:
+        """Return the spline on a grid, None if it errs too much."""
+        knots = first_s + np.arange(-MARGIN, np.ceil((last_s - first_s) * rate_hz) + MARGIN + 1) / rate_hz
+        spline = CubicSpline(knots, self._excitation.inputs(knots, self._drive))
+        chosen = np.linspace(MARGIN, knots.size - MARGIN - 2, CHECKED).astype(np.int64)
+        middle = 0.5 * (knots[chosen] + knots[chosen + 1])
+        wanted = self._excitation.inputs(middle, self._drive)
+        if (np.abs(spline(middle) - wanted) <= LARGEST_ERROR * np.abs(wanted).max(axis=0)).all():
+            return spline
+        return None

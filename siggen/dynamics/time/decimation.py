@@ -67,30 +67,27 @@ def _frozen(taps: FloatArray) -> FloatArray:
 
 
 class Decimator:
-    """Takes states step by step and keeps low-passed linear combinations of them at the output rate.
+    """Takes states step by step and gives low-passed linear combinations of them at the output rate.
 
-    The first state taken is the one `half_length` steps before sample 0; `values` (channels, samples) fills as states
-    come. Rows of it are handed on without a copy.
+    The first state taken is the one `half_length` steps before the first sample.
     """
 
-    def __init__(self, rows: FloatArray, taps: FloatArray, steps_per_sample: int, samples: int) -> None:
-        channels = len(rows)
-        self._rows = np.zeros((-(-channels // 4) * 4, rows.shape[1]))
-        self._rows[:channels] = rows
+    def __init__(self, rows: FloatArray, taps: FloatArray, steps_per_sample: int) -> None:
+        self._channels = len(rows)
+        self._rows = np.zeros((-(-self._channels // 4) * 4, rows.shape[1]))
+        self._rows[: self._channels] = rows
         self._taps = taps
         self._steps_per_sample = steps_per_sample
-        self._result = np.empty((len(self._rows), samples))
         self._pending = np.empty((0, len(self._rows)))
-        self._done = 0
-        self.values = self._result[:channels]
 
-    def take(self, states: FloatArray) -> None:
-        """Filter the next states (steps, 2n) as far as the filter reaches."""
+    def take(self, states: FloatArray) -> FloatArray:
+        """Filter the next states (steps, 2n) as far as the filter reaches; return the next samples (channels, k)."""
         pending = np.concatenate([self._pending, _project(states, self._rows)])
         ready = max(0, (len(pending) - len(self._taps)) // self._steps_per_sample + 1)
-        _filter(pending, self._taps, self._steps_per_sample, self._result[:, self._done : self._done + ready])
+        values = np.empty((len(self._rows), ready))
+        _filter(pending, self._taps, self._steps_per_sample, values)
         self._pending = pending[ready * self._steps_per_sample :]
-        self._done += ready
+        return values[: self._channels]
 
 
 @njit(cache=True)

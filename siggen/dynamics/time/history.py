@@ -1,4 +1,4 @@
-"""History: the samples before the first one of a record, for filters that remember (derived)."""
+"""History: the samples before the first one of a record or behind its last, for filters that remember (derived)."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from siggen.arrays import FloatArray
 @dataclass(frozen=True, slots=True)
 class History:
     """What came before sample 0: place/axis -> (h,), the last value one sample before it; empty in a failed response.
+
+    Or what comes behind the last sample, the first value one sample behind it.
 
     The acceleration before the history is zero where it is shorter than was asked for: the motion began at rest.
     """

@@ -7,20 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
-from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.history import History
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
+from siggen.dynamics.time.response_stream import Piece, ResponseStream, Run
 from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import SolverFailure
 
@@ -28,10 +25,8 @@ if TYPE_CHECKING:
     from siggen.gears.stiffness.mesh_tables import MeshTables
 
 
-APPROACH_LIMIT_PITCHES = 0.1
-"""Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
-BLOCK_SAMPLES = 2048
-"""Output samples per block of integration; bounds the memory independently of the duration."""
+WINDOW_SAMPLES = 32_768
+"""Output samples that one spline of the inputs covers, where it does not cover all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +43,8 @@ class Response:
     contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
     status, reason : "ok" and "", or what went wrong, with numbers
     internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
-    history : the samples before sample 0 of accelerations and bearing forces; (0,) arrays unless asked for
+    history, after : the samples before sample 0 and behind the last one of accelerations and bearing forces; (0,) arrays
+        unless asked for
     """
 
     fs_hz: float
@@ -61,35 +57,29 @@ class Response:
     reason: str
     internals: Mapping[str, FloatArray]
     history: History
-
-
-@dataclass(frozen=True, slots=True)
-class _Run:
-    """A motion with its time grid, `steps_per_sample` states per sample, step 0 at time 0, and wanted `motions`."""
-
-    motion: Motion
-    drive: Rotation
-    fs_hz: float
-    steps_per_sample: int
-    excitation: Excitation | SampledExcitation | None = None
-    motions: tuple[str, ...] = ()
+    after: History = History({}, {})
 
     @property
-    def limit_m(self) -> float:
-        return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
+    def motions(self) -> tuple[str, ...]:
+        """Names of the accelerations."""
+        return tuple(self.acceleration_m_s2)
 
-    def time_s(self, first: int, count: int) -> FloatArray:
-        return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the bearing forces."""
+        return tuple(self.bearing_force_n)
 
-    def pitches(self, first: int, count: int) -> FloatArray:
-        """Return the pinion angle in base pitches at `count` steps from step `first`."""
-        return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+    @property
+    def before(self) -> int:
+        """Samples of the history."""
+        return max((values.size for values in self.history.acceleration_m_s2.values()), default=0)
 
-    def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
-        """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
-        if self.excitation is None:
-            return no_inputs(pitches)
-        return self.excitation.inputs(self.time_s(first, pitches.size), self.drive)
+    def pieces(self) -> Iterator[Piece]:
+        """Yield history, record and what comes behind it."""
+        for outside in (self.history, None, self.after):
+            accelerations = self.acceleration_m_s2 if outside is None else outside.acceleration_m_s2
+            forces = self.bearing_force_n if outside is None else outside.bearing_force_n
+            yield Piece(_rows(accelerations), _rows(forces))
 
 
 def simulate_response(
@@ -156,10 +146,38 @@ def response_of(
 ) -> Response:
     """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
 
+    Arguments and errors as `response_stream`; a failed one has a status and its reason.
+    """
+    stream = response_stream(
+        motion, drive, fs_hz=fs_hz, samples=samples, steps_per_sample=steps_per_sample, internals=internals,
+        bearing_forces=bearing_forces, motions=motions, excitation=excitation, settle_s=settle_s, history_s=history_s,
+    )  # fmt: skip
+    return collected_response(stream)
+
+
+def response_stream(
+    motion: Motion,
+    drive: Rotation,
+    *,
+    fs_hz: float,
+    samples: int,
+    steps_per_sample: int,
+    internals: bool = False,
+    bearing_forces: bool = True,
+    motions: Collection[str] | None = None,
+    excitation: Excitation | None = None,
+    settle_s: float = 0.0,
+    history_s: float = 0.0,
+    ahead: int = 0,
+    in_blocks: bool = False,
+) -> ResponseStream:
+    """Return what a motion that was made for the step 1/(fs_hz steps_per_sample) does, before it is stepped.
+
     Starts from the static equilibrium and discards the transient that the motion states, or `settle_s` if that is
-    longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else.
-    Filtering costs about a fifth of a response for four forces or motions: without `bearing_forces` there are none, and
-    accelerations are those of the named `motions`; None: all. The motion must hold the vectors of `excitation`.
+    longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else, nor do
+    `ahead` samples behind the record. Filtering costs about a fifth of a response for four forces or motions: without
+    `bearing_forces` there are none, and accelerations are those of the named `motions`; None: all. The motion must hold
+    the vectors of `excitation`. `in_blocks`: splines of inputs cover windows of fixed length instead of all time.
 
     Raises
     ------
@@ -172,14 +190,32 @@ def response_of(
     acting: Excitation | SampledExcitation | None = excitation
     if excitation is not None and motion.coarse_inputs:
         half, rate_hz = half_length(steps_per_sample), fs_hz * steps_per_sample
-        ends_s = -(settle + half) / rate_hz, (samples * steps_per_sample + half) / rate_hz
-        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz)
+        ends_s = -(settle + half) / rate_hz, ((samples + ahead) * steps_per_sample + half) / rate_hz
+        window_s = WINDOW_SAMPLES / fs_hz if in_blocks else None
+        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz, window_s)
     wanted = tuple(name for name in motion.structure.motions if motions is None or name in motions)
-    run = _Run(motion, drive, fs_hz, steps_per_sample, acting, wanted)
+    return ResponseStream(
+        Run(motion, drive, fs_hz, steps_per_sample, acting, wanted), samples, settle=settle, history=history,
+        ahead=ahead, bearing_forces=bearing_forces, internals=internals,
+    )  # fmt: skip
+
+
+def collected_response(stream: ResponseStream) -> Response:
+    """Return all pieces of a stream as one response; a failed one has a status and its reason."""
+    length = stream.before + stream.samples + stream.ahead
+    accelerations = np.empty((len(stream.motions), length))
+    forces = np.empty((len(stream.places), length))
+    done = 0
     try:
-        return _simulate(run, samples, internals, bearing_forces, settle, history)
+        for piece in stream.pieces():
+            block = slice(done, done + piece.acceleration_m_s2.shape[1])
+            accelerations[:, block] = piece.acceleration_m_s2
+            if stream.places:
+                forces[:, block] = piece.bearing_force_n
+            done = block.stop
     except SolverFailure as failure:
-        return _failed(run, failure)
+        return _failed(stream.run, failure)
+    return _finished(stream, accelerations, forces)
 
 
 def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
@@ -198,123 +234,42 @@ def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
         )
 
 
-def _simulate(run: _Run, samples: int, internals: bool, bearing_forces: bool, settle: int, history: int) -> Response:
-    """Step through transient and record block by block; keep only the filtered outputs and what was asked for."""
-    half, steps = half_length(run.steps_per_sample), run.steps_per_sample
-    state = run.motion.start(run.pitches(-half - settle, 1)[0])
-    begin = -half - history * steps
-    for _ in _blocks(run, state, -half - settle, begin):
-        pass
-    structure = run.motion.structure
-    decimators = [acceleration_decimator(structure, run.motions, run.fs_hz, steps, history + samples)]
-    decimators += [force_decimator(structure, steps, history + samples)] if bearing_forces else []
-    inner: list[FloatArray] = []
-    lost = 0
-    for first, states, apart in _blocks(run, state, begin, (samples - 1) * steps + half + 1):
-        for decimator in decimators:
-            decimator.take(states)
-        recorded = slice(max(0, -first), max(0, samples * steps - first))
-        run.motion.refuse_outside(states[recorded])
-        lost += _steps_apart(run, first, states, apart, recorded)
-        if internals and first + len(states) > 0:  # nothing of the history
-            inner.append(_inner_values(run, first, states, samples))
-    return _finished(run, [d.values for d in decimators], inner, lost / (samples * steps), history)
-
-
-def _steps_apart(run: _Run, first: int, states: FloatArray, apart: NDArray[np.bool_] | None, recorded: slice) -> int:
-    """Return at how many of the recorded steps of a block no teeth touch."""
-    if apart is None:
-        return run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
-    return int(apart[recorded].sum())
-
-
-def _blocks(
-    run: _Run, state: FloatArray, start: int, stop: int
-) -> Iterator[tuple[int, FloatArray, NDArray[np.bool_] | None]]:
-    """Yield first step, states (steps, 2n) and where teeth are apart, if known, from step `start` up to without `stop`.
-
-    Leaves `state` at `stop`.
-
-    Raises
-    ------
-    SolverFailure
-        If the state is not finite or the teeth would have passed through each other.
-    """
-    block = BLOCK_SAMPLES * run.steps_per_sample
-    trajectory = np.empty((min(block, stop - start) + 1, state.size))
-    for first in range(start, stop, block):
-        count = min(block, stop - first)
-        trajectory[0] = state
-        pitches = run.pitches(first, count + 1)
-        apart = run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
-        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
-        if beyond >= 0:
-            raise _divergence(run, first + beyond, trajectory[beyond])
-        state[:] = trajectory[count]
-        yield first, trajectory[:count], apart
-
-
-def _divergence(run: _Run, step: int, state: FloatArray) -> SolverFailure:
-    approach, _ = approach_of(run.motion.equations, state)
-    time = step / (run.fs_hz * run.steps_per_sample)
-    return SolverFailure(
-        "diverged",
-        f"approach {approach:.3e} m at {time:.6f} s (before 0 s: transient); allowed are finite values within "
-        f"{run.limit_m:.3e} m; raise steps_per_sample (received {run.steps_per_sample}) or the damping",
-    )
-
-
-@njit(cache=True)
-def _first_beyond(equations: Equations, states: FloatArray, limit_m: float) -> int:
-    """Return the first row whose approach is not a finite number within the limit, or -1."""
-    for i in range(states.shape[0]):
-        approach, _ = approach_of(equations, states[i])
-        if not abs(approach) <= limit_m:
-            return i
-    return -1
-
-
-def _inner_values(run: _Run, first: int, states: FloatArray, samples: int) -> FloatArray:
-    """Return the internals (k, names) at those steps of a block that are output samples."""
-    steps = np.arange(first, first + len(states))
-    chosen = (steps >= 0) & (steps % run.steps_per_sample == 0) & (steps < samples * run.steps_per_sample)
-    pitches = run.pitches(first, len(states))
-    return run.motion.internals(states[chosen], pitches[chosen], run.inputs(first, pitches)[chosen])
-
-
-def _finished(
-    run: _Run, values: list[FloatArray], inner: list[FloatArray], contact_loss_share: float, history: int
-) -> Response:
-    """Name the rows of accelerations and forces (channels, history + n), forces if there are any, and internals."""
-    motions, names, count = run.motions, run.motion.structure.bearing_forces, values[0].shape[1] - history
-    for forces in values[1:]:
-        _add_static_part(run, forces)
-    before, recorded = [_named(names, p) for f in values[1:] for p in np.split(f, [history], axis=1)] or ({}, {})
+def _finished(stream: ResponseStream, accelerations: FloatArray, forces: FloatArray) -> Response:
+    """Name the rows of accelerations and forces (channels, history + n + ahead), and internals."""
+    run, count, end = stream.run, stream.samples, stream.before + stream.samples
+    parts = [
+        (_named(stream.motions, a), _named(stream.places, f))
+        for a, f in zip(
+            np.split(accelerations, [stream.before, end], axis=1),
+            np.split(forces, [stream.before, end], axis=1),
+            strict=True,
+        )
+    ]
+    names = run.motion.internal_names
     return Response(
         fs_hz=run.fs_hz,
-        acceleration_m_s2=_named(motions, values[0][:, history:]),
-        bearing_force_n=recorded,
+        acceleration_m_s2=parts[1][0],
+        bearing_force_n=parts[1][1],
         angle_rad=_frozen(run.drive.angle_rad(np.arange(count) / run.fs_hz)),
         tacho_s=run.drive.tacho_s(count / run.fs_hz),
-        contact_loss_share=contact_loss_share,
+        contact_loss_share=stream.contact_loss_share,
         status="ok",
         reason="",
-        internals=_named(run.motion.internal_names, np.concatenate(inner).T.copy()) if inner else {},
-        history=History(_named(motions, values[0][:, :history]), before),
+        internals=_named(names, np.concatenate(stream.inner).T.copy()) if stream.inner else {},
+        history=History(*parts[0]),
+        after=History(*parts[2]),
     )
 
 
-def _add_static_part(run: _Run, forces: FloatArray) -> None:
-    """Add to bearing forces (places, n), which were filtered about their static values, what they are at rest."""
-    static, pairs = run.motion.equations.static_deflection, run.motion.structure.bearing_forces
-    forces += np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
+def _rows(named: Mapping[str, FloatArray]) -> FloatArray:
+    return np.array(list(named.values())) if named else np.empty((0, 0))
 
 
 def _named(names: Iterable[str], rows: FloatArray) -> Mapping[str, FloatArray]:
     return {name: _frozen(row) for name, row in zip(names, rows, strict=True)}
 
 
-def _failed(run: _Run, failure: SolverFailure) -> Response:
+def _failed(run: Run, failure: SolverFailure) -> Response:
     """Return a response without samples that says what went wrong."""
     empty = _frozen(np.empty(0))
     return Response(
@@ -328,6 +283,7 @@ def _failed(run: _Run, failure: SolverFailure) -> Response:
         reason=failure.reason,
         internals={},
         history=History({}, {}),
+        after=History({}, {}),
     )
 
 

@@ -1,0 +1,212 @@
+"""ResponseStream: accelerations and bearing forces of a gear stage at the output rate, piece after piece.
+
+Transient and record are stepped in blocks, whose states are filtered and forgotten: memory does not grow with the record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from siggen.arrays import FloatArray
+from siggen.compiled import njit
+from siggen.dynamics.drive.drive import Rotation
+from siggen.dynamics.drive.excitation import Excitation
+from siggen.dynamics.drive.sampled_excitation import SampledExcitation
+from siggen.dynamics.time.decimation import Decimator, half_length
+from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
+from siggen.errors import SolverFailure
+
+APPROACH_LIMIT_PITCHES = 0.1
+"""Penetration of the flanks, in base pitches, beyond which no teeth exist: about 1 mm, a hundred times a usual load."""
+BLOCK_SAMPLES = 2048
+"""Output samples per block of integration; bounds the memory independently of the duration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A motion with its time grid, `steps_per_sample` states per sample, step 0 at time 0, and wanted `motions`."""
+
+    motion: Motion
+    drive: Rotation
+    fs_hz: float
+    steps_per_sample: int
+    excitation: Excitation | SampledExcitation | None = None
+    motions: tuple[str, ...] = ()
+
+    @property
+    def limit_m(self) -> float:
+        return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
+
+    def time_s(self, first: int, count: int) -> FloatArray:
+        return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
+
+    def pitches(self, first: int, count: int) -> FloatArray:
+        """Return the pinion angle in base pitches at `count` steps from step `first`."""
+        return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+
+    def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
+        """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""
+        if self.excitation is None:
+            return no_inputs(pitches)
+        return self.excitation.inputs(self.time_s(first, pitches.size), self.drive)
+
+
+class Piece(NamedTuple):
+    """Accelerations (motions, k) and bearing forces (places, k), static ones included, at samples that follow others."""
+
+    acceleration_m_s2: FloatArray
+    bearing_force_n: FloatArray
+
+
+class Pieces(Protocol):
+    """Pieces of the named motions and bearing forces, the first one from `before` samples before sample 0."""
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """Names of the rows of accelerations."""
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the rows of bearing forces."""
+
+    @property
+    def before(self) -> int:
+        """Samples of the history."""
+
+    def pieces(self) -> Iterator[Piece]:
+        """Yield all pieces in order."""
+
+
+class ResponseStream:
+    """What a run gives from `history` samples before sample 0 to `ahead` samples behind the last of `samples`.
+
+    `settle` steps come before sample 0. `inner` collects values (k, names) at the samples of the record if they are asked for.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        samples: int,
+        *,
+        settle: int,
+        history: int = 0,
+        ahead: int = 0,
+        bearing_forces: bool = True,
+        internals: bool = False,
+    ) -> None:
+        self.run, self.samples, self.before, self.ahead = run, samples, history, ahead
+        self.motions: tuple[str, ...] = run.motions
+        self.places: tuple[str, ...] = tuple(run.motion.structure.bearing_forces) if bearing_forces else ()
+        self.inner: list[FloatArray] = []
+        self._settle, self._with_internals, self._lost = settle, internals, 0
+
+    @property
+    def contact_loss_share(self) -> float:
+        """Share of the record in which no teeth touched, once all pieces were taken."""
+        return self._lost / (self.samples * self.run.steps_per_sample)
+
+    def pieces(self) -> Iterator[Piece]:
+        """Step through transient and record.
+
+        Raises
+        ------
+        SolverFailure
+            If the state is not finite or the teeth would have passed through each other.
+        """
+        run, steps = self.run, self.run.steps_per_sample
+        half, structure = half_length(steps), run.motion.structure
+        state = run.motion.start(run.pitches(-half - self._settle, 1)[0])
+        begin = -half - self.before * steps
+        for _ in _blocks(run, state, -half - self._settle, begin):
+            pass
+        accelerations = acceleration_decimator(structure, run.motions, run.fs_hz, steps)
+        forces = force_decimator(structure, steps) if self.places else None
+        for first, states, apart in _blocks(run, state, begin, (self.samples + self.ahead - 1) * steps + half + 1):
+            piece = Piece(accelerations.take(states), self._forces(forces, states))
+            self._count(first, states, apart)
+            if piece.acceleration_m_s2.shape[1]:
+                yield piece
+
+    def _forces(self, decimator: Decimator | None, states: FloatArray) -> FloatArray:
+        """Return bearing forces, which are filtered about their static values, with what they are at rest."""
+        if decimator is None:
+            return np.empty((0, 0))
+        motion = self.run.motion
+        static, pairs = motion.equations.static_deflection, motion.structure.bearing_forces
+        at_rest = np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
+        return np.asarray(decimator.take(states) + at_rest)
+
+    def _count(self, first: int, states: FloatArray, apart: NDArray[np.bool_] | None) -> None:
+        recorded = slice(max(0, -first), max(0, self.samples * self.run.steps_per_sample - first))
+        self.run.motion.refuse_outside(states[recorded])
+        self._lost += _steps_apart(self.run, first, states, apart, recorded)
+        if self._with_internals and first + len(states) > 0:  # nothing of the history
+            self.inner.append(_inner_values(self.run, first, states, self.samples))
+
+
+def _steps_apart(run: Run, first: int, states: FloatArray, apart: NDArray[np.bool_] | None, recorded: slice) -> int:
+    """Return at how many of the recorded steps of a block no teeth touch."""
+    if apart is None:
+        return run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
+    return int(apart[recorded].sum())
+
+
+def _blocks(
+    run: Run, state: FloatArray, start: int, stop: int
+) -> Iterator[tuple[int, FloatArray, NDArray[np.bool_] | None]]:
+    """Yield first step, states (steps, 2n) and where teeth are apart, if known, from step `start` up to without `stop`.
+
+    Leaves `state` at `stop`.
+
+    Raises
+    ------
+    SolverFailure
+        If the state is not finite or the teeth would have passed through each other.
+    """
+    block = BLOCK_SAMPLES * run.steps_per_sample
+    trajectory = np.empty((min(block, stop - start) + 1, state.size))
+    for first in range(start, stop, block):
+        count = min(block, stop - first)
+        trajectory[0] = state
+        pitches = run.pitches(first, count + 1)
+        apart = run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
+        beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
+        if beyond >= 0:
+            raise _divergence(run, first + beyond, trajectory[beyond])
+        state[:] = trajectory[count]
+        yield first, trajectory[:count], apart
+
+
+def _divergence(run: Run, step: int, state: FloatArray) -> SolverFailure:
+    approach, _ = approach_of(run.motion.equations, state)
+    time = step / (run.fs_hz * run.steps_per_sample)
+    return SolverFailure(
+        "diverged",
+        f"approach {approach:.3e} m at {time:.6f} s (before 0 s: transient); allowed are finite values within "
+        f"{run.limit_m:.3e} m; raise steps_per_sample (received {run.steps_per_sample}) or the damping",
+    )
+
+
+@njit(cache=True)
+def _first_beyond(equations: Equations, states: FloatArray, limit_m: float) -> int:
+    """Return the first row whose approach is not a finite number within the limit, or -1."""
+    for i in range(states.shape[0]):
+        approach, _ = approach_of(equations, states[i])
+        if not abs(approach) <= limit_m:
+            return i
+    return -1
+
+
+def _inner_values(run: Run, first: int, states: FloatArray, samples: int) -> FloatArray:
+    """Return the internals (k, names) at those steps of a block that are output samples."""
+    steps = np.arange(first, first + len(states))
+    chosen = (steps >= 0) & (steps % run.steps_per_sample == 0) & (steps < samples * run.steps_per_sample)
+    pitches = run.pitches(first, len(states))
+    return run.motion.internals(states[chosen], pitches[chosen], run.inputs(first, pitches)[chosen])

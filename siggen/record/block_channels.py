@@ -1,0 +1,93 @@
+"""What every sensor of a record stores, block after block: inputs through filters of limited length, in bounded memory.
+
+docs/design/blocks.md says what a block is and which error its filters leave. A record in blocks is another one than the same
+record at once: its noise is drawn in another order.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.dynamics.drive.drive import Rotation
+from siggen.dynamics.time.response_stream import Pieces
+from siggen.planning.plan import PlannedRecord
+from siggen.planning.specimen import Specimen, draw_operating_point
+from siggen.record.block_inputs import BlockInputs
+from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
+from siggen.record.disturbance import ChannelDisturbance, NoiseLength
+from siggen.record.measured_disturbance import Turning
+from siggen.sensing.block_filter import BLOCK_SAMPLES
+from siggen.sensing.recorder import Recorder
+from siggen.specimen.drive import record_rotation, start_angle_rad
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.instrument import Instrument
+
+
+def block_channels(
+    config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
+) -> tuple[dict[str, np.ndarray], dict[str, object]]:
+    """Return channel name -> float32 signal (n,) in m/s^2, and the labels of all channels.
+
+    Raises
+    ------
+    SolverFailure, ValueError
+        As the response, where it is stepped as it is taken.
+    """
+    inputs = BlockInputs(config, specimen, record, response, instrument)
+    recorders = {channel.name: Recorder(config.samples, channel.gain) for channel in instrument.channels}
+    for seen in inputs.seen():
+        for name, values in seen.items():
+            recorders[name].take(values)
+    rotation = _rotation(config, specimen, record)
+    turning = Turning(specimen.gears.pinion.teeth / specimen.gears.gear.teeth, _largest_step_rad(config, rotation))
+    signals: dict[str, np.ndarray] = {}
+    labels: dict[str, object] = {}
+    for channel in instrument.channels:
+        draws = channel_draws(config, record, channel.name)
+        noise_length = NoiseLength(instrument.length, config.fs_hz, in_blocks=True)
+        disturbance = ChannelDisturbance(channel, draws, turning, noise_length)
+        rng, floor, snr_db = white_noise(config, record, channel, draws)
+        measured = recorders.pop(channel.name).measured(
+            range_m_s2=channel.sensor.range_m_s2,
+            bits=channel.sensor.bits,
+            rng=rng,
+            noise_floor_m_s2=floor,
+            snr_db=snr_db,
+            added=_Added(disturbance, rotation, config.fs_hz),
+            block=BLOCK_SAMPLES,
+        )
+        signals[channel.name] = measured.accel_m_s2
+        labels |= {**channel_labels(channel, measured), **disturbance.labels}
+    return signals, {**labels, **inputs.labels}
+
+
+class _Added:
+    """What a disturbance adds to samples, block after block."""
+
+    def __init__(self, disturbance: ChannelDisturbance, rotation: Rotation, fs_hz: float) -> None:
+        self._disturbance, self._rotation, self._fs_hz = disturbance, rotation, fs_hz
+
+    def __call__(self, first: int, count: int) -> FloatArray | None:
+        return self._disturbance.take(first, _angle_rad(self._rotation, self._fs_hz, first, count))
+
+
+def _rotation(config: Config, specimen: Specimen, record: PlannedRecord) -> Rotation:
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    return record_rotation(config, point, record, start_angle_rad(config, gear_pair(specimen.gears), record))
+
+
+def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:
+    return rotation.angle_rad((np.arange(count) + first) / fs_hz)
+
+
+def _largest_step_rad(config: Config, rotation: Rotation) -> float:
+    """Return how far the pinion turns in a sample at most; 0 where nobody asks."""
+    if all(sensor.lines is None for sensor in config.sensors):
+        return 0.0
+    steps = (
+        np.diff(_angle_rad(rotation, config.fs_hz, first, min(BLOCK_SAMPLES, config.samples - first) + 1)).max()
+        for first in range(0, config.samples, BLOCK_SAMPLES)
+    )
+    return float(max(steps))

@@ -1,0 +1,86 @@
+"""BlockInputs: what reaches the channels of a record, filtered block after block (overlap-save, `block_filter`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Config
+from siggen.dynamics.time.response_stream import Pieces
+from siggen.planning.plan import PlannedRecord
+from siggen.planning.specimen import Specimen
+from siggen.record.background_blocks import BackgroundBlocks
+from siggen.record.motion_blocks import MotionBlocks
+from siggen.sensing.block_filter import AHEAD, BlockGrid
+from siggen.specimen.block_responses import FLOOR, MOTION, BlockResponses, Input, block_responses
+from siggen.specimen.instrument import Instrument, channel_ways
+
+
+class BlockInputs:
+    """Inputs of one record, and the accelerations that its channels see of them."""
+
+    def __init__(
+        self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
+    ) -> None:
+        assert instrument.blocks is not None
+        self._samples, self._grid = config.samples, instrument.blocks.grid
+        back, background = self._grid.back, instrument.background
+        self._motions = MotionBlocks(config, specimen, record, response, back)
+        self._background: BackgroundBlocks | None = None
+        self._filters = instrument.blocks.filters
+        if background is not None:
+            length = back + self._samples + AHEAD
+            self._background = BackgroundBlocks(config, specimen, record, background, -back, length)
+            if background.section.redraw == "record":
+                self._filters = _with_floor(instrument, self._background).filters
+        self._plain = {c.name: Input(MOTION, next(iter(c.motions))) for c in instrument.channels if c.is_plain}
+        felt = (one for filters in self._filters.values() for one in filters)
+        self._buffers = {one: np.zeros(self._grid.length) for one in dict.fromkeys([*felt, *self._plain.values()])}
+
+    @property
+    def labels(self) -> dict[str, object]:
+        """Labels of force noise and background, complete when the first block was taken."""
+        return {**self._motions.labels, **({} if self._background is None else self._background.labels)}
+
+    def seen(self) -> Iterator[dict[str, FloatArray]]:
+        """Yield channel -> acceleration (k,) before its gain, block after block."""
+        block, back = self._grid.block, self._grid.back
+        for first in range(0, self._samples, block):
+            count = min(block, self._samples - first)
+            self._shift(count, 0 if first == 0 else back + AHEAD)
+            yield self._filtered(slice(back, back + count))
+
+    def _shift(self, count: int, kept: int) -> None:
+        """Move every input on, so that the next block of `count` samples and what filters see around it is there."""
+        new = count if kept else self._grid.back + count + AHEAD
+        taken = {**self._motions.take(new), **({} if self._background is None else self._background.take(new))}
+        for one, buffer in self._buffers.items():
+            buffer[:kept] = buffer[self._grid.block : self._grid.block + kept].copy()
+            buffer[kept:] = 0.0
+            if one in taken:
+                buffer[kept : kept + new] = taken[one]
+
+    def _filtered(self, valid: slice) -> dict[str, FloatArray]:
+        totals: dict[str, ComplexArray] = {}
+        for one, buffer in self._buffers.items():
+            felt = [(name, filters[one]) for name, filters in self._filters.items() if one in filters]
+            spectrum = np.fft.rfft(buffer) if felt else None
+            for name, response in felt:
+                if name in totals:
+                    totals[name] += response * spectrum
+                else:
+                    totals[name] = response * spectrum
+        found = {name: np.fft.irfft(total, self._grid.length)[valid] for name, total in totals.items()}
+        for name, one in self._plain.items():
+            shown = self._buffers[one][valid] + self._motions.offsets[one]
+            found[name] = found[name] + shown if name in found else shown
+        return found
+
+
+def _with_floor(instrument: Instrument, background: BackgroundBlocks) -> BlockResponses:
+    """Return the filters with the floor of one record."""
+    assert instrument.blocks is not None
+    ways = {c.name: channel_ways(instrument, c, background.floor) for c in instrument.channels}
+    return block_responses(instrument.blocks.grid, ways)

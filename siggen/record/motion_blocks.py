@@ -1,0 +1,78 @@
+"""MotionBlocks: motions and bearing forces of a response as inputs of filters, in parts of any length."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.dynamics.time.response_stream import Pieces
+from siggen.planning.plan import PlannedRecord
+from siggen.planning.specimen import Specimen
+from siggen.record.forces import DrawnForceNoise, force_generator, force_noise
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+from siggen.specimen.block_responses import FORCE, MOTION, Input
+
+ROLL_OFF_TAPS = 1024
+"""Of the filter of force noise that rolls off."""
+
+
+class MotionBlocks:
+    """Values from sample -`back` on, about the mean of the history, with noise on forces; 0 before the history.
+
+    `offsets` are the means that were taken off.
+    """
+
+    def __init__(self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, back: int) -> None:
+        self.inputs = tuple(
+            Input(kind, name)
+            for kind, names in ((MOTION, response.motions), (FORCE, response.places))
+            for name in names
+        )
+        noise = force_noise(config, specimen, record)
+        self.labels = noise.labels
+        self._noise = [_noise(config, record, noise, one) for one in self.inputs]
+        self._pieces = response.pieces()
+        self._mean = np.zeros((len(self.inputs), 1))
+        history = self._read(np.empty((len(self.inputs), 0)), response.before)
+        if response.before:
+            self._mean = history[:, : response.before].mean(axis=1, keepdims=True)
+        self.offsets = dict(zip(self.inputs, self._mean[:, 0], strict=True))
+        self._left = np.concatenate(
+            [np.zeros((len(self.inputs), back - response.before)), history - self._mean], axis=1
+        )
+
+    def take(self, count: int) -> dict[Input, FloatArray]:
+        """Return the next values (count,) of every input; 0 behind the end of the response.
+
+        Raises
+        ------
+        SolverFailure, ValueError
+            As the response, where it is stepped as it is taken.
+        """
+        rows = self._read(self._left, count)
+        self._left = rows[:, count:].copy()
+        noises = (None if noise is None else noise.take(count) for noise in self._noise)
+        taken = zip(self.inputs, rows[:, :count], noises, strict=True)
+        return {one: row if noise is None else row + noise for one, row, noise in taken}
+
+    def _read(self, left: FloatArray, count: int) -> FloatArray:
+        """Return what is left and as many pieces behind it as make at least `count` samples."""
+        found, have = [left], left.shape[1]
+        while have < count:
+            piece = next(self._pieces, None)
+            if piece is None:
+                rows = np.zeros((len(self.inputs), count - have))
+            else:
+                rows = np.concatenate([p for p in piece if p.size]) - self._mean
+            found.append(rows)
+            have += rows.shape[1]
+        return np.concatenate(found, axis=1)
+
+
+def _noise(config: Config, record: PlannedRecord, noise: DrawnForceNoise, one: Input) -> ShapedNoise | None:
+    """Return the noise of a force; None for motions, and without noise."""
+    if one.kind != FORCE or noise.density <= 0.0:
+        return None
+    taps = np.ones(1) if noise.corner_hz is None else shape_taps(noise.roll_off, ROLL_OFF_TAPS, config.fs_hz)
+    return ShapedNoise(noise.density * taps, config.fs_hz, force_generator(config, record, one.name))

@@ -1,0 +1,59 @@
+"""Filtering in blocks of fixed length: paths as impulse responses of limited length, joined without a seam.
+
+Overlap-save (reference: standard literature): a block's spectrum reaches as far back as the filter remembers, so that
+its product with the filter's is the linear convolution and blocks join exactly. A response is sampled at frequencies
+1/memory apart, and its impulse response, from `AHEAD` samples before time 0 (delays that are no whole number of samples) to the end
+of the memory, fades out over the last tenth (derived). What is lost is what rings longer than the memory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.sensing.spectral_filter import filter_length
+
+BLOCK_SAMPLES = 65_536
+"""Samples of a channel that are filtered at once. Part of the definition of a record."""
+AHEAD = 64
+"""Samples after a block that its filters see: delays by parts of a sample ring both ways."""
+FADED_SHARE = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class BlockGrid:
+    """`memory` samples of an impulse response, `AHEAD` of them before time 0; `block` samples out of `length`."""
+
+    memory: int
+    block: int
+    length: int
+
+    @property
+    def back(self) -> int:
+        """Samples before a block that its filters see."""
+        return self.memory - AHEAD
+
+
+def block_grid(history: int, samples: int) -> BlockGrid:
+    """Return the grid of a record of so many samples whose filters remember at least `history` samples."""
+    memory, block = filter_length(history + AHEAD, 0), min(samples, BLOCK_SAMPLES)
+    return BlockGrid(memory, block, filter_length(memory, block))
+
+
+def limited(response: ComplexArray, grid: BlockGrid) -> ComplexArray:
+    """Return the spectrum (length // 2 + 1,) of what a response (memory // 2 + 1,) is over its memory."""
+    pulse = np.fft.irfft(response, grid.memory)
+    behind = grid.memory - AHEAD
+    values = np.zeros(grid.length)
+    values[:behind] = pulse[:behind]
+    values[-AHEAD:] = pulse[behind:] * _rise(AHEAD)
+    faded = int(FADED_SHARE * behind)
+    values[behind - faded : behind] *= _rise(faded)[::-1]
+    return np.asarray(np.fft.rfft(values))
+
+
+def _rise(count: int) -> FloatArray:
+    """Return half a cosine from 0 to 1 (count,)."""
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count))

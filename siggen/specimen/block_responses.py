@@ -1,0 +1,61 @@
+"""BlockResponses: how every input of a record reaches every channel, sensor included, as filters of limited length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.config import Floor, constant
+from siggen.sensing.block_filter import BlockGrid, limited
+from siggen.sensing.force_density import rising_floor, tabulated
+from siggen.sensing.shaped_noise import FINER, least_phase
+from siggen.sensing.spectral_filter import frequencies
+
+MOTION, FORCE, BACKGROUND, FLOOR = "motion", "force", "background", "floor"
+
+
+class Input(NamedTuple):
+    """What reaches channels: a motion of the model, a bearing force, a force of the background, or noise of its floor."""
+
+    kind: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class BlockResponses:
+    """Channel -> input -> spectrum (length // 2 + 1,) of the filter; no inputs that a channel does not feel."""
+
+    grid: BlockGrid
+    filters: Mapping[str, Mapping[Input, ComplexArray]]
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """All inputs that a channel feels."""
+        return tuple(dict.fromkeys(one for filters in self.filters.values() for one in filters))
+
+
+def block_responses(grid: BlockGrid, ways: Mapping[str, Mapping[Input, ComplexArray]]) -> BlockResponses:
+    """Return the filters of responses (memory // 2 + 1,)."""
+    return BlockResponses(
+        grid, {name: {one: limited(way, grid) for one, way in found.items()} for name, found in ways.items()}
+    )
+
+
+def floor_shape(floor: Floor, frequency_hz: FloatArray) -> FloatArray:
+    """Return how all densities of a floor run over frequency (k,), 1 above the low corner."""
+    shape = rising_floor(frequency_hz, constant(floor.low_corner_hz), constant(floor.low_exponent))
+    if floor.spectrum is not None:
+        shape = shape * tabulated(frequency_hz, floor.spectrum.frequency_hz, floor.spectrum.density)
+    return shape
+
+
+def floor_response(floor: Floor, memory: int, fs_hz: float) -> ComplexArray:
+    """Return the causal response (memory // 2 + 1,) with this shape: what white noise passes before the paths.
+
+    Together with a path, which falls as f² towards frequency 0, it is remembered no longer than the path alone.
+    """
+    return least_phase(floor_shape(floor, frequencies(FINER * memory, fs_hz)))[::FINER]
