@@ -89,8 +89,8 @@ class Config(Section):
 
     filters: Literal["record", "blocks"] = Field(
         default="record",
-        description="how paths, sensors and noise are computed; record: over the whole record at once; blocks: block after "
-        "block, with filters of limited length, in memory that does not grow with the duration",
+        description="how paths, sensors and noise are computed; record: over the whole record at once; blocks: "
+        "block after block, with filters of limited length, in memory that does not grow with the duration",
     )
 
     @property

@@ -1,4 +1,4 @@
-"""The background of one record block after block: the forces of `background`, and white noise before its floor's shape."""
+"""The background of one record block after block: its forces, and white noise before the floor's shape."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from siggen.specimen.block_responses import BACKGROUND, FLOOR, Input
 
 
 class BackgroundBlocks:
-    """All parts of a record's background from sample `first` on, over `length` samples; `labels` from the first block on.
+    """All parts of a record's background from sample `first` on, over `length` samples.
 
-    Nothing is drawn from the state.
+    `labels` are there from the first block on. Nothing is drawn from the state.
     """
 
     def __init__(

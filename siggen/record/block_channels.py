@@ -1,10 +1,12 @@
-"""What every sensor of a record stores, block after block: inputs through filters of limited length, in bounded memory.
+"""What every sensor of a record stores, block after block: inputs through filters of limited length.
 
-docs/design/blocks.md says what a block is and which error its filters leave. A record in blocks is another one than the same
-record at once: its noise is drawn in another order.
+Memory is bounded but for the stored channels. A record in blocks is another one than the same record at once: its noise
+is drawn in another order (docs/understand/blocks.md).
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -40,37 +42,47 @@ def block_channels(
     for seen in inputs.seen():
         for name, values in seen.items():
             recorders[name].take(values)
+    disturbances = _disturbances(config, specimen, record, instrument, recorders)
     rotation = _rotation(config, specimen, record)
-    turning = Turning(specimen.gears.pinion.teeth / specimen.gears.gear.teeth, _largest_step_rad(config, rotation))
-    signals: dict[str, np.ndarray] = {}
+    for first in range(0, config.samples, BLOCK_SAMPLES):
+        count = min(BLOCK_SAMPLES, config.samples - first)
+        follows = any(disturbance.follows_angle for disturbance in disturbances.values())
+        angle = _angle_rad(rotation, config.fs_hz, first, count) if follows else np.zeros(count)
+        for name, recorder in recorders.items():
+            recorder.convert(count, disturbances[name].take(first, angle))
     labels: dict[str, object] = {}
+    signals: dict[str, np.ndarray] = {}
+    for channel in instrument.channels:
+        measured = recorders[channel.name].measurement()
+        signals[channel.name] = measured.accel_m_s2
+        labels |= {**channel_labels(channel, measured), **disturbances[channel.name].labels}
+    return signals, {**labels, **inputs.labels}
+
+
+def _disturbances(
+    config: Config,
+    specimen: Specimen,
+    record: PlannedRecord,
+    instrument: Instrument,
+    recorders: Mapping[str, Recorder],
+) -> dict[str, ChannelDisturbance]:
+    """Return channel -> what is added to it; its recorder learns its noise and its converter."""
+    largest = _largest_step_rad(config, _rotation(config, specimen, record))
+    turning = Turning(specimen.gears.pinion.teeth / specimen.gears.gear.teeth, largest)
+    noise_length = NoiseLength(instrument.length, config.fs_hz, in_blocks=True)
+    found = {}
     for channel in instrument.channels:
         draws = channel_draws(config, record, channel.name)
-        noise_length = NoiseLength(instrument.length, config.fs_hz, in_blocks=True)
-        disturbance = ChannelDisturbance(channel, draws, turning, noise_length)
+        found[channel.name] = ChannelDisturbance(channel, draws, turning, noise_length)
         rng, floor, snr_db = white_noise(config, record, channel, draws)
-        measured = recorders.pop(channel.name).measured(
+        recorders[channel.name].finish(
             range_m_s2=channel.sensor.range_m_s2,
             bits=channel.sensor.bits,
             rng=rng,
             noise_floor_m_s2=floor,
             snr_db=snr_db,
-            added=_Added(disturbance, rotation, config.fs_hz),
-            block=BLOCK_SAMPLES,
         )
-        signals[channel.name] = measured.accel_m_s2
-        labels |= {**channel_labels(channel, measured), **disturbance.labels}
-    return signals, {**labels, **inputs.labels}
-
-
-class _Added:
-    """What a disturbance adds to samples, block after block."""
-
-    def __init__(self, disturbance: ChannelDisturbance, rotation: Rotation, fs_hz: float) -> None:
-        self._disturbance, self._rotation, self._fs_hz = disturbance, rotation, fs_hz
-
-    def __call__(self, first: int, count: int) -> FloatArray | None:
-        return self._disturbance.take(first, _angle_rad(self._rotation, self._fs_hz, first, count))
+    return found
 
 
 def _rotation(config: Config, specimen: Specimen, record: PlannedRecord) -> Rotation:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_blocks import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks
-from siggen.sensing.block_filter import AHEAD, BlockGrid
-from siggen.specimen.block_responses import FLOOR, MOTION, BlockResponses, Input, block_responses
+from siggen.sensing.block_filter import AHEAD
+from siggen.specimen.block_responses import MOTION, BlockResponses, Input, block_responses
 from siggen.specimen.instrument import Instrument, channel_ways
 
 
@@ -63,15 +63,19 @@ class BlockInputs:
                 buffer[kept : kept + new] = taken[one]
 
     def _filtered(self, valid: slice) -> dict[str, FloatArray]:
-        totals: dict[str, ComplexArray] = {}
+        bins = self._grid.length // 2 + 1
+        totals: dict[str, ComplexArray] = {
+            n: np.zeros(bins, complex) for n, filters in self._filters.items() if filters
+        }
+        product = np.empty(bins, complex)
         for one, buffer in self._buffers.items():
             felt = [(name, filters[one]) for name, filters in self._filters.items() if one in filters]
-            spectrum = np.fft.rfft(buffer) if felt else None
+            if not felt:  # shown as it is
+                continue
+            spectrum = np.fft.rfft(buffer)
             for name, response in felt:
-                if name in totals:
-                    totals[name] += response * spectrum
-                else:
-                    totals[name] = response * spectrum
+                np.multiply(response, spectrum, out=product)
+                totals[name] += product
         found = {name: np.fft.irfft(total, self._grid.length)[valid] for name, total in totals.items()}
         for name, one in self._plain.items():
             shown = self._buffers[one][valid] + self._motions.offsets[one]

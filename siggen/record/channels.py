@@ -9,7 +9,7 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
-from siggen.dynamics.time.response_stream import ResponseStream
+from siggen.dynamics.time.response_stream import Pieces
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background import record_background
@@ -27,7 +27,7 @@ def measured_channels(
     config: Config,
     specimen: Specimen,
     record: PlannedRecord,
-    response: Response | ResponseStream,
+    response: Response | Pieces,
     instrument: Instrument | None = None,
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
     """Return channel name -> float32 signal (n,) in m/s^2, and the labels of all channels.
@@ -43,7 +43,7 @@ def measured_channels(
     instrument = instrument or specimen_instrument(config, specimen)
     if instrument.blocks is not None:
         return block_channels(config, specimen, record, response, instrument)
-    if isinstance(response, ResponseStream):
+    if not isinstance(response, Response):
         raise TypeError("response: received a stream; allowed with `filters: record` is a whole response")
     return _whole(config, specimen, record, response, instrument)
 

@@ -16,14 +16,13 @@ from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Ton
 from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines, Turning
 from siggen.sensing.force_density import noise_of, tabulated
 from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.pink_noise import PinkNoise
+from siggen.sensing.pink_noise import PinkStream
 from siggen.sensing.sensor_response import high_pass_response
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.sensing.spread import Spread
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
-
 
 SPECTRUM_TAPS = 16_384
 """Of the filter of a sensor's noise, if it is made in blocks: at 25.6 kHz densities are smoothed over 1.6 Hz."""
@@ -36,7 +35,7 @@ class ChannelDisturbance:
     """What is added to a channel of one record behind its amplifier, part after part, and the labels of it.
 
     Vibrations of other machines pass the sensor as those of the gears do; hum, 1/f noise, noise of a given density and
-    given lines are as they are stored.
+    given lines are as they are stored. Unless it `follows_angle`, angles count by their number alone.
     """
 
     def __init__(self, channel: ChannelInstrument, draws: Draws, turning: Turning, record: NoiseLength) -> None:
@@ -44,6 +43,8 @@ class ChannelDisturbance:
         self._spreads: dict[str, Spread] = {}
         self._parts: list[tuple[str | None, Part]] = []
         sensor, name = channel.sensor, channel.name
+        modulated = sensor.noise_spectrum is not None and sensor.noise_spectrum.modulation is not None
+        self.follows_angle = modulated or sensor.lines is not None
         if sensor.pink_noise is not None:
             self._parts.append((None, self._pink(sensor.pink_noise, channel, draws, record)))
         if sensor.noise_spectrum is not None:
@@ -57,7 +58,7 @@ class ChannelDisturbance:
             self._labels[f"{part_name}_{name}_m_s2"] = lines.rms_m_s2
 
     def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:
-        """Return what is added (k,) from sample `first` on, where the pinion's angles (k,) are given; None for nothing."""
+        """Return what is added (k,) from sample `first` on, at angles of the pinion (k,); None for nothing."""
         if not self._parts:
             return None
         signal = np.zeros(angle_rad.size)
@@ -79,7 +80,7 @@ class ChannelDisturbance:
         corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
         self._labels[f"pink_noise_{channel.name}_m_s2_per_sqrt_hz"] = density
         if record.in_blocks:
-            pink = PinkNoise(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
+            pink = PinkStream(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
             return lambda _, angle: pink.take(angle.size)
         spectrum = noise_spectrum(density, record.length, record.fs_hz, rng, pink_corner_hz=corner_hz)
         spectrum = spectrum if channel.high_pass is None else spectrum * channel.high_pass

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from siggen.arrays import FloatArray
 from siggen.columns.gearbox_columns import drawn_places, draws_casing, draws_oil
 from siggen.config import Config, State, constant
-from siggen.dynamics.time.response import Response
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
@@ -88,14 +88,14 @@ def _pair_labels(config: Config, specimen: Specimen) -> dict[str, object]:
 
 
 def operating_labels(
-    pair: GearPair, point: OperatingPoint, response: Response, static: StaticMesh
+    pair: GearPair, point: OperatingPoint, ends_rad: FloatArray, config: Config, static: StaticMesh
 ) -> dict[str, object]:
     """Return teeth, commanded speed and torque, the frequencies that the record really has, and the loss at its torque.
 
-    `static` is the mesh of the state at rest.
+    `ends_rad` (2,) are the pinion's angles at the first and the last sample; `static` is the mesh of the
+    state at rest.
     """
-    turned = response.angle_rad[-1] - response.angle_rad[0]
-    shaft_hz = float(turned / (6.283185307179586 * (len(response.angle_rad) - 1) / response.fs_hz))
+    shaft_hz = float((ends_rad[1] - ends_rad[0]) / (6.283185307179586 * (config.samples - 1) / config.fs_hz))
     return {
         "teeth_pinion": pair.pinion.teeth,
         "teeth_gear": pair.gear.teeth,

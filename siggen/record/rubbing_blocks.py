@@ -1,4 +1,4 @@
-"""Rubbing force block after block: the model of `rubbing`, its noise behind a filter that remembers a few milliseconds."""
+"""Rubbing force block after block: the model of `rubbing`, its noise behind a filter of 1024 taps."""
 
 from __future__ import annotations
 

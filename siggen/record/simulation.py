@@ -13,7 +13,7 @@ from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, collected_response, response_stream
-from siggen.dynamics.time.response_stream import ResponseStream
+from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -170,7 +170,7 @@ def _stream(
     driven: RecordDrive | None = None,
     motions: Collection[str] | None = None,
 ) -> tuple[ResponseStream, OperatingPoint]:
-    """Return the response of one record before it is stepped, and its operating point; arguments as `record_response`."""
+    """Return the response of one record before it is stepped, and its operating point."""
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
     driven = _driven(config, specimen, state, record) if driven is None else driven
@@ -215,25 +215,54 @@ def _simulated(
     with refused_as("outside_model"), stage("inputs"):
         driven = _driven(config, specimen, state, planned)
     seen = None if with_internals else {motion for channel in instrument.channels for motion in channel.motions}
-    response, point = record_response(
-        config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
-    )
+    response: Response | _RefusedPieces
+    if config.filters == "blocks" and not with_internals:
+        with refused_as("outside_model"):
+            stream, point = _stream(config, specimen, state, planned, driven=driven, motions=seen)
+        response = _RefusedPieces(stream)
+    else:
+        response, point = record_response(
+            config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
+        )
     with stage("sensing"):
         channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
+    ends_rad = driven.rotation.angle_rad(np.array([0, config.samples - 1]) / config.fs_hz)
     with refused_as("outside_model"):
-        operating = operating_labels(state.pair, point, response, state.static)
+        operating = operating_labels(state.pair, point, ends_rad, config, state.static)
     labels = {
         **state.labels,
         **operating,
         **variation_labels(config, driven),
-        "start_angle_rad": float(response.angle_rad[0]),
+        "start_angle_rad": float(ends_rad[0]),
         "contact_loss_share": response.contact_loss_share,
-        "status": response.status,
+        "status": "ok",
         **channel_labels,
     }
-    found = internal_quantities(specimen, response) if with_internals else {}
+    found = internal_quantities(specimen, response) if isinstance(response, Response) and with_internals else {}
     internals = {name: values.astype(np.float32) for name, values in found.items()}
-    return Record(planned, labels, channels, response.tacho_s, internals if with_internals else None)
+    tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
+    return Record(planned, labels, channels, tacho_s, internals if with_internals else None)
+
+
+class _RefusedPieces:
+    """A stream that is stepped while its pieces are taken; what the model refuses becomes a status of the record."""
+
+    def __init__(self, stream: ResponseStream) -> None:
+        self._stream = stream
+        self.motions, self.places, self.before = stream.motions, stream.places, stream.before
+
+    @property
+    def contact_loss_share(self) -> float:
+        return self._stream.contact_loss_share
+
+    def pieces(self) -> Iterator[Piece]:
+        pieces = self._stream.pieces()
+        while True:
+            with refused_as("outside_model"), stage("loop"):
+                piece = next(pieces, None)
+            if piece is None:
+                return
+            yield piece
 
 
 def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record | RecordFailure]:

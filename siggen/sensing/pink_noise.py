@@ -1,8 +1,9 @@
-"""PinkNoise: 1/f noise without end as a sum of first-order processes on one white noise, stationary from its start.
+"""PinkStream: 1/f noise without end as a sum of first-order processes on one white noise, stationary from its start.
 
 Poles and zeros alternate evenly over the logarithm of frequency, so the amplitude falls as 1/√f on average (reference:
 standard literature); poles at e^(-2π f/f_s). A coupling capacitor is one pole more and a zero at frequency 0. Partial
-fractions give y = g w + Σ r_i s_i, s_i ← a_i s_i + w, whose states begin with their covariance 1/(1 - a_i a_j) (derived).
+fractions give y = g w + Σ r_i s_i, s_i ← a_i s_i + w, whose states begin with their covariance 1/(1 - a_i a_j)
+(derived).
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from siggen.compiled import njit
 LOWEST_HZ = 0.01
 """Below, the noise is white: a wander over more than 16 s."""
 PER_DECADE = 3
-"""Poles per decade: the density stays within 2 % of 1/f up to a tenth of the sampling rate, and is half as large again at
-half of it, far below what else a sensor shows there."""
+"""Poles per decade: the density stays within 2 % of 1/f up to a tenth of the sampling rate. At half of it, far below
+what else a sensor shows there, it is half as large again."""
 
 
-class PinkNoise:
-    """Noise of a one-sided density at a corner, falling as 1/f around it, behind a first-order high-pass if there is one."""
+class PinkStream:
+    """Noise of a one-sided density at a corner, falling as 1/f, behind a first-order high-pass if there is one."""
 
     def __init__(
         self, density: float, corner_hz: float, high_pass_hz: float | None, fs_hz: float, rng: np.random.Generator

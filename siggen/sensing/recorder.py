@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from siggen.arrays import FloatArray
@@ -34,7 +32,7 @@ class Recorder:
         self._done += amplified.size
         self._spread.take(amplified)
 
-    def measured(
+    def finish(
         self,
         *,
         range_m_s2: float,
@@ -42,25 +40,27 @@ class Recorder:
         rng: np.random.Generator,
         noise_floor_m_s2: float | None,
         snr_db: float | None,
-        added: Callable[[int, int], FloatArray | None],
-        block: int,
-    ) -> Measurement:
-        """Return the stored channel, as `measurement.measure` does; `added` gives what comes behind the gain.
+    ) -> None:
+        """Begin to convert what was taken; arguments as those of `measurement.measure`."""
+        self._range_m_s2, self._bits, self._rng = range_m_s2, bits, rng
+        self._rms = self._spread.std
+        self._floor = noise_floor_m_s2 if snr_db is None else self._rms / 10.0 ** (snr_db / 20.0)
+        self._clipped, self._step, self._done = 0, 0.0, 0
 
-        Noise and `added(first, count)` come in blocks of `block` samples. It uses up what was kept.
-        """
-        rms = self._spread.std
-        floor = noise_floor_m_s2 if snr_db is None else rms / 10.0 ** (snr_db / 20.0)
-        clipped, step = 0, 0.0
-        for first in range(0, self._done, block):
-            part = self._kept[first : first + block]
-            noisy = part.astype(np.float64)
-            if floor is not None:
-                noisy += floor * rng.standard_normal(part.size)
-            more = added(first, part.size)
-            if more is not None:
-                noisy += more
-            part[:], beyond, step = converted(noisy, range_m_s2, bits)
-            clipped += beyond
+    def convert(self, count: int, added_m_s2: FloatArray | None) -> None:
+        """Convert the next samples with their white noise and what is added behind the gain (count,)."""
+        part = self._kept[self._done : self._done + count]
+        noisy = part.astype(np.float64)
+        if self._floor is not None:
+            noisy += self._floor * self._rng.standard_normal(count)
+        if added_m_s2 is not None:
+            noisy += added_m_s2
+        part[:], clipped, self._step = converted(noisy, self._range_m_s2, self._bits)
+        self._clipped += clipped
+        self._done += count
+
+    def measurement(self) -> Measurement:
+        """Return the stored channel, once all was converted."""
         self._kept.setflags(write=False)
-        return Measurement(self._kept, float(floor or 0.0), ratio_db(rms, floor or 0.0), clipped / self._done, step)
+        floor = self._floor or 0.0
+        return Measurement(self._kept, float(floor), ratio_db(self._rms, floor), self._clipped / self._done, self._step)

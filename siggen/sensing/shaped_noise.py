@@ -1,7 +1,8 @@
-"""ShapedNoise: noise of a given density without end, drawn block after block in an order that blocks do not change.
+"""ShapedNoise: noise of a given density without end, drawn in an order that blocks do not change.
 
-White noise of variance f_s/2 has the one-sided density 1. It passes the filter of least phase with the wanted amplitude,
-found from its cepstrum (reference: standard literature). Cut to so many taps, it smooths densities over f_s/taps.
+White noise of variance f_s/2 has the one-sided density 1. It passes the filter of least phase with the wanted
+amplitude, found from its cepstrum (reference: standard literature). Cut to so many taps, it smooths densities over
+f_s/taps.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Floor, constant
@@ -19,7 +20,7 @@ MOTION, FORCE, BACKGROUND, FLOOR = "motion", "force", "background", "floor"
 
 
 class Input(NamedTuple):
-    """What reaches channels: a motion of the model, a bearing force, a force of the background, or noise of its floor."""
+    """What reaches channels: a motion of the model, a bearing force, a force or floor noise of the background."""
 
     kind: str
     name: str
@@ -30,7 +31,7 @@ class BlockResponses:
     """Channel -> input -> spectrum (length // 2 + 1,) of the filter; no inputs that a channel does not feel."""
 
     grid: BlockGrid
-    filters: Mapping[str, Mapping[Input, ComplexArray]]
+    filters: Mapping[str, Mapping[Input, NDArray[np.complex64]]]
 
     @property
     def inputs(self) -> tuple[Input, ...]:

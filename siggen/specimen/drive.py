@@ -21,6 +21,8 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
+from siggen.sensing.block_filter import BLOCK_SAMPLES
+from siggen.sensing.spread import Spread
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -100,12 +102,17 @@ def variation_labels(config: Config, driven: RecordDrive) -> dict[str, object]:
     """Return the labels of the variation at the samples; none without it."""
     if driven.torque is None:
         return {}
-    turning = turning_of(driven.rotation, np.arange(config.samples) / config.fs_hz)
-    torque_nm = driven.torque.motor_torque_nm(turning)
+    block = BLOCK_SAMPLES if config.filters == "blocks" else config.samples
+    speed, torque = Spread(), Spread()
+    for first in range(0, config.samples, block):
+        samples = np.arange(first, min(first + block, config.samples))
+        turning = turning_of(driven.rotation, samples / config.fs_hz)
+        speed.take(turning.speed_rad_s)
+        torque.take(driven.torque.motor_torque_nm(turning))
     return {
-        "speed_std_hz": float(turning.speed_rad_s.std() / (2.0 * pi)),
-        "mean_torque_nm": float(torque_nm.mean()),
-        "torque_std_nm": float(torque_nm.std()),
+        "speed_std_hz": float(speed.std / (2.0 * pi)),
+        "mean_torque_nm": torque.mean,
+        "torque_std_nm": torque.std,
     }
 
 

@@ -146,9 +146,11 @@ def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
 
 
 def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floor | None) -> dict[Input, ComplexArray]:
-    """Return input -> response (length // 2 + 1,) of a channel, sensor included; a plain one shows motions as they are."""
+    """Return input -> response (length // 2 + 1,) of a channel, sensor included, but for motions of a plain one."""
     ways: dict[Input, ComplexArray] = {}
-    sensed = np.ones(instrument.length // 2 + 1) if channel.sensor_response is None else channel.sensor_response
+    sensed = channel.sensor_response
+    if sensed is None:
+        sensed = np.ones(instrument.length // 2 + 1, dtype=np.complex128)
     if not channel.is_plain:
         ways |= {Input(MOTION, motion): weight * sensed for motion, weight in channel.motions.items()}
     if channel.accelerance is not None:

@@ -53,7 +53,7 @@ class SampledExcitation:
         return np.ascontiguousarray(self._spline(time_s))
 
     def _cover(self, first_s: float, last_s: float) -> None:
-        """Make the spline of a span; no coarser than the one before, none where the grid would be finer than the steps."""
+        """Make the spline of a span, no coarser than the one before; none if its grid were finer than the steps."""
         self._spline, self._until_s = None, last_s
         while self._rate_hz < self._finest_hz:
             spline = self._tried(first_s, last_s, self._rate_hz)

@@ -43,8 +43,8 @@ class Response:
     contact_loss_share : share of the time with the approach inside the backlash gap; 0 if the simulation failed
     status, reason : "ok" and "", or what went wrong, with numbers
     internals : name -> (n,), values at the instants of the samples, not low-passed; empty unless asked for
-    history, after : the samples before sample 0 and behind the last one of accelerations and bearing forces; (0,) arrays
-        unless asked for
+    history, after : the samples before sample 0 and behind the last one of accelerations and bearing forces; (0,)
+        arrays unless asked for
     """
 
     fs_hz: float
@@ -57,7 +57,7 @@ class Response:
     reason: str
     internals: Mapping[str, FloatArray]
     history: History
-    after: History = History({}, {})
+    after: History
 
     @property
     def motions(self) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """ResponseStream: accelerations and bearing forces of a gear stage at the output rate, piece after piece.
 
-Transient and record are stepped in blocks, whose states are filtered and forgotten: memory does not grow with the record.
+Transient and record are stepped in blocks, whose states are filtered and forgotten: memory does not grow with the
+record.
 """
 
 from __future__ import annotations
@@ -42,9 +43,11 @@ class Run:
 
     @property
     def limit_m(self) -> float:
+        """Approach beyond which a state is refused."""
         return self.motion.largest_approach_m + APPROACH_LIMIT_PITCHES * self.motion.base_pitch_m
 
     def time_s(self, first: int, count: int) -> FloatArray:
+        """Return the times (count,) of the steps from step `first` on."""
         return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
 
     def pitches(self, first: int, count: int) -> FloatArray:
@@ -87,7 +90,7 @@ class Pieces(Protocol):
 class ResponseStream:
     """What a run gives from `history` samples before sample 0 to `ahead` samples behind the last of `samples`.
 
-    `settle` steps come before sample 0. `inner` collects values (k, names) at the samples of the record if they are asked for.
+    `settle` steps come before sample 0. `inner` collects internals (k, names), if asked for.
     """
 
     def __init__(
