@@ -26,8 +26,8 @@ class Course:
     """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
 
     Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ)
-    (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives uniforms of what noise levels belong to,
-    `uniform` those of the gearbox, `of_gearbox` and `of_record` generators.
+    (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives uniforms of what noise levels
+    belong to, `uniform` those of the gearbox, `of_gearbox` and `of_record` generators.
     """
 
     angle_rad: FloatArray

@@ -55,7 +55,7 @@ def random_levels(floor: Floor, course: Course) -> dict[str, LevelCourse]:
 
 
 def bearing_strength(floor: Floor, course: Course, name: str, random: Mapping[str, FloatArray]) -> FloatArray | None:
-    """Return the power (length,) of a bearing's noise, of mean 1: by its shaft and its `random` level; None elsewhere."""
+    """Return the power (length,) of a bearing's noise, of mean 1, by shaft and `random` level; None elsewhere."""
     shaft, depth = name.partition("_")[0], constant(floor.shaft_depth)
     if shaft not in SHAFTS or (shaft not in random and depth <= 0.0):
         return None

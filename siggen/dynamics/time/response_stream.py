@@ -62,7 +62,7 @@ class Run:
 
 
 class Piece(NamedTuple):
-    """Accelerations (motions, k) and bearing forces (places, k), static ones included, at samples that follow others."""
+    """Accelerations (motions, k) and bearing forces (places, k), static ones included, at the next samples."""
 
     acceleration_m_s2: FloatArray
     bearing_force_n: FloatArray
