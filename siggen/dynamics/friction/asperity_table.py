@@ -144,8 +144,9 @@ def contact_cell(
 @njit(cache=True)
 def cell_value(values: FloatArray, first: int, loads: int, a: float, b: float) -> float:
     """Return the value in a cell of a table in row order whose lower corner is `first`, bilinear in the weights."""
-    low = values[first] * (1.0 - a) + values[first + loads] * a
-    high = values[first + 1] * (1.0 - a) + values[first + loads + 1] * a
+    here, there, one = np.uint64(first), np.uint64(first + loads), np.uint64(1)  # never negative, as compilers may know
+    low = values[here] * (1.0 - a) + values[there] * a
+    high = values[here + one] * (1.0 - a) + values[there + one] * a
     value: float = low * (1.0 - b) + high * b
     return value
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 
@@ -30,8 +32,9 @@ def solution_columns(slots: int) -> int:
     return 4 + 2 * slots
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
     """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
-    value: float = numbers[first + cell] * (1.0 - weight) + numbers[first + cell + 1] * weight
+    here = np.uint64(first + cell)  # never negative, which the compiler cannot know of a signed one
+    value: float = numbers[here] * (1.0 - weight) + numbers[here + np.uint64(1)] * weight
     return value

@@ -46,7 +46,7 @@ def pair_table(law: PairLaw) -> FloatArray:
     return pairs
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _cell(place: float, points: int) -> tuple[int, float]:
     """Return the cell and the weight of its upper end, `place` intervals from the first point, kept at the ends."""
     place = min(max(place, 0.0), points - 1.0)
@@ -54,7 +54,7 @@ def _cell(place: float, points: int) -> tuple[int, float]:
     return cell, place - cell
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
     """Write what depends on the angle alone."""
     slots = pairs.shape[0]
@@ -70,7 +70,7 @@ def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitch
         pair -= 1
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def place_pair(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, place: float
 ) -> None:
@@ -93,7 +93,7 @@ def place_pair(
         pairs[i, COUPLED + a] = between(numbers, index[layout.COUPLING_AT] + a * points, cell, weight)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, pair: int) -> None:
     """Write what stays during the engagement of a pair: its row, where its tables begin, the place of its teeth."""
     tooth_1, tooth_2 = pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
@@ -106,7 +106,7 @@ def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int,
     pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
     """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
     for i in range(pairs.shape[0]):

@@ -42,7 +42,7 @@ KINKED_CHANGE = 1e-4
 MOST_STEPS = 8
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def write_springs(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -90,7 +90,7 @@ def write_springs(
     return (digit_1 if pairs[first, FLANK] > 0.0 else 0) + (digit_2 if pairs[second, FLANK] > 0.0 else 0)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _write_many(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, before: int, slots: int
 ) -> int:
@@ -101,7 +101,7 @@ def _write_many(
     return _write_alone(scalars, numbers, index, pairs, base, slots)
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _write_alone(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, slots: int
 ) -> int:
@@ -119,7 +119,7 @@ def _write_alone(
     return touching
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -134,14 +134,14 @@ def _spring(
     return force, slope
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _write(pairs: FloatArray, i: int, elastic: float, tangent: float) -> None:
     pairs[i, NORMAL] = elastic
     pairs[i, STIFFNESS] = tangent if elastic != 0.0 else 0.0
     pairs[i, FLANK] = 1.0 if elastic > 0.0 else (-1.0 if elastic < 0.0 else 0.0)
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _write_two(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, j: int, back: int
 ) -> None:
@@ -175,7 +175,7 @@ def _write_two(
     pairs[j, YIELD] = k_j * (1.0 - c * k_i) * inverse
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _state_before(pairs: FloatArray, i: int, before: int) -> tuple[float, float, float]:
     """Return force, stiffness and change of the penetration by itself since a state near by; zeros of another pair."""
     if pairs[before, PAIR] != pairs[i, PAIR]:

@@ -66,73 +66,85 @@ def fresh_memory() -> FloatArray:
     return memory
 
 
-@njit(cache=True, _nrt=False, inline="always")
-def _solve(matrix: FloatArray) -> None:
-    """Solve the system in the first NODES rows, right side last, which becomes x; diagonal dominant: no pivoting."""
-    for k in range(NODES):
-        inverse = 1.0 / matrix[k, k]
-        for i in range(k + 1, NODES):
-            factor = matrix[i, k] * inverse
-            for j in range(k + 1, NODES + 1):
-                matrix[i, j] -= factor * matrix[k, j]
-    for k in range(NODES - 1, -1, -1):
-        for j in range(k + 1, NODES):
-            matrix[k, NODES] -= matrix[k, j] * matrix[j, NODES]
-        matrix[k, NODES] /= matrix[k, k]
-
-
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _correct(
-    response: FloatArray,
-    linear: FloatArray,
-    level: int,
-    size: int,
-    node: FloatArray,
-    excess: FloatArray,
-    matrix: FloatArray,
+    response: FloatArray, linear: FloatArray, level: int, size: int, node: FloatArray, excess: FloatArray
 ) -> float:
     """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m].
 
-    `matrix` (NODES + 2, NODES + 1): the system, and behind it what the approach and its rate change by at the nodes.
+    What belongs to a node stands in a number of its own: the compiler keeps them in registers.
     """
-    channels, moved, moved_rate = response.shape[1], NODES, NODES + 1
-    for q in range(NODES):
-        matrix[moved, q], matrix[moved_rate, q] = 0.0, 0.0
+    channels, rate = response.shape[1], size + NODES
+    x_0, x_1, x_2, v_0, v_1, v_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # what approach and rate change by at the nodes
     for channel in range(1, channels):
         for r in range(NODES):
             change = node[NODE_FRICTION + channel - 1, r] - excess[channel, r]
-            for q in range(NODES):
-                matrix[moved, q] += response[level, channel, r, size + q] * change
-                matrix[moved_rate, q] += response[level, channel, r, size + NODES + q] * change
-    for q in range(NODES):
-        slope, slope_rate = node[NODE_SLOPE, q] - linear[STIFFNESS], node[NODE_SLOPE_RATE, q] - linear[DAMPING]
-        for r in range(NODES):
-            on_x, on_v = response[level, 0, r, size + q], response[level, 0, r, size + NODES + q]
-            matrix[q, r] = -slope * on_x - slope_rate * on_v
-        matrix[q, q] += 1.0
-        found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
-        found += slope * matrix[moved, q] + slope_rate * matrix[moved_rate, q] - linear[DAMPING] * node[NODE_RATE, q]
-        matrix[q, NODES] = found - excess[0, q]
-    _solve(matrix)
-    for r in range(NODES):
-        change = matrix[r, NODES]
-        excess[0, r] += change
-        for q in range(NODES):
-            matrix[moved, q] += response[level, 0, r, size + q] * change
-            matrix[moved_rate, q] += response[level, 0, r, size + NODES + q] * change
-    largest = 0.0
-    for q in range(NODES):
-        rise = node[NODE_SLOPE, q] * matrix[moved, q] + node[NODE_SLOPE_RATE, q] * matrix[moved_rate, q]
-        force = node[NODE_NORMAL, q]
-        grown = 1.0 + (rise / force if force != 0.0 else 0.0)
-        node[NODE_NORMAL, q] = force + rise
-        for channel in range(1, channels):
-            excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
-        largest = max(largest, abs(matrix[moved, q]))
-    return largest
+            x_0 += response[level, channel, r, size] * change
+            x_1 += response[level, channel, r, size + 1] * change
+            x_2 += response[level, channel, r, size + 2] * change
+            v_0 += response[level, channel, r, rate] * change
+            v_1 += response[level, channel, r, rate + 1] * change
+            v_2 += response[level, channel, r, rate + 2] * change
+    k_0, d_0, e_0 = _equation(linear, node, excess, 0, x_0, v_0)
+    k_1, d_1, e_1 = _equation(linear, node, excess, 1, x_1, v_1)
+    k_2, d_2, e_2 = _equation(linear, node, excess, 2, x_2, v_2)
+    a_00 = 1.0 + (-k_0 * response[level, 0, 0, size] - d_0 * response[level, 0, 0, rate])
+    a_01 = -k_0 * response[level, 0, 1, size] - d_0 * response[level, 0, 1, rate]
+    a_02 = -k_0 * response[level, 0, 2, size] - d_0 * response[level, 0, 2, rate]
+    a_10 = -k_1 * response[level, 0, 0, size + 1] - d_1 * response[level, 0, 0, rate + 1]
+    a_11 = 1.0 + (-k_1 * response[level, 0, 1, size + 1] - d_1 * response[level, 0, 1, rate + 1])
+    a_12 = -k_1 * response[level, 0, 2, size + 1] - d_1 * response[level, 0, 2, rate + 1]
+    a_20 = -k_2 * response[level, 0, 0, size + 2] - d_2 * response[level, 0, 0, rate + 2]
+    a_21 = -k_2 * response[level, 0, 1, size + 2] - d_2 * response[level, 0, 1, rate + 2]
+    a_22 = 1.0 + (-k_2 * response[level, 0, 2, size + 2] - d_2 * response[level, 0, 2, rate + 2])
+    # Diagonal dominant: no pivoting.
+    inverse = 1.0 / a_00
+    f_1, f_2 = a_10 * inverse, a_20 * inverse
+    a_11, a_12, e_1 = a_11 - f_1 * a_01, a_12 - f_1 * a_02, e_1 - f_1 * e_0
+    a_21, a_22, e_2 = a_21 - f_2 * a_01, a_22 - f_2 * a_02, e_2 - f_2 * e_0
+    f_2 = a_21 * (1.0 / a_11)
+    e_2 = (e_2 - f_2 * e_1) / (a_22 - f_2 * a_12)
+    e_1 = (e_1 - a_12 * e_2) / a_11
+    e_0 = (e_0 - a_01 * e_1 - a_02 * e_2) / a_00
+    excess[0, 0] += e_0
+    excess[0, 1] += e_1
+    excess[0, 2] += e_2
+    for r, change in ((0, e_0), (1, e_1), (2, e_2)):
+        x_0 += response[level, 0, r, size] * change
+        x_1 += response[level, 0, r, size + 1] * change
+        x_2 += response[level, 0, r, size + 2] * change
+        v_0 += response[level, 0, r, rate] * change
+        v_1 += response[level, 0, r, rate + 1] * change
+        v_2 += response[level, 0, r, rate + 2] * change
+    _follow(node, excess, channels, 0, x_0, v_0)
+    _follow(node, excess, channels, 1, x_1, v_1)
+    _follow(node, excess, channels, 2, x_2, v_2)
+    return max(abs(x_0), abs(x_1), abs(x_2))
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+def _equation(
+    linear: FloatArray, node: FloatArray, excess: FloatArray, q: int, moved: float, moved_rate: float
+) -> tuple[float, float, float]:
+    """Return the tangents of the excess force at a node to approach and rate, and what is missing of it."""
+    slope, slope_rate = node[NODE_SLOPE, q] - linear[STIFFNESS], node[NODE_SLOPE_RATE, q] - linear[DAMPING]
+    found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
+    found += slope * moved + slope_rate * moved_rate - linear[DAMPING] * node[NODE_RATE, q]
+    return slope, slope_rate, found - excess[0, q]
+
+
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+def _follow(node: FloatArray, excess: FloatArray, channels: int, q: int, moved: float, moved_rate: float) -> None:
+    """Let the force at a node follow its tangents, friction and moments in proportion."""
+    rise = node[NODE_SLOPE, q] * moved + node[NODE_SLOPE_RATE, q] * moved_rate
+    force = node[NODE_NORMAL, q]
+    grown = 1.0 + (rise / force if force != 0.0 else 0.0)
+    node[NODE_NORMAL, q] = force + rise
+    for channel in range(1, channels):
+        excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
+
+
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme: Scheme,
     law: PairLaw,
@@ -147,7 +159,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
 ) -> bool:
     """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
-    node, excess, matrix, seen, start, end, between = work
+    node, excess, seen, start, end, between = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
     seers = 4 if channels == 3 else 6
     free_motion(scheme.transition, scheme.input_response, level, start, between, end)
@@ -176,7 +188,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
         touching = write_node_forces(
             law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
         )
-        change = _correct(response, linear, level, size, node, excess, matrix)
+        change = _correct(response, linear, level, size, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
         if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(linear[APPROACH]):
@@ -190,7 +202,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
         parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
         if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= tolerance_n:
             return False
-    add_response(response, level, excess, 0, size, end)
+    add_response(response, level, excess, 0, min(size + -size % 4, columns), end)
     for channel in range(channels):
         for q in range(NODES):
             memory[channel, q] = excess[channel, q]
@@ -199,7 +211,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     return True
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _has_event(
     law: PairLaw,
     pairs: FloatArray,
@@ -221,15 +233,15 @@ def _has_event(
 
 
 def work_arrays(columns: int, inputs: int) -> Work:
-    """Return working space for `advance`: node values, excess forces, equations, what is seen, state, end, inputs.
+    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs.
 
     Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
     """
-    node, excess, matrix = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES)), np.zeros((NODES + 2, NODES + 1))
-    return node, excess, matrix, np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros((2, inputs))
+    node, excess = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES))
+    return node, excess, np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros((2, inputs))
 
 
-@njit(cache=True, _nrt=False)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme: Scheme,
     law: PairLaw,
@@ -252,7 +264,7 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
     (NODES slots, COLUMNS) go on from the steps before.
     """
     size, m = scheme.transition.shape[1], inputs.shape[1]
-    state, end, between = work[4], work[5], work[6]
+    state, end, between = work[3], work[4], work[5]
     centre = -scheme.linear[ROLL_0] / scheme.linear[ROLL_1]
     pitch_place = (centre - law.scalars[layout.START_M]) / law.scalars[layout.PITCH_M]
     reach = ROUND * law.scalars[layout.SLIP_SPEED] / abs(scheme.linear[ROLL_1] * law.scalars[layout.PITCH_M])
