@@ -3,9 +3,10 @@
 Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
 Markdown: the strongest attacker by state, alone and beside the gearbox's own healthy record; what the older probe of
 four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
-on two cores. SET is one of bench, parallel, edges; without any, all are made.
+on two cores. SET is one of bench, parallel, industrial, families, edges; without any: bench, parallel, edges.
 
-* `detect_bench`, `detect_parallel`: presets bench and bench_parallel with the states of STATES and of SAME;
+* `detect_bench`, `detect_parallel`, `detect_industrial`: presets bench, bench_parallel and industrial with the states
+  of STATES, SAME and STATES; `detect_families`: all states of families;
 * `detect_edges`: bench with spalls of 1 mm over SHARES of the face, both edges turned together by SKEWS_MM.
 """
 
@@ -37,6 +38,15 @@ STATES = (
 )
 SAME = ("healthy", "healthy_again", "face_80", *(f"through_{i:03d}" for i in LENGTHS))
 """Of bench_parallel: enough to compare it with bench."""
+FAMILIES = ("healthy", "healthy_again", "slight", "face_40", "face_80", "through")
+"""Their sizes are for module 3 mm and grow with it."""
+PRESETS = {
+    "bench": ("bench", STATES),
+    "parallel": ("bench_parallel", SAME),
+    "industrial": ("industrial", STATES),
+    "families": ("families", FAMILIES),
+}
+"""Folder -> preset and states."""
 SHARES, SKEWS_MM = (0.8, 1.0), (0.0, 0.4, 0.8)
 """Shares of the face; by how much one end of both edges lies higher than the other, over a face of 20 mm."""
 HALVES = {"train": 10, "validation": 10, "test": 0}
@@ -57,7 +67,8 @@ def preset(name: str, gearboxes: int, chosen: tuple[str, ...]) -> dict[str, Any]
     """Return a preset with some of its states."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
     states = [state for state in raw["states"] if state["name"] in chosen]
-    return {**raw, "specimens": gearboxes, "states": states, "splits": HALVES}
+    by = {"by": "pair"} if name == "families" else {}
+    return {**raw, "specimens": gearboxes, "states": states, "splits": {**HALVES, **by}}
 
 
 def edges(gearboxes: int) -> dict[str, Any]:
@@ -80,7 +91,8 @@ def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[st
         print(f"making {path}", file=sys.stderr)
         siggen.generate(siggen.load_config(raw), path, workers=workers)
     if not (out / "audit.json").exists():
-        run(f"siggen-diagnostics audit {path} --paired --realism --out {out}")
+        speed = "variable" if folder == "industrial" else "bench"
+        run(f"siggen-diagnostics audit {path} --paired --realism --speed {speed} --out {out}")
     found = json.loads((out / "audit.json").read_text(encoding="utf-8"))
     ways = {**found["strongest"], UNPAIRED: found["detectability"][UNPAIRED]}
     failures = siggen.open(path).manifest.get("failures", [])
@@ -109,14 +121,16 @@ def title(state: str) -> str:
     kind, _, size = state.partition("_")
     if kind == "slight":
         return "small pits"
-    return f"{size} % of the face, 1 mm" if kind == "face" else f"whole face, {int(size) / 100:g} mm"
+    if kind == "face":
+        return f"{size} % of the face"
+    return f"whole face, {int(size) / 100:g} mm" if size else "whole face"
 
 
 def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
     """Return the Markdown rows of a preset."""
     head = "| damage | area [mm²] | older probe, alone | strongest, alone | by |"
     rows = [f"{head} strongest, with a healthy reference | by |", "|---|---|---|---|---|---|---|"]
-    for state in (state for state in STATES if state in found[ALONE]):
+    for state in (state for state in (*STATES, "through") if state in found[ALONE]):
         weak, alone, referenced = (found[way][state] for way in (UNPAIRED, ALONE, WITH_REFERENCE))
         cells = (auc(alone), attacker(alone), auc(referenced), attacker(referenced))
         rows.append(f"| {title(state)} | {alone['damaged_area_mm2']:.1f} | {auc(weak)} | {' | '.join(cells)} |")
@@ -175,17 +189,17 @@ def draw(found: dict[str, dict[str, dict[str, Entry]]]) -> None:
 def main(gearboxes: int, workers: int, chosen: list[str]) -> None:
     """Make sets, audits, figure and tables."""
     RUNS.mkdir(exist_ok=True)
-    found = {
-        name: audited(folder, preset(name, gearboxes, states), workers)
-        for name, folder, states in (("bench", "bench", STATES), ("bench_parallel", "parallel", SAME))
-        if folder in chosen
-    }
+    found = {}
+    for folder, (name, states) in PRESETS.items():
+        if folder in chosen:
+            found[name] = audited(folder, preset(name, gearboxes, states), workers)
     for name, ways in found.items():
         print(f"\n{name}\n", *ladder_table(ways), sep="\n")
-    if found:
-        draw(found)
-    if "bench" in chosen:
-        print("\nhealthy records of bench\n", *realism_table("bench"), sep="\n")
+    drawn = {name: ways for name, ways in found.items() if name != "families"}
+    if drawn:
+        draw(drawn)
+    for folder in (folder for folder in PRESETS if folder in chosen and folder != "parallel"):
+        print(f"\nhealthy records of {folder}\n", *realism_table(folder), sep="\n")
     if "edges" in chosen:
         table = edge_table(audited("edges", edges(gearboxes), workers))
         print("\nspalls of 1 mm by share and skew\n", *table, sep="\n")
