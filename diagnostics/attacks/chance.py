@@ -1,59 +1,90 @@
-"""What the strongest of several attackers reaches by chance: states permuted within gearboxes, the bank as one test.
+"""What the strongest of several attackers reaches by chance: states exchanged among alike records, all as one test.
 
 The best of a dozen attackers lies above 0.5 even where there is nothing to find. So the largest AUC over all of them is
-compared with its own law under permuted states. Attackers that are too slow for that are left out of both sides.
-Source: maximum statistic of permutation tests, standard literature (Westfall and Young 1993).
+compared with its own law under exchanged states. The test is exact where records of a block are alike but for the
+state: then the stated states are one of the ways of stating them, each as likely as the others. Attackers that are too
+slow for that are left out of both sides. Source: permutation tests with the maximum statistic, standard literature
+(Westfall and Young 1993; Phipson and Smyth 2010 for counting the stated states among the ways).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from diagnostics.attacks.held_out import held_out_value
+from diagnostics.attacks.held_out import held_out_values
 from diagnostics.attacks.trial import Attacker
 from diagnostics.base.seeding import Purpose, generator
 
-PERMUTATIONS = 100
+PERMUTATIONS = 499
 LEVEL = 0.95
+OWNER = 1000
+"""Owner of the permutations' generator: other traps have others."""
 
 
-def permuted(positive: np.ndarray, specimen: np.ndarray, seed: int, turn: int) -> np.ndarray:
-    """Return states permuted within gearboxes that have both, else among gearboxes, (n,) bool."""
-    rng = generator(seed, Purpose.PERMUTATION, 1000, turn)
-    found = positive.copy()
-    unique = np.unique(specimen)
-    mixed = [np.flatnonzero(specimen == owner) for owner in unique]
-    if any(np.unique(positive[rows]).size == 2 for rows in mixed):
-        for rows in mixed:
-            found[rows] = positive[rng.permutation(rows)]
-        return found
-    lead = np.array([positive[rows[0]] for rows in mixed])[rng.permutation(unique.size)]
-    return np.asarray(lead[np.searchsorted(unique, specimen)])
+def permuted(positive: np.ndarray, block: np.ndarray, specimen: np.ndarray, seed: int, turns: int) -> np.ndarray:
+    """Return states exchanged within blocks, else within gearboxes, else among gearboxes, (turns, n) bool.
+
+    Parameters
+    ----------
+    positive : (n,) bool
+        Damaged records.
+    block : (n,) int
+        Records of one block are alike but for the state. Where no block has both states, gearboxes are the blocks.
+    specimen : (n,) int
+        Gearboxes; where none has both states, they are exchanged as a whole.
+    seed, turns : int
+        Which permutations, and how many.
+    """
+    rng = generator(seed, Purpose.PERMUTATION, OWNER)
+    for groups in (block, specimen):
+        if _is_mixed(positive, groups):
+            return _exchanged(positive, groups, rng.random((turns, positive.size)))
+    _, first, place = np.unique(specimen, return_index=True, return_inverse=True)
+    lead = _exchanged(positive[first], np.zeros_like(first), rng.random((turns, first.size)))
+    return np.asarray(lead[:, place.ravel()])
 
 
-def chance_maximum(
-    attackers: Sequence[Attacker], rows: np.ndarray, positive: np.ndarray, specimen: np.ndarray, folds: np.ndarray,
-    seed: int, turn: int,
-) -> float:  # fmt: skip
-    """Return the largest AUC over the attackers for one permutation of the states; NaN where none could be asked.
+def _is_mixed(positive: np.ndarray, groups: np.ndarray) -> bool:
+    """Return whether a group holds both states."""
+    _, place = np.unique(groups, return_inverse=True)
+    share = np.bincount(place.ravel(), positive) / np.bincount(place.ravel())
+    return bool(((share > 0.0) & (share < 1.0)).any())
+
+
+def _exchanged(positive: np.ndarray, groups: np.ndarray, keys: np.ndarray) -> np.ndarray:
+    """Return states sorted within groups by random keys, (turns, n)."""
+    found = np.empty(keys.shape, dtype=bool)
+    found[:, np.argsort(groups, kind="stable")] = [positive[np.lexsort((turn, groups))] for turn in keys]
+    return found
+
+
+def bank_maxima(
+    attackers: Sequence[Attacker], rows: np.ndarray, states: np.ndarray, specimen: np.ndarray, folds: np.ndarray
+) -> np.ndarray:
+    """Return the largest AUC over the attackers for every way of stating the damaged records, (turns,).
 
     Parameters
     ----------
     attackers : sequence of Attacker
-        Those that are not permutable are left out.
-    rows, positive, specimen, folds
-        As of `diagnostics.attacks.held_out.trials`; every attacker is asked about the rows that it can use.
-    seed, turn : int
-        Which permutation.
+        Every one is asked about the rows that it can use.
+    rows : (n,) int
+        Records of the set.
+    states : (turns, n) bool
+        As of `permuted`.
+    specimen : (n,) int
+    folds : (deals, n) int
+        As of `diagnostics.attacks.held_out.dealt_folds`.
+
+    Returns
+    -------
+    (turns,) float64
+        NaN where none could be asked.
     """
-    states = permuted(positive, specimen, seed, turn)
-    areas = [math.nan]
+    areas = [np.full(len(states), np.nan)]
     for attacker in attackers:
-        if attacker.permutable:
-            kept = attacker.usable[rows]
-            areas.append(held_out_value(attacker, rows[kept], states[kept], specimen[kept], folds[:, kept]))
-    defined = [area for area in areas if math.isfinite(area)]
-    return max(defined, default=math.nan)
+        kept = attacker.usable[rows]
+        if kept.any():
+            areas.append(held_out_values(attacker, rows[kept], states[:, kept], specimen[kept], folds[:, kept]))
+    return np.asarray(np.fmax.reduce(areas))

@@ -24,11 +24,10 @@ def best_column(name: str, values: np.ndarray, names: tuple[str, ...]) -> Attack
     values = values[:, kept]
 
     def attack(trial: Trial) -> Verdicts:
-        learnt = values[trial.rows[trial.train]]
-        area = column_auc(learnt, trial.positive[trial.train])
-        best = int(np.argmax(np.abs(area - 0.5)))
-        turned = 1.0 if area[best] >= 0.5 else -1.0
-        return Verdicts(turned * values[trial.rows[~trial.train], best], chosen[best])
+        area = column_auc(values[trial.rows[trial.train]], trial.positive[:, trial.train])
+        best = np.argmax(np.abs(area - 0.5), axis=1)
+        turned = np.where(np.take_along_axis(area, best[:, None], axis=1) >= 0.5, 1.0, -1.0)
+        return Verdicts(turned * values[trial.rows[~trial.train]][:, best].T, chosen[best[0]])
 
     return Attacker(name, attack, usable & (values.shape[1] > 0), int(values.shape[1]), DEALS)
 
@@ -61,9 +60,19 @@ def _defined(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
-    """Return the AUC of every column, (columns,), pairs of one gearbox among them: what a choice may rest on."""
+    """Return the AUC of every column, pairs of one gearbox among them: what a choice may rest on.
+
+    Parameters
+    ----------
+    values : (records, columns) float64
+    positive : (..., records) bool
+
+    Returns
+    -------
+    (..., columns) float64
+    """
     from scipy.stats import rankdata
 
-    damaged = int(positive.sum())
-    ranks = rankdata(values, axis=0)[positive].sum(axis=0) - 0.5 * damaged * (damaged + 1)
-    return np.asarray(ranks / (damaged * (positive.size - damaged)))
+    damaged = positive.sum(axis=-1, keepdims=True)
+    ranks = positive.astype(np.float64) @ rankdata(values, axis=0) - 0.5 * damaged * (damaged + 1)
+    return np.asarray(ranks / (damaged * (positive.shape[-1] - damaged)))

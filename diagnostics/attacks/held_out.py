@@ -45,23 +45,34 @@ def dealt_folds(specimen: np.ndarray, seed: int, deals: int = DEALS) -> np.ndarr
     return np.stack([place[index.ravel()] % folds for place in places])
 
 
-def trials(rows: np.ndarray, positive: np.ndarray, specimen: np.ndarray, folds: np.ndarray) -> Iterator[Trial]:
-    """Yield a trial for every fold of every deal in which both sides hold both classes.
+def trials(
+    rows: np.ndarray, positive: np.ndarray, specimen: np.ndarray, folds: np.ndarray
+) -> Iterator[tuple[Trial, np.ndarray]]:
+    """Yield a trial for every fold of every deal, with the ways of stating in which both sides hold both classes.
 
     Parameters
     ----------
     rows : (n,) int
-    positive : (n,) bool
+    positive : (turns, n) bool
     specimen : (n,) int
         Records, as of `Trial`.
     folds : (deals, n) int
         Their folds, as of `dealt_folds`.
+
+    Yields
+    ------
+    Trial
+    (turns,) bool
+        Which rows of `positive` the trial holds.
     """
     for deal, fold in enumerate(folds):
         for held in np.unique(fold):
             train = fold != held
-            if all(np.unique(positive[side]).size == 2 for side in (train, ~train)):
-                yield Trial(rows, positive, specimen, train, deal, int(held))
+            both = np.ones(len(positive), dtype=bool)
+            for side in (train, ~train):
+                both &= positive[:, side].any(axis=1) & ~positive[:, side].all(axis=1)
+            if both.any():
+                yield Trial(rows, positive[both], specimen, train, deal, int(held)), both
 
 
 def wins(score: np.ndarray, positive: np.ndarray, specimen: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -105,17 +116,18 @@ def held_out(
     Parameters
     ----------
     attacker : Attacker
-    rows, positive, specimen
+    rows, specimen
         As of `trials`.
+    positive : (n,) bool
     folds : (deals, n) int
     seed : int
         Of the resampled gearboxes.
     """
     weights = bootstrap_weights(specimen, seed, RESAMPLES)
     total, chosen = np.zeros((2, len(weights))), Counter[str]()
-    for trial in trials(rows, positive, specimen, folds[: attacker.deals]):
+    for trial, _ in trials(rows, positive[None], specimen, folds[: attacker.deals]):
         found, held = attacker.attack(trial), ~trial.train
-        total += wins(found.score, positive[held], specimen[held], weights[:, held])
+        total += wins(found.score[0], positive[held], specimen[held], weights[:, held])
         chosen[found.basis] += 1
     with np.errstate(invalid="ignore", divide="ignore"):
         samples = np.where(total[1] > 0.0, total[0] / total[1], np.nan)
@@ -124,12 +136,32 @@ def held_out(
     return HeldOut(area_interval(samples, smaller), best, int(np.unique(specimen).size))
 
 
-def held_out_value(
+def held_out_values(
     attacker: Attacker, rows: np.ndarray, positive: np.ndarray, specimen: np.ndarray, folds: np.ndarray
-) -> float:
-    """Return the AUC alone, for permuted states."""
-    total, alone = np.zeros((2, 1)), np.ones((1, rows.size))
-    for trial in trials(rows, positive, specimen, folds[: attacker.deals]):
+) -> np.ndarray:
+    """Return the AUC alone for every way of stating the damaged records, (turns,); NaN where no pair is left."""
+    total = np.zeros((2, len(positive)))
+    for trial, turns in trials(rows, positive, specimen, folds[: attacker.deals]):
         held = ~trial.train
-        total += wins(attacker.attack(trial).score, positive[held], specimen[held], alone[:, held])
-    return float(total[0, 0] / total[1, 0]) if total[1, 0] > 0.0 else float("nan")
+        total[:, turns] += wins_by_turn(attacker.attack(trial).score, trial.positive[:, held], specimen[held])
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total[0] / np.where(total[1] > 0.0, total[1], np.nan))
+
+
+def wins_by_turn(score: np.ndarray, positive: np.ndarray, specimen: np.ndarray) -> np.ndarray:
+    """Return won and all pairs as `wins` does, for every way of stating the damaged records, (2, turns).
+
+    Parameters
+    ----------
+    score : (turns, n) float64
+    positive : (turns, n) bool
+    specimen : (n,) int
+    """
+    from scipy.stats import rankdata
+
+    damaged = positive.sum(axis=1)
+    won = np.where(positive, rankdata(score, axis=1), 0.0).sum(axis=1) - 0.5 * damaged * (damaged + 1)
+    first, second = np.nonzero((specimen[:, None] == specimen) & ~np.eye(specimen.size, dtype=bool))
+    own = positive[:, first] & ~positive[:, second]
+    won_own = np.where(own, 0.5 + 0.5 * np.sign(score[:, first] - score[:, second]), 0.0).sum(axis=1)
+    return np.stack([won - won_own, damaged * (positive.shape[1] - damaged) - own.sum(axis=1)])

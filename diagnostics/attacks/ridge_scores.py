@@ -35,8 +35,8 @@ def ridge_scores(product: np.ndarray, positive: np.ndarray, specimen: np.ndarray
     ----------
     product : (records, records) float64
         As of `products`.
-    positive : (records,) bool
-        Damaged records.
+    positive : (turns, records) bool
+        Damaged records, one row for each way of stating them.
     specimen : (records,) int
         Gearbox of each record.
     train : (records,) bool
@@ -44,27 +44,28 @@ def ridge_scores(product: np.ndarray, positive: np.ndarray, specimen: np.ndarray
 
     Returns
     -------
-    (records not trained on,) float64
+    (turns, records not trained on) float64
     """
     inner = product[np.ix_(train, train)]
     across = product[np.ix_(~train, train)]
     mean = inner.mean(axis=0)
     centred = inner - mean[None, :] - inner.mean(axis=1)[:, None] + inner.mean()
     across = across - mean[None, :] - across.mean(axis=1)[:, None] + inner.mean()
-    target = _balanced(positive[train])
+    target = _balanced(positive[:, train]).T
     values, vectors = np.linalg.eigh(centred)
     values = np.maximum(values, 0.0)
     scale = float(values.mean()) or 1.0
     rotated = vectors.T @ target
     errors = _left_out_errors(values, vectors, rotated, target, specimen[train], PENALTIES * scale)
-    best = PENALTIES[int(np.argmin(errors))]
-    return np.asarray(across @ (vectors @ (rotated / (values + best * scale))))
+    best = PENALTIES[np.argmin(errors, axis=0)]
+    scores = across @ (vectors @ (rotated / (values[:, None] + best * scale)))
+    return np.asarray(scores.T)
 
 
 def _balanced(positive: np.ndarray) -> np.ndarray:
-    """Return targets whose mean is zero."""
-    share = float(positive.mean())
-    return np.where(positive, 1.0 - share, -share)
+    """Return targets whose mean is zero in every row."""
+    share = positive.mean(axis=1, keepdims=True)
+    return np.asarray(np.where(positive, 1.0 - share, -share))
 
 
 def _left_out_errors(
@@ -75,13 +76,13 @@ def _left_out_errors(
     specimen: np.ndarray,
     penalties: np.ndarray,
 ) -> np.ndarray:
-    """Return the squared error on left-out gearboxes for every penalty."""
+    """Return the squared error on left-out gearboxes, (penalties, turns); rotated and target are (records, turns)."""
     shrunk = values / (values + penalties[:, None])
-    left = target - (shrunk * rotated) @ vectors.T
-    total = np.zeros(penalties.size)
+    left = target - vectors @ (shrunk[:, :, None] * rotated)
+    total = np.zeros((penalties.size, target.shape[1]))
     for owner in np.unique(specimen):
         rows = np.flatnonzero(specimen == owner)
         # the mean is fitted with the rest: 1/n beside the hat matrix
-        hat = (vectors[rows] * shrunk[:, None, :]) @ vectors[rows].T + 1.0 / target.size
-        total += np.square(np.linalg.solve(np.eye(rows.size) - hat, left[:, rows, None])).sum(axis=(1, 2))
+        hat = (vectors[rows] * shrunk[:, None, :]) @ vectors[rows].T + 1.0 / len(target)
+        total += np.square(np.linalg.solve(np.eye(rows.size) - hat, left[:, rows])).sum(axis=1)
     return total

@@ -1,4 +1,8 @@
-"""One trial of an attacker: which records it learns from, and which it then has to tell apart."""
+"""One trial of an attacker: which records it learns from, and which it then has to tell apart.
+
+All permutations of the states are one trial: ranks, products and their decompositions do not depend on the states, so
+that hundreds of permutations cost little more than one.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +20,8 @@ class Trial:
     ----------
     rows : (n,) int
         Records of the set.
-    positive : (n,) bool
-        Which of them are damaged.
+    positive : (turns, n) bool
+        Which of them are damaged, one row for each way of stating it; in every row both classes stand on both sides.
     specimen : (n,) int
         Their gearboxes.
     train : (n,) bool
@@ -36,7 +40,14 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Verdicts:
-    """Scores of the records that were not learnt from, and what they rest on, such as a band; empty where all does."""
+    """What an attacker says of the records that it has not learnt from.
+
+    Attributes
+    ----------
+    score : (turns, n not learnt from) float64
+    basis : str
+        What the scores of the first row rest on, such as a band; empty where all counts.
+    """
 
     score: np.ndarray
     basis: str = ""

@@ -16,8 +16,8 @@ from diagnostics.page.wording import capitalised
 HOW = (
     "Attackers learn on some gearboxes and are judged on others. Each band, direction and weight is chosen on the "
     "gearboxes to learn from. Records of one gearbox never stand on both sides. Healthy-referenced attackers see the "
-    "difference from another healthy record of the same gearbox. The strongest attacker of a state is chosen after the "
-    "fact, so its AUC is slightly optimistic. The 95 % limits come from resampled gearboxes."
+    "difference from a healthy record of the same gearbox, which is not judged itself. The strongest attacker of a "
+    "state is chosen after the fact, so its AUC is slightly optimistic. The 95 % limits come from resampled gearboxes."
 )
 
 
@@ -43,10 +43,23 @@ def _strongest_table(audit: Audit) -> str:
         for ladder in ladders:
             entry = ladder.get(state)
             cells += [Cell(entry.basis), interval_cell(entry.auc)] if entry else [Cell("–"), Cell("–")]
-        rows.append([*cells, Cell(verdict_words(audit, state))])
-    head = ["State", "Strongest alone", "AUC [-]", "Strongest with a healthy reference", "AUC [-]", "Verdict"]
-    caption = "The strongest attacker by state, with what it chose most often: AUC against healthy, with 95 % limits."
+        rows.append([*cells, _chance_cell(audit, state), Cell(verdict_words(audit, state))])
+    head = ["State", "Strongest alone", "AUC [-]", "Strongest with a healthy reference", "AUC [-]", "Chance", "Verdict"]
+    caption = (
+        "The strongest attacker by state, with what it chose most often: AUC against healthy, with 95 % limits. "
+        "Chance: share of permutations, the stated states among them, in which the strongest of all attackers but the "
+        "networks and the older probes reaches as much. Each state is a test of its own: of twenty states without any "
+        "effect one lies at 0.05 or below."
+    )
     return html.table(head, rows, caption=caption, text=True)
+
+
+def _chance_cell(audit: Audit, state: str) -> Cell:
+    """Return the p-value of the bank of attackers on a state."""
+    law = audit.chance.states.get(state) if audit.chance else None
+    if law is None or not math.isfinite(law.p_value):
+        return Cell("–")
+    return Cell(f"{law.p_value:.3f}", value=law.p_value)
 
 
 def _every_table(audit: Audit) -> str:

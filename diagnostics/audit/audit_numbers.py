@@ -8,6 +8,7 @@ from typing import Any
 
 from diagnostics.audit.audit import ALONE, WITH_REFERENCE, Audit
 from diagnostics.audit.audit_sentences import audit_summary
+from diagnostics.audit.bank_detections import ChanceLimit
 from diagnostics.audit.detectability import TARGETS, Detection, length_at
 from diagnostics.audit.envelope import QuantityShare, Realism
 from siggen.dataset.reading import Dataset
@@ -36,7 +37,7 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
             name: _entries_numbers(audit.ladder(referenced=side), audit)
             for name, side in ((ALONE, False), (WITH_REFERENCE, True))
         },
-        "chance": asdict(audit.chance) | {"auc": _number(audit.chance.auc)} if audit.chance else None,
+        "chance": _chance_numbers(audit.chance) if audit.chance else None,
         "best_single_indicator": {
             state: {
                 "indicator": found.column,
@@ -73,6 +74,13 @@ def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
             for target in TARGETS
         },
     }
+
+
+def _chance_numbers(chance: ChanceLimit) -> dict[str, Any]:
+    states = {
+        state: {name: _number(value) for name, value in asdict(law).items()} for state, law in chance.states.items()
+    }
+    return asdict(chance) | {"auc": _number(chance.auc), "states": states}
 
 
 def _realism_numbers(found: Realism) -> dict[str, Any]:

@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.attacks.chance import PERMUTATIONS
 from diagnostics.audit import figures, page
 from diagnostics.audit.attack_tables import shown_ladders
 from diagnostics.audit.audit import CHANGE, PAIRED, UNPAIRED, Audit, is_referenced
 from diagnostics.audit.audit_numbers import audit_numbers
-from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit
+from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit, damaged_states
 from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.detectability import Detection, detections, features, waveform_change
 from diagnostics.audit.envelope import BENCH, realism
@@ -117,7 +116,7 @@ def _attacks(measured: MeasuredSet, seed: int, stage: Stage) -> tuple[dict[str, 
         bank = signal_attackers(measured, seed, advance)
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
-    with stage("permuted states", PERMUTATIONS) as advance:
+    with stage("permuted states", len(damaged_states(measured))) as advance:
         return found, chance_limit(measured, bank, seed, advance)
 
 

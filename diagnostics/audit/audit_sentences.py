@@ -67,7 +67,7 @@ def _hardest_sentence(audit: Audit) -> list[str]:
     text = f"{which}. {_strongest_words(audit, hardest)}"
     if hardest != easiest:
         text += f" The state {easiest} is the easiest. {_strongest_words(audit, easiest)}"
-    lost = [state for state in reached if reached[state] < lost_below(audit) and not audit.gearboxes_needed]
+    lost = [state for state in reached if reached[state] < lost_below(audit, state) and not audit.gearboxes_needed]
     failed = f"These failed: {joined(list(audit.probes(lost[0])))}." if lost else ""
     chance = chance_sentence(audit)
     return [text, *([chance] if chance else []), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]

@@ -4,17 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, chance_maximum
+from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, bank_maxima, permuted
 from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.detectability import Detection, damage_sizes, in_order
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.reference_pairs import exchange_blocks
 from diagnostics.records.damage_kind import damage_kind
 from diagnostics.statistics.evaluation import Interval
+
+
+@dataclass(frozen=True, slots=True)
+class StateChance:
+    """What the strongest of several attackers reaches on one state by chance.
+
+    Attributes
+    ----------
+    auc : float
+        Limit that it exceeds in 5 % of the cases at most.
+    p_value : float
+        (1 + permutations that reach at least what the stated states do) / (1 + permutations).
+    """
+
+    auc: float
+    p_value: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,15 +41,24 @@ class ChanceLimit:
     Attributes
     ----------
     auc : float
-        The limit; NaN where nothing could be judged.
+        The least over the states; NaN where nothing could be judged. A state that differs much from healthy records
+        has a higher limit: permuted, its records still lie apart from the others.
     attackers : int
         How many attackers count as one test.
     permutations : int
+        Of every state.
+    states : dict of str to StateChance
+        Each is a test of its own.
     """
 
     auc: float
     attackers: int
     permutations: int
+    states: dict[str, StateChance] = field(default_factory=dict)
+
+    def of(self, state: str) -> float:
+        """Return the limit of a state, or the least where the state has none of its own."""
+        return self.states[state].auc if state in self.states else self.auc
 
 
 def damaged_states(measured: MeasuredSet) -> tuple[str, ...]:
@@ -79,42 +105,54 @@ def _detection(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.
 def chance_limit(
     measured: MeasuredSet, attackers: Sequence[Attacker], seed: int, advance: Callable[[], None]
 ) -> ChanceLimit:
-    """Return the limit for the state with the fewest records: the others have as many or a lower one.
+    """Return what the strongest attacker reaches by chance, state by state, each on its own records.
 
     Parameters
     ----------
     measured, attackers, seed
         As of `bank_detections`.
     advance : callable
-        Called after every permutation.
+        Called after every state.
     """
     asked = [attacker for attacker in attackers if attacker.permutable]
-    labels, every = measured.labels, []
+    folds, blocks = dealt_folds(measured.labels["specimen_id"], seed), exchange_blocks(measured)
+    found = {}
     for state in damaged_states(measured):
-        of_state = np.asarray(labels["state"] == state) & ~measured.healthy
-        kept = [judged_rows(attacker, measured.healthy, of_state, labels["specimen_id"]) for attacker in asked]
-        rows = np.unique(np.concatenate(kept)) if kept else np.empty(0, np.int64)
-        if rows.size:
-            every.append((int(of_state[rows].sum()), rows, of_state[rows]))
-    if not every:
-        return ChanceLimit(math.nan, len(asked), 0)
-    _, rows, positive = min(every, key=lambda entry: entry[0])
-    folds = dealt_folds(labels["specimen_id"], seed)[:, rows]
-    maxima = []
-    for turn in range(PERMUTATIONS):
-        maxima.append(chance_maximum(asked, rows, positive, labels["specimen_id"][rows], folds, seed, turn))
+        law = _state_chance(measured, asked, state, folds, blocks, seed)
+        if law is not None:
+            found[state] = law
         advance()
-    defined = np.array(maxima)[np.isfinite(maxima)]
-    return ChanceLimit(exceeded_by_chance(defined), len(asked), PERMUTATIONS)
+    least = min((law.auc for law in found.values() if math.isfinite(law.auc)), default=math.nan)
+    return ChanceLimit(least, len(asked), PERMUTATIONS if found else 0, found)
+
+
+def _state_chance(
+    measured: MeasuredSet, asked: Sequence[Attacker], state: str, folds: np.ndarray, blocks: np.ndarray, seed: int
+) -> StateChance | None:
+    specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
+    of_state = of_state & ~measured.healthy
+    able = [attacker for attacker in asked if judged_rows(attacker, measured.healthy, of_state, specimen).size]
+    if not able:
+        return None
+    rows = np.flatnonzero(measured.healthy | of_state)
+    ways = permuted(of_state[rows], blocks[rows], specimen[rows], seed, PERMUTATIONS)
+    maxima = bank_maxima(able, rows, np.concatenate([of_state[None, rows], ways]), specimen[rows], folds[:, rows])
+    stated, drawn = maxima[0], maxima[1:][np.isfinite(maxima[1:])]
+    p_value = float((1 + np.sum(drawn >= stated)) / (1 + drawn.size)) if np.isfinite(stated) else math.nan
+    return StateChance(exceeded_by_chance(drawn), p_value)
 
 
 def exceeded_by_chance(maxima: np.ndarray) -> float:
     """Return the limit that another maximum of the same law exceeds in 5 % of the cases at most; NaN without any.
 
     Of n + 1 exchangeable numbers each is as likely to be the largest. So the limit is number ceil(0.95 (n + 1)) of n,
-    the largest where that is beyond it; a quantile of the n would be exceeded more often. Derived.
+    the largest where that is beyond it; a quantile of the n would be exceeded more often. Where the largest itself
+    comes in more than 5 %, no AUC can be told from chance, and the limit is 1: four gearboxes with a healthy and a
+    damaged record each can be stated in 16 ways only. Derived.
     """
     if maxima.size == 0:
         return math.nan
+    if np.sum(maxima == maxima.max()) > (1.0 - LEVEL) * (maxima.size + 1) + 1e-9:
+        return 1.0
     place = math.ceil(LEVEL * (maxima.size + 1) - 1e-9)
     return float(np.sort(maxima)[min(place, maxima.size) - 1])

@@ -75,15 +75,15 @@ def verdict_words(audit: Audit, state: str) -> str:
     best = max(probes, key=lambda name: probes[name])
     if audit.gearboxes_needed:
         return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
-    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit)):
+    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit, state)):
         return f"can be found, best by {best} ({_auc(probes[best])})"
     tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
-    if probes[best] < lost_below(audit):
+    if probes[best] < lost_below(audit, state):
         return f"not found by {tried}"
     return f"hard to find, best by {best} ({_auc(probes[best])}) of {tried}"
 
 
-def lost_below(audit: Audit) -> float:
+def lost_below(audit: Audit, state: str) -> float:
     """Return the AUC below which a state counts as lost: 0.6, or what the strongest attacker reaches by chance."""
-    limit = audit.chance.auc if audit.chance else math.nan
+    limit = audit.chance.of(state) if audit.chance else math.nan
     return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC

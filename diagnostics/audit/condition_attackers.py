@@ -17,6 +17,13 @@ from diagnostics.indicators.noise_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 
 METADATA, BYTE, ORDER, NOISE = "metadata", "bytes", "order", "noise"
+STEADY_NOISE = NOISE_LEVELS[4:]
+"""Bands in which a stroke has rung off within half a turn: from 637 Hz on at 25.6 kHz.
+
+With a damping ratio of 2 to 3 % an amplitude falls to a tenth in 19 to 29 ms at 637 Hz; half a turn at 25 Hz takes 20.
+Below, the quietest half turn still holds the strokes of severe damage. Measured: docs/understand/audit.md.
+"""
+
 PULSES = ("pulses_per_s", "speed_variation_percent", "start_turn")
 
 
@@ -30,7 +37,7 @@ def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple
         METADATA: _stacked(_metadata(measured)),
         ORDER: _stacked({"place in the files": np.arange(len(measured.healthy)) / max(len(measured.healthy), 1)}),
         BYTE: _stacked({name: _mean(measured.values[name]) for name in BYTES if name in measured.values}),
-        NOISE: _stacked({name: _mean(measured.values[name]) for name in NOISE_LEVELS if name in measured.values}),
+        NOISE: _stacked({name: _mean(measured.values[name]) for name in STEADY_NOISE if name in measured.values}),
     }
 
 

@@ -1,9 +1,9 @@
 """Trap: an attacker that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
 
 All attackers of all layers count as one test. A layer is accused where its AUC lies above what the strongest attacker
-of all layers reaches in every one of 20 permutations per damaged state. By chance that happens in at most 1 of 20 sets,
-since a state exceeds all of n permutations with probability 1/(n + 1). Measured: docs/understand/audit.md. Source:
-maximum statistic and Bonferroni, standard literature.
+of all layers reaches in every one of 99 permutations per damaged state, of the records of that state. By chance that
+happens in at most 1 of 100 sets, since a state exceeds all of n permutations with probability 1/(n + 1). Measured:
+docs/understand/audit.md. Source: maximum statistic and Bonferroni, standard literature.
 """
 
 from __future__ import annotations
@@ -13,15 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.attacks.chance import chance_maximum
+from diagnostics.attacks.chance import bank_maxima, permuted
 from diagnostics.attacks.held_out import HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.bank_detections import damaged_states
 from diagnostics.audit.condition_attackers import BYTE, METADATA, NOISE, ORDER, condition_attackers
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.reference_pairs import exchange_blocks
 
-PERMUTATIONS = 20
+PERMUTATIONS = 99
 """For every damaged state."""
 
 SMALLEST_AUC = 0.7
@@ -54,9 +55,9 @@ def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     if not suspects:
         return []
     asked = [attacker for attackers in bank.values() for attacker in attackers]
-    highest = max(entry.found.auc.value for entry in suspects)
-    limit = chance_largest(measured, asked, suspects[0].state, seed, highest)
-    return [_finding(entry, len(asked), limit) for entry in suspects if entry.found.auc.value > limit]
+    limits = {state: chance_largest(measured, asked, state, seed) for state in {entry.state for entry in suspects}}
+    accused = [entry for entry in suspects if entry.found.auc.value > limits[entry.state]]
+    return [_finding(entry, len(asked), limits[entry.state]) for entry in accused]
 
 
 def _judged(measured: MeasuredSet, bank: dict[str, list[Attacker]], seed: int) -> Iterator[list[Strongest]]:
@@ -80,9 +81,7 @@ def _largest(entries: list[Strongest]) -> Strongest | None:
     return max(defined, key=lambda entry: entry.found.auc.value, default=None)
 
 
-def chance_largest(
-    measured: MeasuredSet, attackers: list[Attacker], state: str, seed: int, enough: float = 1.0
-) -> float:
+def chance_largest(measured: MeasuredSet, attackers: list[Attacker], state: str, seed: int) -> float:
     """Return the largest AUC over attackers and permutations of healthy records and those of one state.
 
     Parameters
@@ -91,19 +90,13 @@ def chance_largest(
     attackers : list of Attacker
     state : str
     seed : int
-    enough : float
-        No more permutations are needed once this is reached.
     """
     specimen = measured.labels["specimen_id"]
     rows = np.flatnonzero(measured.healthy | (measured.labels["state"] == state))
-    folds, damaged = dealt_folds(specimen, seed)[:, rows], ~measured.healthy[rows]
-    largest = 0.0
-    for turn in range(PERMUTATIONS * len(damaged_states(measured))):
-        found = chance_maximum(attackers, rows, damaged, specimen[rows], folds, seed, turn)
-        largest = max(largest, found) if np.isfinite(found) else largest
-        if largest >= enough:
-            break
-    return largest
+    turns = PERMUTATIONS * len(damaged_states(measured))
+    ways = permuted(~measured.healthy[rows], exchange_blocks(measured)[rows], specimen[rows], seed, turns)
+    maxima = bank_maxima(attackers, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
+    return float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
 
 
 def _finding(entry: Strongest, tried: int, limit: float) -> Finding:

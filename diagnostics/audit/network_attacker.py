@@ -48,7 +48,7 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
         if key not in kept:
             train = usable & np.isin(specimen, learnt)
             kept[key] = _scores(records, train, ~measured.healthy, seed)
-        return Verdicts(kept[key][trial.rows[~trial.train]])
+        return Verdicts(kept[key][trial.rows[~trial.train]][None])
 
     return Attacker(name, attack, usable, records.rows * 2 * lines.shape[2], deals=1, permutable=False)
 

@@ -153,6 +153,6 @@ def discriminator_auc(measured: WindowSet, synthetic: WindowSet, seed: int) -> f
     for fold in folds:
         for held in np.unique(fold[is_real]):
             out = fold == held
-            score = ridge_scores(product, is_real, source, ~out)
+            score = ridge_scores(product, is_real[None], source, ~out)[0]
             total += wins(score, is_real[out], source[out], np.ones((1, int(out.sum()))))
     return float(total[0, 0] / total[1, 0]) if total[1, 0] > 0.0 else float("nan")

@@ -1,4 +1,4 @@
-"""For every record another healthy record of the same specimen at the same operating point."""
+"""For every record a healthy record of the same specimen at the same operating point, and which records are alike."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ SPEED_TOLERANCE = 0.002
 def reference_records(measured: MeasuredSet) -> np.ndarray:
     """Return the row of the reference of every record, (records,) int, or -1 where there is none.
 
-    The reference is healthy, of the same specimen, not the record itself, within 1 % in torque and 0.2 % in speed (mean
-    speed between the pulses where it is known); of several the one nearest in speed, then the first. Healthy records
-    get references like all others, so that both classes are differences of two records.
+    The reference is healthy, of the same specimen, within 1 % in torque and 0.2 % in speed (mean speed between the
+    pulses where it is known); of several the one nearest in speed, then the first. All records at an operating point
+    stand beside the same reference, the first healthy one, which has none itself. So healthy and damaged ones of a
+    gearbox without damage could be exchanged: two healthy records beside each other would be one difference, counted
+    twice. A reference beside which no other healthy record stands does not count.
     """
     labels = measured.labels
     speed = measured.values["pulses_per_s"][:, 0]
@@ -24,14 +26,36 @@ def reference_records(measured: MeasuredSet) -> np.ndarray:
     result = np.full(speed.size, -1, dtype=np.int64)
     for specimen in np.unique(labels["specimen_id"]):
         rows = np.flatnonzero(labels["specimen_id"] == specimen)
-        references = rows[measured.healthy[rows]]
-        if references.size == 0:
-            continue
-        apart = np.abs(speed[rows][:, None] / speed[references] - 1.0)
-        load = np.abs(torque[rows][:, None] - torque[references])
-        allowed = (apart <= SPEED_TOLERANCE) & (load <= TORQUE_TOLERANCE * np.abs(torque[references]))
-        apart = np.where(allowed & (rows[:, None] != references), apart, np.inf)
-        nearest = apart.argmin(axis=1)
-        has_one = np.isfinite(apart[np.arange(rows.size), nearest])
-        result[rows[has_one]] = references[nearest[has_one]]
+        result[rows] = _references(rows, measured.healthy[rows], speed[rows], torque[rows])
     return result
+
+
+def _references(rows: np.ndarray, healthy: np.ndarray, speed: np.ndarray, torque: np.ndarray) -> np.ndarray:
+    """Return the references of the records of one specimen, rows of the set or -1."""
+    apart = np.abs(speed[:, None] / speed - 1.0)
+    allowed = (apart <= SPEED_TOLERANCE) & (np.abs(torque[:, None] - torque) <= TORQUE_TOLERANCE * np.abs(torque))
+    chosen: list[int] = []
+    for place in np.flatnonzero(healthy).tolist():
+        if not allowed[place, chosen].any():
+            chosen.append(place)
+    found = np.full(rows.size, -1, dtype=np.int64)
+    if not chosen:
+        return found
+    nearest = np.where(allowed[:, chosen], apart[:, chosen], np.inf)
+    place = np.asarray(chosen)[nearest.argmin(axis=1)]
+    beside = np.isfinite(nearest.min(axis=1)) & ~np.isin(np.arange(rows.size), chosen)
+    beside &= np.isin(place, place[beside & healthy])
+    found[beside] = rows[place[beside]]
+    return found
+
+
+def exchange_blocks(measured: MeasuredSet) -> np.ndarray:
+    """Return a number for every record, (records,) int: records of one number are alike but for the state.
+
+    They are of one specimen and operating point and stand beside one reference; the reference stands alone.
+    """
+    reference, every = reference_records(measured), np.arange(len(measured.healthy))
+    point = measured.labels.get("operating_point_id", np.zeros(every.size, dtype=np.int64))
+    beside = np.where(np.isin(every, reference), every.size + every, reference)
+    keys = np.stack([measured.labels["specimen_id"], point, beside]).astype(np.int64)
+    return np.asarray(np.unique(keys, axis=1, return_inverse=True)[1]).ravel()

@@ -15,8 +15,8 @@ from diagnostics.records.recording import recordings
 from diagnostics.release.floor_roughness import floor_features
 from diagnostics.release.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
-from diagnostics.statistics.evaluation import Scores
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
+from diagnostics.statistics.scores import Scores
 from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.log_features import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit

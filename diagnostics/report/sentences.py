@@ -20,7 +20,7 @@ from diagnostics.page.wording import (
 )
 from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.comparison import SATURATED, Comparison
-from diagnostics.statistics.evaluation import Interval, error_share_limit
+from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
 from diagnostics.statistics.separability import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores
@@ -150,19 +150,12 @@ def trust_sentence(training: Training) -> str:
 def certainty_sentence(training: Training) -> str:
     """Say how far few specimens limit what the scores can tell."""
     specimens = training.judged[0].scores.specimens
-    perfect = [TITLES[judged.name] for judged in training.judged if judged.scores.accuracy.value == 1.0]
     if specimens == 1:
         return "A single test specimen gives no intervals. Nothing is known about other gearboxes."
-    if perfect:
-        return (
-            f"The interval of {joined(perfect)} has no width, because no record of the {specimens} test specimens is "
-            f"named wrongly. Up to {percent(error_share_limit(specimens))} of specimens with errors remain compatible "
-            "with this result (95\N{NO-BREAK SPACE}%, binomial)."
-        )
-    verdict = "rough" if specimens < MANY_SPECIMENS else "meaningful"
+    few = " They are wide, because there are few." if specimens < MANY_SPECIMENS else ""
     return (
-        f"The 95\N{NO-BREAK SPACE}% intervals come from resampling the {specimens} test specimens. With so "
-        f"{'few' if specimens < MANY_SPECIMENS else 'many'} specimens they are {verdict}."
+        f"The 95\N{NO-BREAK SPACE}% limits hold for the {specimens} test specimens: records of one specimen do not "
+        f"count as several.{few}"
     )
 
 

@@ -1,4 +1,4 @@
-"""Scores of a classifier with intervals from a bootstrap over specimens, never over records or windows.
+"""What classifiers are judged by, with intervals from a bootstrap over specimens, never over records or windows.
 
 Records of one specimen share its gears and its damage, so only specimens are independent. AUC: Mann-Whitney statistic
 with half credit for ties. Source: standard literature (Efron; Hand & Till 2001 for averages over classes); weighted
@@ -57,39 +57,6 @@ class Predictions:
     def predicted(self) -> np.ndarray:
         """(n,) int: the most probable state."""
         return np.asarray(self.probability.argmax(axis=1))
-
-
-@dataclass(frozen=True, slots=True)
-class Scores:
-    """Scores with intervals.
-
-    Attributes
-    ----------
-    classes : tuple of str
-    accuracy, macro_auroc : Interval
-    balanced_accuracy : Interval
-        Mean over the classes of the share that is named right; differs from the accuracy where classes are unequal.
-    guess : float
-        Accuracy of always naming the most frequent class.
-    confusion : (classes, classes) int
-        Rows: true class, columns: predicted.
-    specimens, records : int
-    """
-
-    classes: tuple[str, ...]
-    accuracy: Interval
-    macro_auroc: Interval
-    balanced_accuracy: Interval
-    guess: float
-    confusion: np.ndarray
-    specimens: int
-    records: int
-
-    @property
-    def balanced(self) -> bool:
-        """Whether all classes that occur have equally many records."""
-        counts = self.confusion.sum(axis=1)
-        return bool(np.ptp(counts[counts > 0]) == 0) if self.records else True
 
 
 def bootstrap_weights(specimen: np.ndarray, seed: int, resamples: int = RESAMPLES) -> np.ndarray:
@@ -227,26 +194,3 @@ def balanced_accuracy(predictions: Predictions, weights: np.ndarray) -> np.ndarr
         shares = np.stack([right[:, rows].sum(axis=1) / weights[:, rows].sum(axis=1) for rows in mine])
     drawn = np.isfinite(shares)
     return np.asarray(np.where(drawn, shares, 0.0).sum(axis=0) / drawn.sum(axis=0))
-
-
-def scores(predictions: Predictions, seed: int, resamples: int = RESAMPLES) -> Scores:
-    """Judge predictions, with intervals from resampled specimens."""
-    weights = bootstrap_weights(predictions.specimen, seed, resamples)
-    right = (predictions.predicted == predictions.truth).astype(np.float64)
-    accuracy = weights @ right / weights.sum(axis=1)
-    specimens = int(np.unique(predictions.specimen).size)
-    return Scores(
-        classes=predictions.classes,
-        accuracy=interval(accuracy, specimens),
-        macro_auroc=interval(macro_auroc(predictions, weights), specimens),
-        balanced_accuracy=interval(balanced_accuracy(predictions, weights), specimens),
-        guess=float(np.bincount(predictions.truth).max() / predictions.truth.size),
-        confusion=confusion_matrix(predictions),
-        specimens=specimens,
-        records=int(predictions.truth.size),
-    )
-
-
-def error_share_limit(specimens: int) -> float:
-    """Return the share of specimens with an error that is still compatible (95 %, binomial) with none seen."""
-    return float(1.0 - (1.0 - LEVEL) ** (1.0 / specimens))

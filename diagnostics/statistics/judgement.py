@@ -10,7 +10,8 @@ import numpy as np
 
 from diagnostics.statistics.calibration import Calibration, calibrated, calibration
 from diagnostics.statistics.detection import Detection, detection, detection_metrics
-from diagnostics.statistics.evaluation import Predictions, Scores, macro_auroc, scores
+from diagnostics.statistics.evaluation import Predictions, macro_auroc
+from diagnostics.statistics.scores import Scores, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK, PLAIN_NETWORK = "indicators", "boosting", "rms", "network", "network_plain"
 CIRCULAR, CIRCULAR_REFERENCED, REFERENCED = "circular", "circular_referenced", "healthy_referenced"

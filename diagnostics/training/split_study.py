@@ -15,7 +15,9 @@ import numpy as np
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.windows import by_channel
-from diagnostics.statistics.evaluation import Predictions, Scores, bootstrap_weights, interval, macro_auroc, scores
+from diagnostics.statistics.area_interval import area_interval
+from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
+from diagnostics.statistics.scores import Scores, scores
 from diagnostics.training.baselines import fitted_classifier, rms_features, state_index
 from diagnostics.training.other_set import OTHER_SPECIMENS
 
@@ -169,7 +171,7 @@ def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> Scores:
     with np.errstate(invalid="ignore"):
         mean = (np.nan_to_num(area) * size).sum(axis=0) / size.sum(axis=0)
     specimens = int(np.unique(found.specimen).size)
-    return replace(scores(found, seed, RESAMPLES), macro_auroc=interval(mean, specimens))
+    return replace(scores(found, seed, RESAMPLES), macro_auroc=area_interval(mean, specimens))
 
 
 def _out_of_fold(

@@ -1,7 +1,9 @@
-"""How often the lower limit of an AUC lies below the true one: `python docs/scripts/area_coverage.py [TRIALS]`.
+"""How often limits hold the truth: `python docs/scripts/area_coverage.py [TRIALS]`.
 
-Every gearbox gives a healthy and a damaged record with normal scores; a part of the noise is shared by both, with the
-same sign or the opposite one. Wanted: 0.975.
+First table: lower limit of an AUC below the true one, wanted 0.975. Every gearbox gives a healthy and a damaged record
+with normal scores; a part of the noise is shared by both, with the same sign or the opposite one. Second table: both
+limits about the share of records that are named right, wanted 0.95. Four records a gearbox; gearboxes are alike, or
+their chances differ (beta-binomial, correlation within a gearbox 0.3).
 """
 
 from __future__ import annotations
@@ -13,10 +15,11 @@ from scipy.stats import norm
 
 from diagnostics.attacks.held_out import wins
 from diagnostics.statistics.area_interval import area_interval
-from diagnostics.statistics.evaluation import bootstrap_weights, interval
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval
 
 CASES = ((8, 0.9), (8, 0.99), (24, 0.9), (24, 0.97), (24, 0.99))
 SHARED, RESAMPLES = (-0.5, 0.0, 0.6), 200
+SHARE_CASES, ALIKE, RECORDS = ((5, 0.65), (5, 0.9), (24, 0.65), (24, 0.9)), (0.0, 0.3), 4
 
 
 def resampled(gearboxes: int, area: float, shared: float, seed: int) -> np.ndarray:
@@ -31,8 +34,19 @@ def resampled(gearboxes: int, area: float, shared: float, seed: int) -> np.ndarr
         return np.asarray(np.where(every > 0.0, won / every, np.nan))
 
 
+def both(gearboxes: int, share: float, alike: float, seed: int) -> tuple[Interval, Interval]:
+    """Return the limits of a share from resampled gearboxes alone, and as they are now."""
+    rng, specimen = np.random.default_rng(seed), np.repeat(np.arange(gearboxes), RECORDS)
+    spread = 1.0 / alike - 1.0 if alike else np.inf
+    mine = rng.beta(share * spread, (1.0 - share) * spread, gearboxes) if alike else np.full(gearboxes, share)
+    right = (rng.random(specimen.size) < mine[specimen]).astype(np.float64)
+    weights = bootstrap_weights(specimen, seed, RESAMPLES)
+    samples = weights @ right / weights.sum(axis=1)
+    return interval(samples, gearboxes), area_interval(samples, gearboxes)
+
+
 def main(trials: int) -> None:
-    """Print one row per case."""
+    """Print one row per case of both tables."""
     print("| gearboxes, true AUC | shared | bootstrap alone | now |\n|---|---|---|---|")
     for gearboxes, area in CASES:
         for shared in SHARED:
@@ -41,6 +55,16 @@ def main(trials: int) -> None:
                 np.mean([law(found, gearboxes).low <= area for found in every]) for law in (interval, area_interval)
             ]
             print(f"| {gearboxes}, {area} | {shared} | {shares[0]:.2f} | {shares[1]:.2f} |", flush=True)
+
+    print("\n| gearboxes, true share | alike within one | bootstrap alone | now |\n|---|---|---|---|")
+    for gearboxes, share in SHARE_CASES:
+        for alike in ALIKE:
+            held = [
+                [limits.low <= share <= limits.high for limits in both(gearboxes, share, alike, seed)]
+                for seed in range(trials)
+            ]
+            shares = np.mean(held, axis=0)
+            print(f"| {gearboxes}, {share} | {alike} | {shares[0]:.2f} | {shares[1]:.2f} |", flush=True)
 
 
 if __name__ == "__main__":

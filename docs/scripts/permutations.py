@@ -1,9 +1,11 @@
-"""False accusations of the audit: `python docs/scripts/permutations.py SET [TURNS] [STATE ...]`.
+"""False accusations of the audit: `python docs/scripts/permutations.py SET|noise [TURNS] [STATE ...]`.
 
 Takes a generated set, keeps its healthy records and those of the given states, and permutes the states with all that
-follows from them among the records of every gearbox, TURNS times. So no label tells anything. Prints in how many turns
-the audit accuses the set of a trap, and in how many the strongest attacker on the signals, the bank counted as one
-test, lies above the limit that the audit would state. Only classifiers run again: the table of the set is kept.
+follows from them among the records of every gearbox, TURNS times. So no label tells anything. Everything behind the
+table of the set runs again in every turn: which record is the reference, attackers, permutations of the audit itself.
+Prints in how many turns the strongest attacker on the signals, the bank counted as one test, has a p-value of 0.05 or
+less in the first state, and in how many the audit accuses the set of a trap, with exact 95 % limits (Clopper-Pearson).
+With `noise` for SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise.
 """
 
 from __future__ import annotations
@@ -17,19 +19,19 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.attacks.chance import chance_maximum
-from diagnostics.attacks.held_out import dealt_folds
-from diagnostics.audit.audit_report import signal_attackers
 from diagnostics.audit.bank_detections import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.separability_findings import separability_findings
+from diagnostics.audit.signal_attackers import signal_attackers
 from diagnostics.base.single_thread import single_thread
+from diagnostics.statistics.area_interval import clopper_pearson
 
 DAMAGE = ("state", "fault", "severity", "damage", "faulty", "mesh_stiffness", "land", "sink", "snr", "contact_loss")
 """Beginnings of the names of labels that follow from the state."""
 
-FIRST_TURN = 1000
-"""The limit itself uses turns from 0 on."""
+LEVEL = 0.05
+GEARBOXES, ORDERS, TEETH = 24, 362, 18
+"""Of drawn sets."""
 
 
 def kept(found: MeasuredSet, rows: np.ndarray) -> MeasuredSet:
@@ -56,37 +58,64 @@ def with_permuted_states(found: MeasuredSet, turn: int) -> MeasuredSet:
     return replace(found, labels={**found.labels, **moved})
 
 
+def drawn(turn: int) -> MeasuredSet:
+    """Return two healthy records and one damaged without any effect per gearbox: its pattern and as much noise."""
+    rng, specimen = np.random.default_rng(turn), np.repeat(np.arange(GEARBOXES), 3)
+    shapes = ((GEARBOXES, 1, ORDERS), (specimen.size, 1, ORDERS))
+    pattern, noise = (rng.standard_normal(shape) + 1j * rng.standard_normal(shape) for shape in shapes)
+    state = np.tile(["healthy", "again", "damaged"], GEARBOXES)
+    labels = {
+        "specimen_id": specimen, "state": state, "fault": np.where(state == "damaged", "spalling", "healthy"),
+        "teeth_pinion": np.full(specimen.size, TEETH), "speed_hz": np.full(specimen.size, 30.0),
+        "torque_nm": np.full(specimen.size, 40.0), "damaged_area_mm2": 1.0 * (state == "damaged"),
+    }  # fmt: skip
+    values = {"pulses_per_s": np.full((specimen.size, 1), 30.0)}
+    lines = (pattern[specimen] + noise).astype(np.complex64)
+    nothing = np.zeros((specimen.size, 1), np.int64)
+    return MeasuredSet(labels, ("a",), values, (), [list(row) for row in lines], [], nothing, {}, [])
+
+
+def p_value(found: MeasuredSet, state: str, turn: int) -> float:
+    """Return the p-value of the bank on a state, with folds and permutations of their own in every turn."""
+    bank = signal_attackers(found, turn, lambda: None)
+    return chance_limit(found, bank, turn, lambda: None).states[state].p_value
+
+
+def share(count: int, turns: int) -> str:
+    """Return a share with its limits."""
+    low, high = clopper_pearson(count / turns, turns)
+    return f"{count} of {turns}, {count / turns:.1%} ({low:.1%} to {high:.1%})"
+
+
+def accused_of_traps(found: MeasuredSet, turns: int) -> None:
+    """Print how often the audit names a trap."""
+    named, accused = Counter[str](), 0
+    for turn in range(turns):
+        traps = [finding.trap for finding in separability_findings(with_permuted_states(found, turn), turn)]
+        accused += bool(traps)
+        named.update(traps)
+    print(f"accused of a trap: {share(accused, turns)} {dict(named)}", flush=True)
+
+
 @single_thread
 def main(path: str, turns: int, states: list[str]) -> None:
     """Print both shares."""
-    every = measured_set(siggen.open(path))
-    found = kept(every, every.healthy | np.isin(every.labels["state"], states))
-    specimen = found.labels["specimen_id"]
-    print(f"{specimen.size} records of {np.unique(specimen).size} gearboxes; states {', '.join(states)}", flush=True)
     begin = time.process_time()
-    bank = [attacker for attacker in signal_attackers(found, 0, lambda: None) if attacker.permutable]
-    limit = chance_limit(found, bank, 0, lambda: None).auc
-    of_state = found.labels["state"] == states[0]
-    rows = np.flatnonzero(found.healthy | of_state)
-    folds = dealt_folds(specimen, 0)[:, rows]
-    best = [
-        chance_maximum(bank, rows, of_state[rows], specimen[rows], folds, 0, FIRST_TURN + turn) for turn in range(turns)
-    ]
-    above = int(np.sum(np.array(best) > limit))
-    print(
-        f"strongest of {len(bank)} attackers above its limit {limit:.2f}: {above} of {turns}; "
-        f"{time.process_time() - begin:.0f} s of CPU",
-        flush=True,
-    )
-    begin, named = time.process_time(), Counter[str]()
-    accused = 0
-    for turn in range(turns):
-        traps = [finding.trap for finding in separability_findings(with_permuted_states(found, turn))]
-        accused += bool(traps)
-        named.update(traps)
-    print(
-        f"accused of a trap: {accused} of {turns} {dict(named)}; {time.process_time() - begin:.0f} s of CPU", flush=True
-    )
+    if path == "noise":
+        found = [p_value(drawn(turn), "damaged", turn) for turn in range(turns)]
+    else:
+        every = measured_set(siggen.open(path))
+        chosen = kept(every, every.healthy | np.isin(every.labels["state"], states))
+        specimen = chosen.labels["specimen_id"]
+        print(
+            f"{specimen.size} records of {np.unique(specimen).size} gearboxes; states {', '.join(states)}", flush=True
+        )
+        found = [p_value(with_permuted_states(chosen, turn), states[0], turn) for turn in range(turns)]
+    below = int(np.sum(np.array(found) <= LEVEL))
+    print(f"p-value of the bank on the signals at most {LEVEL}: {share(below, turns)}; median {np.median(found):.2f}; "
+          f"{time.process_time() - begin:.0f} s of CPU", flush=True)  # fmt: skip
+    if path != "noise":
+        accused_of_traps(chosen, turns)
 
 
 if __name__ == "__main__":

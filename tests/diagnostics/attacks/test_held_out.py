@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.attacks.chance import chance_maximum, permuted
+from diagnostics.attacks.chance import bank_maxima, permuted
 from diagnostics.attacks.column_attackers import all_columns, best_column
-from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows, trials
+from diagnostics.attacks.held_out import dealt_folds, held_out, held_out_values, judged_rows, trials
 from diagnostics.attacks.ridge_scores import PENALTIES, products, ridge_scores
 from diagnostics.attacks.trial import Trial
 
@@ -35,7 +35,7 @@ def test_a_fold_holds_whole_gearboxes_and_both_sides_hold_both_classes() -> None
     for fold in folds:
         assert all(np.unique(fold[specimen == owner]).size == 1 for owner in range(GEARBOXES))
         assert np.unique(fold).size == 4
-    found = list(trials(np.arange(specimen.size), damaged, specimen, folds))
+    found = [trial for trial, _ in trials(np.arange(specimen.size), damaged[None], specimen, folds)]
     assert len(found) == 12
     assert all(not set(specimen[t.train]) & set(specimen[~t.train]) for t in found)
 
@@ -49,9 +49,9 @@ def test_the_best_of_many_empty_columns_is_at_chance_on_unseen_gearboxes_only() 
         for attacker in (best_column("best", values, names()), all_columns("all", values)):
             area.append(held_out(attacker, every, damaged, specimen, folds, 0).auc.value)
         whole = best_column("best", values, names())
-        told = whole.attack(Trial(np.r_[every, every], np.r_[damaged, damaged], np.r_[specimen, specimen + 99],
+        told = whole.attack(Trial(np.r_[every, every], np.r_[damaged, damaged][None], np.r_[specimen, specimen + 99],
                                   np.arange(2 * every.size) < every.size, 0, 0))  # fmt: skip
-        shown.append(np.mean(told.score[damaged][:, None] > told.score[~damaged]))
+        shown.append(np.mean(told.score[0, damaged][:, None] > told.score[0, ~damaged]))
     # spread of one AUC 0.1, of the mean over 60 about 0.015
     assert np.mean(area) == pytest.approx(0.5, abs=0.05)
     # what a choice on the judged gearboxes would have claimed
@@ -94,22 +94,45 @@ def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_wit
 
     best = min(PENALTIES, key=refitted)
     expected = Ridge(best * scale).fit(scaled[train], target[train]).predict(scaled[~train])
-    found = ridge_scores(products(values), damaged, specimen, train)
+    turned = permuted(damaged, specimen, specimen, 0, 1)
+    found = ridge_scores(products(values), np.concatenate([turned, damaged[None]]), specimen, train)[1]
     assert found + target[train].mean() == pytest.approx(expected, abs=1e-8)
 
 
 def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_chance_reaches() -> None:
     specimen, damaged = design()
-    turned = permuted(damaged, specimen, 0, 1)
+    turned = permuted(damaged, specimen, specimen, 0, 1)[0]
     assert np.array_equal(np.bincount(specimen, turned), np.ones(GEARBOXES))
     assert not np.array_equal(turned, damaged)
     one_state_each = specimen >= 8
-    among = permuted(one_state_each, specimen, 0, 1)
+    among = permuted(one_state_each, specimen, specimen, 0, 1)[0]
     assert among.sum() == one_state_each.sum()
     assert all(np.unique(among[specimen == owner]).size == 1 for owner in range(GEARBOXES))
     folds, every, values = dealt_folds(specimen, 0), np.arange(specimen.size), noise(9)
     bank = [best_column("best", values, names()), all_columns("all", values)]
-    maxima = [chance_maximum(bank, every, damaged, specimen, folds, 0, turn) for turn in range(20)]
+    maxima = bank_maxima(bank, every, permuted(damaged, specimen, specimen, 0, 20), specimen, folds)
     assert 0.5 < np.quantile(maxima, 0.95) < 0.85
     planted = best_column("best", values - 4.0 * damaged[:, None], names())
     assert held_out(planted, every, damaged, specimen, folds, 0).auc.value > max(maxima)
+
+
+def test_what_stands_alone_in_its_block_keeps_its_state() -> None:
+    specimen, damaged = design()
+    block = np.where(np.arange(specimen.size) % 3 == 0, specimen, GEARBOXES + specimen)
+    turned = permuted(damaged, block, specimen, 0, 40)
+    assert not turned[:, ::3].any()
+    assert np.all(turned.reshape(40, GEARBOXES, 3).sum(axis=2) == 1)
+    # 16 gearboxes, 40 permutations: half of 640 within four standard deviations
+    assert turned[:, 1::3].sum() == pytest.approx(320, abs=51)
+
+
+def test_many_ways_of_stating_the_damage_give_what_each_gives_alone() -> None:
+    specimen, damaged = design(7)  # folds of unequal size
+    values = np.random.default_rng(4).integers(0, 9, (specimen.size, 12)).astype(float)  # with ties
+    values += np.random.default_rng(5).standard_normal(12) * 3.0
+    rows, folds = np.arange(specimen.size), dealt_folds(specimen, 0)
+    ways = np.concatenate([damaged[None], permuted(damaged, specimen, specimen, 0, 9)])
+    for attacker in (best_column("best", values, names(12)), all_columns("all", values)):
+        together = held_out_values(attacker, rows, ways, specimen, folds)
+        alone = [held_out(attacker, rows, way, specimen, folds, 0).auc.value for way in ways]
+        assert together == pytest.approx(np.array(alone), abs=1e-12)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
-from diagnostics.audit import audit_report, bank_detections, network_attacker
+from diagnostics.audit import network_attacker
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 from siggen.sets.verification import verify
@@ -29,9 +29,7 @@ def clean() -> PlantedSet:
 
 @pytest.fixture(autouse=True)
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few permutations and steps of training: what they find is tested with the attackers."""
-    for module in (audit_report, bank_detections):
-        monkeypatch.setattr(module, "PERMUTATIONS", 3)
+    """Few steps of training: what they find is tested with the attackers."""
     monkeypatch.setattr(network_attacker, "SHOWN", 40)
     monkeypatch.setattr(network_attacker, "FEWEST_EPOCHS", 1)
 

@@ -19,7 +19,7 @@ from diagnostics.audit.detectability import (
     waveform_change,
 )
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.reference_pairs import exchange_blocks, reference_records
 from diagnostics.statistics.evaluation import Interval
 
 
@@ -69,33 +69,38 @@ def test_a_pulse_is_detected_and_its_absence_is_not(repeated: MeasuredSet) -> No
     assert found["slight"] < 0.75  # 8 specimens: four a class
 
 
-def test_pairs_are_healthy_records_of_the_same_specimen_at_the_same_point(repeated: MeasuredSet) -> None:
-    reference = reference_records(repeated)
-    assert np.all(reference >= 0)
-    labels = repeated.labels
-    assert np.all(repeated.healthy[reference])
-    assert np.all(reference != np.arange(reference.size))
-    for name in ("specimen_id", "operating_point_id"):
-        assert np.array_equal(labels[name], labels[name][reference])
+def test_all_records_at_a_point_stand_beside_one_healthy_record_that_is_not_judged(repeated: MeasuredSet) -> None:
+    reference, labels = reference_records(repeated), repeated.labels
+    beside = reference >= 0
+    assert np.array_equal(np.flatnonzero(~beside), np.unique(reference[beside]))
+    assert np.all(repeated.healthy[reference[beside]])
+    keys = [labels[name] for name in ("specimen_id", "operating_point_id")]
+    for key in keys:
+        assert np.array_equal(key[beside], key[reference[beside]])
+    assert np.unique(reference[beside]).size == np.unique(np.stack(keys), axis=1).shape[1]
+    blocks = exchange_blocks(repeated)
+    alike = blocks[beside][:, None] == blocks[beside]
+    assert np.array_equal(alike, reference[beside][:, None] == reference[beside])
+    assert np.all(np.bincount(blocks)[blocks[~beside]] == 1)
 
 
 def test_records_beyond_one_percent_torque_have_no_pair(repeated: MeasuredSet) -> None:
     torque = repeated.labels["torque_nm"] * np.where(repeated.healthy, 1.0, 1.011)
     found = reference_records(replace(repeated, labels={**repeated.labels, "torque_nm": torque}))
     assert np.all(found[~repeated.healthy] == -1)
-    assert np.all(found[repeated.healthy] >= 0)
+    assert np.sum(found[repeated.healthy] >= 0) == repeated.healthy.sum() / 2
 
 
 def test_without_repeats_healthy_records_have_no_pair_and_no_auc_is_given() -> None:
     single = measured(Plant(specimens=4))
-    assert np.all(reference_records(single)[single.healthy] == -1)
+    assert np.all(reference_records(single) == -1)
     assert all(math.isnan(entry.auc.value) for entry in detections(single, features(single, paired=True)))
 
 
 def test_paired_differences_and_waveforms_find_the_pulse(repeated: MeasuredSet) -> None:
     paired = features(repeated, paired=True)
     assert paired.shape == (96, 6)
-    assert np.isfinite(paired).all()
+    assert np.array_equal(np.isfinite(paired).all(axis=1), reference_records(repeated) >= 0)
     for values in (paired, waveform_change(repeated)):
         found = {entry.state: entry.auc.value for entry in detections(repeated, values)}
         assert found["severe"] > 0.95

@@ -42,7 +42,7 @@ def test_it_finds_a_burst_wherever_it_is_and_says_the_same_twice(
         assert attacker is not None
         assert attacker.usable.all()
         assert not attacker.permutable
-        return attacker.attack(Trial(np.arange(SPECIMEN.size), DAMAGED, SPECIMEN, SPECIMEN < 10, 0, 0)).score
+        return attacker.attack(Trial(np.arange(SPECIMEN.size), DAMAGED[None], SPECIMEN, SPECIMEN < 10, 0, 0)).score[0]
 
     first, held = score(), DAMAGED[SPECIMEN >= 10]
     assert np.mean(first[held][:, None] > first[~held]) > 0.9

@@ -188,17 +188,11 @@ def test_undefined_scores_are_called_undefined() -> None:
     assert "nan" not in scores_sentence(lost) + comparison_sentence(lost)
 
 
-def test_no_error_at_all_is_no_proof() -> None:
-    sentence = certainty_sentence(training(share=1.0))
-    # 1 - 0.05^(1/5): five specimens without an error
-    assert "Up to 45\xa0% of specimens with errors" in sentence
-
-
-@pytest.mark.parametrize(
-    ("specimens", "verdict"), [(5, "few specimens they are rough"), (40, "many specimens they are meaningful")]
-)
-def test_few_specimens_give_rough_intervals(specimens: int, verdict: str) -> None:
-    assert verdict in certainty_sentence(training(specimens=specimens))
+@pytest.mark.parametrize(("specimens", "is_wide"), [(5, True), (40, False)])
+def test_limits_of_few_specimens_are_said_to_be_wide(specimens: int, is_wide: bool) -> None:
+    sentence = certainty_sentence(training(specimens=specimens))
+    assert f"hold for the {specimens} test specimens" in sentence
+    assert ("They are wide, because there are few." in sentence) == is_wide
 
 
 def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> None:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from diagnostics.statistics.comparison import comparison, state_auc
-from diagnostics.statistics.evaluation import Predictions, scores
+from diagnostics.statistics.evaluation import Predictions
+from diagnostics.statistics.scores import scores
 
 CLASSES = ("healthy", "severe")
 

@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 from diagnostics.statistics.evaluation import (
     Predictions,
     bootstrap_weights,
-    error_share_limit,
     interval,
     macro_auroc,
-    scores,
     weighted_auc,
     weighted_midranks,
 )
+from diagnostics.statistics.scores import scores
 from diagnostics.statistics.separability import weighted_spearman
 
 ONE = np.ones((1, 40))
@@ -141,8 +140,28 @@ def test_one_specimen_has_no_interval() -> None:
     assert found.numbers() == {"value": 0.7, "low": None, "high": None}
 
 
-def test_error_share_compatible_with_no_error_follows_the_binomial() -> None:
-    assert (1 - error_share_limit(6)) ** 6 == pytest.approx(0.05)
+def test_no_record_named_wrongly_leaves_the_exact_limit_of_so_many_specimens() -> None:
+    specimen = np.repeat(np.arange(6), 2)
+    truth = np.tile([0, 1], 6)
+    found = scores(Predictions(("a", "b"), truth, np.eye(2)[truth], specimen), seed=0)
+    for score in (found.accuracy, found.balanced_accuracy, found.macro_auroc):
+        assert (score.value, score.high) == (1.0, 1.0)
+        assert score.low == pytest.approx(0.025 ** (1 / 6))  # Clopper and Pearson: 6 of 6
+
+
+@pytest.mark.parametrize("alike", [0.0, 0.3])
+def test_limits_of_a_share_from_five_specimens_hold_as_often_as_they_say(alike: float) -> None:
+    # four records a specimen; their chances of being right differ between specimens (beta-binomial)
+    rng, specimen, truth = np.random.default_rng(1), np.repeat(np.arange(5), 4), np.zeros(20, dtype=int)
+    inside = []
+    for seed in range(200):
+        mine = rng.beta(0.65 * (1 / alike - 1), 0.35 * (1 / alike - 1), 5) if alike else np.full(5, 0.65)
+        right = rng.random(20) < mine[specimen]
+        probability = np.where(right[:, None], [0.9, 0.1], [0.1, 0.9])
+        found = scores(Predictions(("a", "b"), truth, probability, specimen), seed, 100).accuracy
+        inside.append(found.low <= 0.65 <= found.high)
+    # 0.95 within three standard deviations of 200; resampling alone gives 0.87 and 0.91
+    assert np.mean(inside) >= 0.95 - 3.0 * (0.95 * 0.05 / 200) ** 0.5
 
 
 def test_same_seed_same_interval() -> None:

@@ -16,7 +16,7 @@ from diagnostics.indicators.classifier_table import classifier_table, feature_ma
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
-from diagnostics.statistics.evaluation import scores
+from diagnostics.statistics.scores import scores
 from diagnostics.statistics.separability import separability
 from diagnostics.training.baselines import (
     DEFAULT_STRENGTH,

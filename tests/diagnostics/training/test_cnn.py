@@ -150,7 +150,7 @@ def test_a_foreign_file_is_not_read(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_network_learns_a_plain_modulation(records: OrderRecords, target: np.ndarray, split: SpecimenSplit) -> None:
-    from diagnostics.statistics.evaluation import scores
+    from diagnostics.statistics.scores import scores
     from diagnostics.training.cnn import network_predictions, train_network
 
     trained = train_network(records, target, split, seed=1)
