@@ -129,8 +129,11 @@ def calibrate(
 
 def _tell(found: Calibration) -> None:
     """Say what was fitted, and to stderr what was not identified."""
+    import numpy as np
+
     from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
     from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
+    from diagnostics.calibration.path_level import path_level_doubt
 
     for fit in found.channels:
         noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
@@ -144,3 +147,6 @@ def _tell(found: Calibration) -> None:
         typer.echo(stage_sentence(found))
     for text in not_identified(found):
         typer.echo(f"not identified: {text}", err=True)
+    paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])
+    if doubt := path_level_doubt(found.config["dynamics"]["casing"]["mass_kg"], found.grid_hz, paths):
+        typer.echo(doubt, err=True)

@@ -44,7 +44,7 @@ def init(
     """
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
-    from siggen.checks.shaft_notes import light_load_notes
+    from siggen.checks.shaft_notes import outside_notes
     from siggen.config import inherited, parse_yaml
     from siggen.errors import UsageError
     from siggen.rig.rig import Rig, checked_rig
@@ -73,7 +73,7 @@ def init(
     out.write_text(text, encoding="utf-8")
     for sentence in implausible(config):
         typer.echo(f"implausible: {sentence}", err=True)
-    for note in light_load_notes(config):
+    for note in outside_notes(config):
         typer.echo(f"note: {note}", err=True)
     typer.echo(f"next: siggen plan {out}; siggen generate {out} --set specimens=1 --out FOLDER", err=True)
     typer.echo(str(out))

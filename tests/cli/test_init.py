@@ -40,7 +40,14 @@ def test_a_load_that_is_light_for_the_errors_of_the_gears_is_told(tmp_path: Path
     """The reach of a tilt grows with the load, errors of the teeth do not."""
     fine = ["--teeth", "18,47", "--module", "0.8", "--face-width", "8", "--speed", "20,30", "--torque"]
     found = [run(*fine, torque, "--out", str(tmp_path / f"{torque}.yaml")).output for torque in ("1", "4")]
-    assert ["outside_model" in text for text in found] == [True, False]
+    assert ["errors across the face" in text for text in found] == [True, False]
+
+
+def test_shafts_that_tilt_far_for_a_wide_face_are_told_with_what_follows(tmp_path: Path) -> None:
+    """2 of 8 through-face spalls of the wide one end as outside_model, none of the narrow one."""
+    wide = ["--teeth", "19,60", "--module", "5", "--speed", "20", "--torque", "300", "--face-width"]
+    found = [run(*wide, width, "--out", str(tmp_path / f"{width}.yaml")).output for width in ("50", "30")]
+    assert ["flanks tilt at rest" in text for text in found] == [True, False]
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from diagnostics.calibration.noise_fit import noise_fit
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
 from diagnostics.calibration.path_draws import liftered, minimum_phase, path_level_db
+from diagnostics.calibration.path_level import path_level_doubt
 from diagnostics.calibration.sensor_fit import smallest_step
 from diagnostics.recordings.measured_recording import RecordingFacts
 
@@ -135,6 +136,16 @@ def test_paths_keep_their_level_from_three_recordings_on_and_spread_below() -> N
     power = path_gains(200, 2, rng) ** 2
     assert 0.5 <= power.min() < 0.55
     assert 1.85 < power.max() <= 2.0
+
+
+def test_a_path_that_no_housing_of_that_mass_has_is_doubtful() -> None:
+    grid = np.linspace(0.0, 12_800.0, 1025)
+    rigid = np.full((3, 1025), 1.0 / 20.0 + 0j)
+    assert path_level_doubt(20.0, grid, rigid) == ""
+    assert path_level_doubt({"kind": "uniform", "low": 10.0, "high": 40.0}, grid, 10.0 * rigid) == ""
+    # mm/s² taken for m/s², and the reverse; 10 dB above a rigid body is usual
+    assert "50 dB too high" in path_level_doubt(20.0, grid, 1e3 * rigid)
+    assert "70 dB too low" in path_level_doubt(20.0, grid, 1e-3 * rigid)
 
 
 def test_one_recording_stays_whole_and_what_it_cannot_tell_is_drawn_wide(tmp_path: Path) -> None:
