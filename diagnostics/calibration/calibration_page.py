@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
 from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
@@ -14,14 +15,15 @@ from diagnostics.calibration.likeness import LEVELS, RANGE, Likeness, Sample, ba
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
-from diagnostics.page.wording import decimal, percent
+from diagnostics.page.wording import counted, decimal, percent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PAGE = "calibration.html"
 MOST_FEATURES = 12
-SPECTRA = "Spectra of {}: recordings (lines), and 90 % of the gearboxes before (grey) and after calibration (blue)."
+TITLES = {quantity.name: quantity.title for quantity in BACKGROUND_QUANTITIES}
+SPECTRA = "Spectra of {}: recordings (red), and 90 % of the gearboxes before (grey) and after calibration (blue)."
 PATHS = (
     "Transfer paths to {}: the family that gearboxes draw from. Where it is wide, path and source are not told apart."
 )
@@ -66,7 +68,7 @@ def write_calibration_page(
 
 def _sentences(before: Likeness, after: Likeness, held_out: int) -> list[str]:
     judged = (
-        f"Judged on {held_out} recordings that were held out."
+        f"Judged on {counted(held_out, 'recording')} held out."
         if held_out
         else "Judged on the recordings that it was fitted to, since none was held out (`--held-out`): too kind."
     )
@@ -114,7 +116,7 @@ def _level_table(real: Sample, before: Likeness, after: Likeness) -> str:
     for k, name in enumerate(LEVELS):
         columns = [sample.levels[:, :, k] for sample in (real, before.sample, after.sample)]
         if np.isfinite(columns[0]).any():
-            rows.append([Cell(name.replace("_", " ")), *(_spread(values) for values in columns)])
+            rows.append([Cell(TITLES.get(name, name)), *(_spread(values) for values in columns)])
     head = ("Quantity", "Recordings", "Before", "After")
     return html.table(
         head, rows, caption="Median [5 %, 95 %] over records and channels; dB re the strongest mesh line."

@@ -11,6 +11,7 @@ import numpy as np
 from diagnostics.machine.check import CHANGED, UNCHANGED, Check, rate_sentence
 from diagnostics.machine.check_history import PastCheck, past_checks
 from diagnostics.machine.machine import Machine
+from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.page import html
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.wording import capitalised
@@ -92,7 +93,7 @@ def _used(machine: Machine, checks: Sequence[Check]) -> int:
 def _moved_table(check: Check) -> str:
     rows = [
         [
-            html.Cell(moved.indicator),
+            html.Cell(indicator_title(moved.indicator), moved.indicator),
             html.Cell(moved.channel),
             html.Cell(f"{moved.factor:.3g}", value=moved.factor),
             html.Cell(f"{moved.spreads:+.1f}", value=moved.spreads),
@@ -104,6 +105,8 @@ def _moved_table(check: Check) -> str:
 
 
 def _trend(history: Sequence[PastCheck]) -> Figure:
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
     figure, axes = new_figure(height_in=2.8)
     axis = axes[0, 0]
     known = [(k, past) for k, past in enumerate(history, start=1) if past.score is not None and past.limit is not None]
@@ -114,8 +117,10 @@ def _trend(history: Sequence[PastCheck]) -> Figure:
     for k, past in known:
         axis.plot([k - 0.4, k + 0.4], [past.limit, past.limit], color="#1c2733", linewidth=1.2)
     axis.set_yscale("log")
+    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.yaxis.set_major_formatter("{x:g}")
-    axis.yaxis.set_minor_formatter("{x:g}")
+    axis.yaxis.set_minor_formatter(NullFormatter())
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axis.set_xlabel("check")
     axis.set_ylabel("distance [spreads]")
     if known:

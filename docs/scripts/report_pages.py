@@ -4,7 +4,8 @@ Without names all pages are made (`make pages`): those of quickstart, bench, ind
 own. Sets are looked for in runs/ and generated where they are missing; every command is printed before it runs. With
 `--sets DIR` a set is taken from DIR/NAME, where it is. A set of another configuration, or of another number of
 gearboxes, is refused, and so is a page that names a place on this machine. Sets, JSON files, tables and models stay in
-runs/. `docs/reports/answers.md` is written anew from all pages.
+runs/. `docs/reports/answers.md` is written anew from all pages, and so are the figures of quickstart that other pages
+of the documentation cite (`cited_figures.py`).
 """
 
 from __future__ import annotations
@@ -41,14 +42,14 @@ SETS = {
 """Commands that make a set, by its folder in runs/; the last one generates it."""
 
 LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
-SMALL = ("quickstart",)
-"""Sets whose audit and networks cost a minute or two; of the others up to ten."""
+AUDITED = ("quickstart",)
+"""Sets whose audit costs a minute; of the others up to ten."""
 
 REPORTS = {
     name: {
         # the audit first: the report cites it
-        **({f"{name}_audit": ("audit.html", f"audit runs/{name} --realism")} if name in SMALL else {}),
-        f"{name}_report": ("report.html", f"report runs/{name}{'' if name in SMALL else ' --no-cnn'}"),
+        **({f"{name}_audit": ("audit.html", f"audit runs/{name} --realism")} if name in AUDITED else {}),
+        f"{name}_report": ("report.html", f"report runs/{name}"),
         f"{name}_indicators": ("indicators.html", f"indicators runs/{name} --leave-out"),
     }
     for name in SETS
@@ -63,6 +64,7 @@ ANSWERS = PAGES / "answers.md"
 ANSWERS_HEAD = """# What the pages answer
 
 Printed by `python docs/scripts/report_pages.py` from the [pages](README.md): the first sentences of every report.
+All records are simulated.
 """
 
 
@@ -187,6 +189,7 @@ def main() -> None:
         for page, (file, command) in REPORTS[name].items():
             write_page(page, file, command)
     ANSWERS.write_text(answers(), encoding="utf-8")
+    subprocess.run([sys.executable, str(Path(__file__).with_name("cited_figures.py"))], check=True)
 
 
 if __name__ == "__main__":

@@ -63,6 +63,7 @@ Explore.draw = () => {
 
 Explore.begin = () => {
   Explore.listen();
+  Explore.sortRecords(document.querySelector("#table th[aria-sort] button").dataset.key, false);
   Explore.buildScatter(document.getElementById("scatter"));
   const asked = Explore.address();
   Explore.chooseScatter();

@@ -4,7 +4,7 @@ Explore.visible = () => Explore.rows().filter((line) => !line.hidden);
 
 Explore.sortRecords = (key, descending) => {
   const body = document.querySelector("#table tbody");
-  const shown = Explore.indicatorValues[Explore.shown];
+  const shown = Explore.indicatorValues[Explore.shown] ?? [];
   const value = (line) => (key === "shown" ? shown[line.dataset.row] : Explore.data.records[line.dataset.row][key]);
   const known = (number) => (Number.isFinite(number) ? number : -Infinity);
   const order = (a, b) => (typeof a === "string" ? a.localeCompare(b) : known(a) < known(b) ? -1 : Number(known(a) > known(b)));
