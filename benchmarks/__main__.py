@@ -32,7 +32,7 @@ TOPICS = (
         "storage",
         "loader",
     ),
-    *("indicators", "audit", "workers", "engines", "quickstart", "contact", "faults", "house"),
+    *("indicators", "audit", "pages", "workers", "engines", "quickstart", "contact", "faults", "house"),
 )
 
 
