@@ -26,6 +26,7 @@ TOPICS = (
         "integration",
         "precision",
         "lanes",
+        "instructions",
         "record",
         "sensing",
         "background",
