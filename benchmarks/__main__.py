@@ -26,13 +26,14 @@ TOPICS = (
         "integration",
         "precision",
         "lanes",
+        "instructions",
         "record",
         "sensing",
         "background",
         "storage",
         "loader",
     ),
-    *("indicators", "audit", "workers", "engines", "quickstart", "contact", "faults", "house"),
+    *("indicators", "audit", "pages", "workers", "engines", "quickstart", "contact", "faults", "house"),
 )
 
 

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.shipped import ROOT, shipped
+from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
@@ -41,7 +42,7 @@ GOAL_S, GOAL_ERROR, GOAL_FACTOR = 0.015, 1e-3, 1.5
 
 
 @dataclass(frozen=True, slots=True)
-class _Case:
+class Case:
     """A record, ready to be integrated in many ways."""
 
     config: Config
@@ -71,15 +72,20 @@ class _Case:
             excitation=self.driven.excitation,
         )  # fmt: skip
 
+    def driven_steps(self, motion: Motion, per_sample: int, duration_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return the angles in base pitches and the inputs at so many steps per sample from sample 0 on."""
+        rate_hz = self.config.fs_hz * per_sample
+        times = np.arange(round(duration_s * rate_hz) + 1) / rate_hz
+        pitches = self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
+        excitation = self.driven.excitation
+        inputs = no_inputs(pitches) if excitation is None else excitation.inputs(times, self.driven.rotation)
+        return pitches, inputs
+
     def loop_s(self, integrator: str, steps: int, rounds: int = 3) -> float:
         """Return the CPU time of the loop per second of signal, the median of some rounds."""
-        motion, rate_hz = self.motion(integrator, steps), self.config.fs_hz * _grid(integrator, steps).per_sample
-        times = np.arange(round(LOOP_S * rate_hz) + 1) / rate_hz
-        pitches = self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
-        inputs = no_inputs(pitches)
-        if self.driven.excitation is not None:
-            inputs = self.driven.excitation.inputs(times, self.driven.rotation)
-        path = np.empty((times.size, 2 * len(motion.structure.coordinates)))
+        motion = self.motion(integrator, steps)
+        pitches, inputs = self.driven_steps(motion, _grid(integrator, steps).per_sample, LOOP_S)
+        path = np.empty((pitches.size, 2 * len(motion.structure.coordinates)))
         found = []
         for _ in range(rounds + 1):
             path[0] = motion.start(pitches[0])
@@ -94,12 +100,12 @@ def rows(*, quick: bool) -> Iterator[Row]:
     for contact in CONTACTS:
         yield from _classes(contact, 1 if quick else 6)
     for contact, tilt in (("slices", False), ("face", False), ("face", True)):
-        case = _case(PRESETS[0], contact, 0, -1, tilt=tilt)
+        case = precision_case(PRESETS[0], contact, 0, -1, tilt=tilt)
         yield from _work_rows(case, f"severe state, {contact}, {'with' if tilt else 'without'} tilt")
-    yield from _scipy_rows(_case(PRESETS[0], "slices", 0, -1))
+    yield from _scipy_rows(precision_case(PRESETS[0], "slices", 0, -1))
 
 
-def _work_rows(case: _Case, what: str) -> Iterator[Row]:
+def _work_rows(case: Case, what: str) -> Iterator[Row]:
     """Yield cost against error of both integrators, called in turn, and how much cheaper one is at equal error."""
     fine = case.response("runge_kutta", REFERENCE_STEPS)
     errors = {way: _error(case.response(*way), fine) for way in WAYS}
@@ -124,7 +130,7 @@ def _classes(contact: str, gearboxes: int) -> Iterator[Row]:
     for preset in PRESETS:
         for gearbox in range(gearboxes):
             for name, state in (("healthy", 0), ("severest", -1)):
-                case = _case(preset, contact, gearbox, state)
+                case = precision_case(preset, contact, gearbox, state)
                 steps = case.own_steps()
                 fine = case.response("runge_kutta", REFERENCE_STEPS)
                 errors[name].append(_error(case.response("exponential", steps), fine))
@@ -146,16 +152,13 @@ def _classes(contact: str, gearboxes: int) -> Iterator[Row]:
     yield Row(what, duration_text(cost), goal=f"<= {duration_text(GOAL_S)}", met=cost <= GOAL_S)
 
 
-def _attempts(case: _Case, steps: int) -> float:
+def _attempts(case: Case, steps: int) -> float:
     """Return how many steps are tried per sample."""
-    motion, rate_hz = case.motion("exponential", steps), case.config.fs_hz * _grid("exponential", steps).per_sample
+    motion = case.motion("exponential", steps)
     assert isinstance(motion, ExponentialMotion)
-    times = np.arange(round(0.2 * rate_hz) + 1) / rate_hz
-    pitches = case.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
-    path = np.empty((times.size, 2 * len(motion.structure.coordinates)))
+    pitches, inputs = case.driven_steps(motion, _grid("exponential", steps).per_sample, 0.2)
+    path = np.empty((pitches.size, 2 * len(motion.structure.coordinates)))
     path[0] = motion.start(pitches[0])
-    excitation = case.driven.excitation
-    inputs = no_inputs(pitches) if excitation is None else excitation.inputs(times, case.driven.rotation)
     motion.advance(pitches, inputs, path)
     return motion.steps_tried / (0.2 * case.config.fs_hz)
 
@@ -165,7 +168,7 @@ def _grid(integrator: str, steps: int) -> TimeGrid:
     return TimeGrid(2, 2) if (integrator, steps) == ("exponential", 1) else TimeGrid(steps, 1)
 
 
-def _scipy_rows(case: _Case) -> Iterator[Row]:
+def _scipy_rows(case: Case) -> Iterator[Row]:
     """Yield scipy's adaptive methods from the static start at constant speed; errors in the rate of the approach."""
     reference = case.motion("runge_kutta", 64)
     assert isinstance(reference, PairMotion)
@@ -208,7 +211,8 @@ def _error(found: Response, wanted: Response) -> float:
     return float(np.median([_relative(one, other) for one, other in pairs]))
 
 
-def _case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = True) -> _Case:
+def precision_case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = True) -> Case:
+    """Return a record of a preset of a state, negative from the last one on, ready to be integrated in many ways."""
     rigid = ("dynamics.shafts=null",) if contact == "slices" or not tilt else ()  # slices do not feel a tilt
     config = shipped(preset, f"dynamics.mesh.contact={contact}", f"duration_s={SIGNAL_S}", *rigid)
     state_id = state % len(config.states)
@@ -225,4 +229,4 @@ def _case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = 
     point = draw_operating_point(config, gearbox, record.operating_point_id)
     angle = start_angle_rad(config, made.pair, record)
     driven = record_drive(config, specimen, made.pair, made.mesh.structure, point, record, angle)
-    return _Case(config, specimen, made, point, driven)
+    return Case(config, specimen, made, point, driven)

@@ -157,6 +157,8 @@ def _trained(
     missing = missing_packages("torch", "safetensors") if options.cnn else ()
     if missing:
         notes.append(f"No network: {', '.join(missing)} is not installed. Install it: pip install 'siggen[cnn]'.")
+    if not options.cnn:
+        notes.append("The networks were left out (--no-cnn). The same command without it trains and judges them.")
     for with_network in dict.fromkeys((options.cnn and not missing, False)):
         try:
             chosen = replace(options, cnn=with_network)

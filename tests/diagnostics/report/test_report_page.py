@@ -170,6 +170,7 @@ def test_the_same_input_gives_the_same_page(make_dataset: Callable[..., Any], tm
 def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
     notes = json.loads((folder / "metrics.json").read_text())["notes"]
     assert any(note.startswith("No stiffness curves") for note in notes)
+    assert any("--no-cnn" in note for note in notes)
 
 
 def test_records_too_short_for_the_network_leave_the_rest(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
