@@ -75,6 +75,7 @@ tr,figure,.note,.short{break-inside:avoid}
 h1,h2,h3,.caption{break-after:avoid}.caption,figcaption{font-size:.85rem}p{orphans:3;widows:3}
 .cut tbody tr:nth-child(n+ROWS){display:none}.printed{display:block;break-before:avoid}
 .figures{grid-template-columns:1fr 1fr;gap:.8rem}figure{padding:.3rem}
+.answer{grid-template-columns:minmax(0,1fr) minmax(0,1fr)}
 .first,.note{background:none}}
 """
 

@@ -61,6 +61,12 @@ Explore.draw = () => {
   Explore.drawScatter(section("scatter"));
 };
 
+// Charts are drawn before the page knows that it is printed: dark ones would be pale on paper.
+Explore.drawForPaper = (printed) => {
+  document.documentElement.classList.toggle("print", printed);
+  if (matchMedia("(prefers-color-scheme: dark)").matches) Explore.draw();
+};
+
 Explore.begin = () => {
   Explore.listen();
   Explore.sortRecords(document.querySelector("#table th[aria-sort] button").dataset.key, false);
@@ -72,6 +78,8 @@ Explore.begin = () => {
   document.getElementById("laid")?.addEventListener("change", Explore.draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", Explore.draw);
   addEventListener("resize", Explore.resize);
+  addEventListener("beforeprint", () => Explore.drawForPaper(true));
+  addEventListener("afterprint", () => Explore.drawForPaper(false));
   addEventListener("hashchange", () => {
     const row = Explore.address();
     Explore.chooseScatter();
