@@ -64,7 +64,7 @@ class MotionBlocks:
             if piece is None:
                 rows = np.zeros((len(self.inputs), count - have))
             else:
-                rows = np.concatenate([p for p in piece if p.size]) - self._mean
+                rows = np.concatenate([p for p in piece if p.shape[0]]) - self._mean
             found.append(rows)
             have += rows.shape[1]
         return np.concatenate(found, axis=1)

@@ -54,6 +54,17 @@ def test_without_noise_blocks_are_the_record_at_once(monkeypatch: pytest.MonkeyP
     assert {"contact_loss_share", "mesh_hz", "start_angle_rad"} <= equal
 
 
+def test_a_machine_without_base_needs_no_history() -> None:
+    """`calibrate` keeps the forces of such machines: nothing reaches back before the record."""
+    # at rest there is nothing that a filter would have to settle on, and without housing nothing that rings
+    plain = {"background": None, "housing": None, "variation": {}, "duration_s": 0.2}
+    plain |= {"internals": {"quantities": ["all"]}}
+    whole, blocks = (record(loaded(filters, PLAIN, **plain)) for filters in ("record", "blocks"))
+    for name, values in whole.channels.items():
+        error = blocks.channels[name].astype(float) - values
+        assert error.std() < 1e-3 * values.std()
+
+
 def test_noise_in_blocks_has_the_power_of_noise_at_once() -> None:
     white = {"frequency_hz": [10, 12000], "density": [0.01, 0.01], "modulation": {"level_std": 0.3}}
     loud = {**LID, "pink_noise": {"density_m_s2_per_sqrt_hz": 0.02, "corner_hz": 100}, "noise_spectrum": white}
