@@ -1,7 +1,7 @@
 """Attackers that do not look at the gears: labels of the conditions, order of the files, bytes of samples, noise.
 
 Each layer is a table with one row per record. Its best column and all its columns together are tried, as they are and
-as differences from another healthy record of the same gearbox.
+as differences from a healthy record of the same gearbox.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Logistic regression on standardised {log RMS, kurtosis, FM4, log sideband index}, averaged over the channels. In every
 repeat the specimens are dealt into two halves: healthy records come from one, faulty ones from the other, so that no
 specimen serves both classes; folds hold whole specimens of both halves. The AUC of the held-out scores is averaged over
-repeats; its interval resamples specimens. Paired: differences from another healthy record of the same specimen at the
+repeats; its interval resamples specimens. Paired: differences from a healthy record of the same specimen at the
 same operating point, energy ratio and sideband energy ratio added. Source: standard literature; the scheme derived.
 """
 

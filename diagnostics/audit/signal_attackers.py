@@ -39,17 +39,28 @@ def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], Non
         Called after every attacker that is prepared.
     """
     residual = residual_lines(line_array(measured.waveforms), measured.labels["teeth_pinion"])
-    found = _attackers(measured, residual, None, seed, advance)
+    found = attackers_on(measured, residual, None, seed, advance)
     reference = reference_records(measured)
     if (reference >= 0).any():
         known = np.where((reference >= 0)[:, None, None], residual[reference], np.nan)
-        found += _attackers(measured, residual - known, known, seed, advance)
+        found += attackers_on(measured, residual - known, known, seed, advance)
     return found
 
 
-def _attackers(
+def attackers_on(
     measured: MeasuredSet, residual: np.ndarray, reference: np.ndarray | None, seed: int, advance: Callable[[], None]
 ) -> list[Attacker]:
+    """Return the attackers on residual lines, which are differences where a reference is given.
+
+    Parameters
+    ----------
+    measured : MeasuredSet
+    residual : (records, channels, orders) complex128
+    reference : (records, channels, orders) complex128, optional
+        What the residual is a difference from, NaN where there is none.
+    seed, advance
+        As of `signal_attackers`.
+    """
     suffix = REFERENCED if reference is not None else ""
     bank, highest = band_bank(residual, reference), kurtogram_maximum(residual)
     values, names = over_channels(bank)

@@ -100,7 +100,10 @@ def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[st
         f"\n{path}: {found['specimens']} gearboxes, {found['records']} records, {len(failures)} could not be simulated"
     )
     if found["chance"]:
-        print(f"with permuted states the strongest attacker stays below {found['chance']['auc']:.2f} in 95 %")
+        limits = [
+            f"{state} {law['auc']:.2f} (p {law['p_value']:.3f})" for state, law in found["chance"]["states"].items()
+        ]
+        print(f"with permuted states the strongest attacker stays below, in 95 %: {', '.join(limits)}")
     return {name: {entry["state"]: entry for entry in way["states"]} for name, way in ways.items()}
 
 

@@ -1,7 +1,7 @@
 """What the noise alone tells of the states of a set, by state: `python docs/scripts/noise_layer.py SET`.
 
 Prints the largest AUC of the audit's attackers on the level of the noise, best column or all, as it is or as a change
-from another healthy record, on gearboxes that were not seen.
+from a healthy record, on gearboxes that were not seen.
 """
 
 from __future__ import annotations

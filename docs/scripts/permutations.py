@@ -1,11 +1,12 @@
 """False accusations of the audit: `python docs/scripts/permutations.py SET|noise [TURNS] [STATE ...]`.
 
 Takes a generated set, keeps its healthy records and those of the given states, and permutes the states with all that
-follows from them among the records of every gearbox, TURNS times. So no label tells anything. Everything behind the
-table of the set runs again in every turn: which record is the reference, attackers, permutations of the audit itself.
-Prints in how many turns the strongest attacker on the signals, the bank counted as one test, has a p-value of 0.05 or
-less in the first state, and in how many the audit accuses the set of a trap, with exact 95 % limits (Clopper-Pearson).
-With `noise` for SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise.
+follows from them among the records of every gearbox, TURNS times. So no label tells anything. In every turn the states
+decide anew which record is the reference, and the audit makes its own permutations. What does not depend on states is
+computed once: features of every record, and of its difference from every other one of its gearbox. Prints in how many
+turns the strongest attacker on the signals, the bank counted as one test, has a p-value of 0.05 or less in the first
+state, and in how many the audit accuses the set of a trap, with exact 95 % limits (Clopper-Pearson). With `noise` for
+SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise.
 """
 
 from __future__ import annotations
@@ -19,10 +20,13 @@ from typing import Any
 import numpy as np
 
 import siggen
+from diagnostics.attacks.residual_lines import line_array, residual_lines
+from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.bank_detections import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
+from diagnostics.audit.reference_pairs import reference_records
 from diagnostics.audit.separability_findings import separability_findings
-from diagnostics.audit.signal_attackers import signal_attackers
+from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.base.single_thread import single_thread
 from diagnostics.statistics.area_interval import clopper_pearson
 
@@ -35,8 +39,8 @@ GEARBOXES, ORDERS, TEETH = 24, 362, 18
 
 
 def kept(found: MeasuredSet, rows: np.ndarray) -> MeasuredSet:
-    """Return some records of a measured set."""
-    places = np.flatnonzero(rows)
+    """Return records of a measured set, by a mask or by numbers."""
+    places = np.arange(len(found.healthy))[rows]
     lists = {name: [getattr(found, name)[k] for k in places] for name in ("waveforms", "sketches")}
     return replace(
         found,
@@ -75,9 +79,37 @@ def drawn(turn: int) -> MeasuredSet:
     return MeasuredSet(labels, ("a",), values, (), [list(row) for row in lines], [], nothing, {}, [])
 
 
-def p_value(found: MeasuredSet, state: str, turn: int) -> float:
+class Prepared:
+    """The bank of a set for any assignment of states: features of records, and of all differences within gearboxes."""
+
+    def __init__(self, found: MeasuredSet) -> None:
+        specimen = found.labels["specimen_id"]
+        self.first, self.second = np.nonzero((specimen[:, None] == specimen) & ~np.eye(specimen.size, dtype=bool))
+        residual = residual_lines(line_array(found.waveforms), found.labels["teeth_pinion"])
+        self.alone = attackers_on(found, residual, None, 0, lambda: None)
+        known = residual[self.second]
+        pairs = kept(found, self.first)
+        self.beside = attackers_on(pairs, residual[self.first] - known, known, 0, lambda: None)
+
+    def bank(self, found: MeasuredSet) -> list[Attacker]:
+        """Return the attackers for the references that the states of a set give."""
+        reference = reference_records(found)
+        place = np.full(reference.size, -1)
+        chosen = np.flatnonzero(self.second == reference[self.first])
+        place[self.first[chosen]] = chosen
+        beside = [
+            replace(
+                each,
+                attack=lambda trial, each=each: each.attack(replace(trial, rows=place[trial.rows])),
+                usable=(place >= 0) & each.usable[place],
+            )
+            for each in self.beside
+        ]
+        return [*self.alone, *(beside if (place >= 0).any() else [])]
+
+
+def p_value(found: MeasuredSet, bank: list[Attacker], state: str, turn: int) -> float:
     """Return the p-value of the bank on a state, with folds and permutations of their own in every turn."""
-    bank = signal_attackers(found, turn, lambda: None)
     return chance_limit(found, bank, turn, lambda: None).states[state].p_value
 
 
@@ -102,7 +134,10 @@ def main(path: str, turns: int, states: list[str]) -> None:
     """Print both shares."""
     begin = time.process_time()
     if path == "noise":
-        found = [p_value(drawn(turn), "damaged", turn) for turn in range(turns)]
+        sets = (drawn(turn) for turn in range(turns))
+        found = [
+            p_value(each, signal_attackers(each, turn, lambda: None), "damaged", turn) for turn, each in enumerate(sets)
+        ]
     else:
         every = measured_set(siggen.open(path))
         chosen = kept(every, every.healthy | np.isin(every.labels["state"], states))
@@ -110,7 +145,9 @@ def main(path: str, turns: int, states: list[str]) -> None:
         print(
             f"{specimen.size} records of {np.unique(specimen).size} gearboxes; states {', '.join(states)}", flush=True
         )
-        found = [p_value(with_permuted_states(chosen, turn), states[0], turn) for turn in range(turns)]
+        prepared = Prepared(chosen)
+        mixed = (with_permuted_states(chosen, turn) for turn in range(turns))
+        found = [p_value(each, prepared.bank(each), states[0], turn) for turn, each in enumerate(mixed)]
     below = int(np.sum(np.array(found) <= LEVEL))
     print(f"p-value of the bank on the signals at most {LEVEL}: {share(below, turns)}; median {np.median(found):.2f}; "
           f"{time.process_time() - begin:.0f} s of CPU", flush=True)  # fmt: skip
