@@ -22,6 +22,7 @@ TOPICS = (
         "cold",
         "presets",
         "memory",
+        "blocks",
         "stiffness",
         "integration",
         "precision",

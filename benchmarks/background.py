@@ -6,12 +6,12 @@ import time
 from collections.abc import Iterator
 from statistics import median
 
+from benchmarks.layers import layers
 from benchmarks.row import Row, cost_row
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.background import record_background
 from siggen.specimen.instrument import specimen_instrument
 
 CONFIG = "configs/bench.yaml"
@@ -45,6 +45,6 @@ def _costs(config: Config, rounds: int) -> tuple[float, float]:
         responses.append((time.process_time() - begin) / channels)
         for _ in range(rounds):
             begin = time.process_time()
-            record_background(config, specimen, planned, instrument)
+            layers(config, specimen, planned, instrument)
             records.append((time.process_time() - begin) / (channels * config.duration_s))
     return median(records), median(responses)

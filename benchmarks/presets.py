@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+from benchmarks.layers import layers
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT, shipped
 from siggen.columns.record import Record, record_batch, record_schema
@@ -20,7 +21,6 @@ from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.planning.specimen import draw_specimen
-from siggen.record.background import record_background
 from siggen.record.channels import measured_channels
 from siggen.record.simulation import record_response, simulate_specimen, specimen_state
 from siggen.specimen.instrument import specimen_instrument
@@ -73,7 +73,7 @@ def _costs(config: Config, gearbox: int) -> dict[str, float]:
         motion, responses = _timed(
             lambda: [record_response(config, specimen, states[p.state_id], p)[0] for p in planned]
         )
-    layers, _ = _timed(lambda: [record_background(config, specimen, p, instrument) for p in planned])
+    seen_of_background, _ = _timed(lambda: [layers(config, specimen, p, instrument) for p in planned])
     seen, _ = _timed(
         lambda: [measured_channels(config, specimen, p, r, instrument) for p, r in zip(planned, responses, strict=True)]
     )
@@ -84,8 +84,8 @@ def _costs(config: Config, gearbox: int) -> dict[str, float]:
         "tables": tables / len(chosen) / of_state,
         "loop": loop[0] / len(planned),
         "inputs and filters": (motion - loop[0]) / len(planned),
-        "layers": layers / len(planned),
-        "sensing": (seen - layers) / len(planned) + build / len(ids),
+        "layers": seen_of_background / len(planned),
+        "sensing": (seen - seen_of_background) / len(planned) + build / len(ids),
         "writing": writing / max(len(records), 1),
     }
     return {stage: value / config.duration_s for stage, value in per_record.items()}

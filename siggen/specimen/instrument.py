@@ -134,7 +134,12 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
         ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, housing, grid)) for c in channels}
         background = specimen_background(config, specimen, section, ways, grid)
     found = Instrument(length, config.fs_hz, tuple(channels), background)
-    return found if blocks is None else replace(found, blocks=_in_blocks(found, blocks))
+    if blocks is None:
+        return found
+    filters = _in_blocks(found, blocks)
+    if background is not None and background.section.redraw == "gearbox":  # nobody asks for them again
+        background = replace(background, responses={})
+    return replace(found, blocks=filters, background=background)
 
 
 def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
