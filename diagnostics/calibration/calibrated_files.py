@@ -103,11 +103,18 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         "force_noise: null}    # paths are fitted",
         "background: null              # noise and lines are those of the recordings",
         "dynamics: {unbalance: {grade_mm_s: 0.0}, bearing_tones: {level: 0.0}}    # among the lines of the recordings",
+        *_manufacture(found.config),
         "sensors:",
     ]
     for channel, (name, axis) in zip(found.channels, sensor_axes(found), strict=True):
         lines += _sensor(channel, name, axis, data_folder(out).name)
     return "\n".join(lines) + "\n"
+
+
+def _manufacture(config: dict[str, Any]) -> Iterable[str]:
+    """Yield the line that switches waves of the flanks off, where the rig has them."""
+    if (config.get("manufacture") or {}).get("flank_waves"):
+        yield "manufacture: {flank_waves: null}    # among the lines of the recordings"
 
 
 def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[str]:

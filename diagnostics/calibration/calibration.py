@@ -29,6 +29,7 @@ from diagnostics.calibration.order_record import (
 from diagnostics.calibration.own_lines import OwnLine, own_lines
 from diagnostics.calibration.path_draws import CEPSTRUM_POINTS, ChannelLines, PathDraw, drawn_path
 from diagnostics.calibration.second_stage import (
+    Multiples,
     SecondStage,
     StageLine,
     machine_multiples,
@@ -37,6 +38,7 @@ from diagnostics.calibration.second_stage import (
 )
 from diagnostics.calibration.sensor_fit import SensorFit, sensor_fit
 from diagnostics.calibration.source_library import PLACES, SourceLibrary, source_library
+from diagnostics.calibration.wave_lines import wave_lines
 from siggen.errors import UsageError
 
 GRID_STEPS = 1024
@@ -150,16 +152,19 @@ def calibrated(
     config, teeth = rig_teeth(rig)
     point = {"speed_hz": _speeds(blocks), "torque_nm": _torque(config, torque_nm)}
     records = {name: _records(name, blocks, teeth) for name in blocks.channels}
-    stage, lines = _stage(records, teeth)
-    foreign = tuple(dict.fromkeys(line.line.order for own in lines.values() for line in own))
+    multiples = machine_multiples(records, teeth)
+    stage = second_stage(multiples, teeth)
+    foreign = {name: _foreign(name, multiples, stage, teeth) for name in records}
+    orders = tuple(dict.fromkeys(order for one in foreign.values() for order in one.orders))
     top = HIGHEST_SHARE * blocks.fs_hz / max(block.speed_hz for block in blocks.blocks)
-    groups = line_groups(teeth, top, foreign)
-    seen = {name: _seen(name, blocks, own, groups, lines[name]) for name, own in records.items()}
+    groups = line_groups(teeth, top, orders)
+    seen = {name: _seen(name, blocks, own, groups, foreign[name]) for name, own in records.items()}
     library = source_library(rig, point, blocks.fs_hz, groups, gearboxes, advance)
     draws = _Draws.of(len(blocks.blocks), library.energy_n2.shape[0], paths, seed)
     grid_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, GRID_STEPS + 1)
     channels = tuple(
-        _channel(one, number, blocks, library, draws, grid_hz, teeth) for number, one in enumerate(seen.values())
+        _channel(one, number, blocks, library, draws, grid_hz, teeth, line_groups(teeth, top))
+        for number, one in enumerate(seen.values())
     )
     return Calibration(rig, config, point, _random_rms(blocks), grid_hz, channels, library, blocks, teeth, stage)
 
@@ -168,15 +173,21 @@ def _records(name: str, blocks: HealthyBlocks, teeth: tuple[int, int]) -> tuple[
     return tuple(order_record(one.channels[name], one.fs_hz, one.pulses_s, teeth) for one in blocks.blocks)
 
 
-def _stage(
-    records: dict[str, tuple[OrderRecord, ...]], teeth: tuple[int, int]
-) -> tuple[SecondStage | None, dict[str, tuple[StageLine, ...]]]:
-    """Return the second stage, if one shows, and its lines in every channel."""
-    multiples = machine_multiples(records, teeth)
-    found = second_stage(multiples, teeth)
-    if found is None:
-        return None, dict.fromkeys(records, ())
-    return found, {name: stage_lines(found, multiples[found.shaft][name]) for name in records}
+@dataclass(frozen=True, slots=True)
+class _Foreign:
+    """Lines of one channel at whole orders of a shaft that errors from tooth to tooth do not make."""
+
+    stage: tuple[StageLine, ...]
+    waves: tuple[OwnLine, ...]
+
+    @property
+    def orders(self) -> tuple[float, ...]:
+        return tuple(line.order for line in (*(one.line for one in self.stage), *self.waves))
+
+
+def _foreign(name: str, multiples: Multiples, stage: SecondStage | None, teeth: tuple[int, int]) -> _Foreign:
+    lines = stage_lines(stage, multiples[stage.shaft][name]) if stage and name in multiples[stage.shaft] else ()
+    return _Foreign(lines, wave_lines(multiples, teeth, name, tuple(one.line.order for one in lines)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,12 +207,12 @@ class _Draws:
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """Spectra of one channel, one per block, its lines, and those of a second stage."""
+    """Spectra of one channel, one per block, its lines, and those that are not of the gears' errors."""
 
     name: str
     records: tuple[OrderRecord, ...]
     lines: ChannelLines
-    stage: tuple[StageLine, ...]
+    foreign: _Foreign
 
 
 def _seen(
@@ -209,21 +220,20 @@ def _seen(
     blocks: HealthyBlocks,
     records: tuple[OrderRecord, ...],
     groups: tuple[LineGroup, ...],
-    stage: tuple[StageLine, ...],
+    foreign: _Foreign,
 ) -> _Seen:
     points_hz = np.linspace(0.0, 0.5 * blocks.fs_hz, CEPSTRUM_POINTS)
-    hz, energy, floors, visible, sure = [], [], [], [], []
+    hz, energy, floors, sure = [], [], [], []
     for record in records:
         level, share = group_levels(record, groups)
         hz.append([group.centre * record.speed_hz for group in groups])
         energy.append(10.0 * np.log10(np.maximum(level, 1e-30)))
-        visible.append(share > LEAST_LINE_SHARE)
         sure.append(int((share[::3] > SURE_SHARE).sum()))
         density = np.interp(points_hz, np.arange(record.floor.size) * record.bin_hz, record.floor / record.bin_hz)
         floors.append(10.0 * np.log10(np.maximum(density, 1e-30)))
-    lines = ChannelLines(np.array(hz), np.array(energy), np.array(visible), np.array(floors))
+    lines = ChannelLines(np.array(hz), np.array(energy), np.array(floors))
     _check_lines(name, blocks, sure)
-    return _Seen(name, records, lines, stage)
+    return _Seen(name, records, lines, foreign)
 
 
 def _check_lines(name: str, blocks: HealthyBlocks, counts: list[int]) -> None:
@@ -243,6 +253,7 @@ def _channel(
     draws: _Draws,
     grid_hz: np.ndarray,
     teeth: tuple[int, int],
+    groups: tuple[LineGroup, ...],
 ) -> ChannelFit:
     rng = generator(draws.seed, Purpose.PATHS, 1 + number)
     directions = rng.standard_normal((len(draws.blocks), len(PLACES)))
@@ -255,14 +266,22 @@ def _channel(
     gear_order = teeth[0] / teeth[1]
     return ChannelFit(
         seen.name,
-        tuple(jackknife(column) for column in np.where(seen.lines.is_line.all(axis=0), seen.lines.energy_db, np.nan).T),
+        _levels(seen.records, groups),
         seen.lines,
         noise_fit(seen.records, blocks.blocks, seen.name, gear_order),
-        own_lines(seen.records, teeth),
-        seen.stage,
+        (*own_lines(seen.records, teeth), *seen.foreign.waves),
+        seen.foreign.stage,
         sensor_fit(blocks.blocks, seen.name),
         found,
     )
+
+
+def _levels(records: tuple[OrderRecord, ...], groups: tuple[LineGroup, ...]) -> tuple[Fitted, ...]:
+    """Return the level of every group with all of its lines, foreign ones too; NaN where it stands out not always."""
+    found = [group_levels(record, groups) for record in records]
+    energy = np.array([10.0 * np.log10(np.maximum(level, 1e-30)) for level, _ in found])
+    visible = np.array([share > LEAST_LINE_SHARE for _, share in found]).all(axis=0)
+    return tuple(jackknife(column) for column in np.where(visible, energy, np.nan).T)
 
 
 def path_gains(paths: int, recordings: int, rng: np.random.Generator) -> np.ndarray:

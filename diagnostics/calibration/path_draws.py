@@ -28,15 +28,12 @@ class ChannelLines:
     frequency_hz, energy_db : (recordings, groups) float64
         Where the groups lie, and their mean energy [dB re 1 unit²]; where the floor hides a line, a fifth of what its
         bins hold: a path must not lift it above the floor.
-    is_line : (recordings, groups) bool
-        Whether it stands out.
     floor_db : (recordings, CEPSTRUM_POINTS) float64
         Floor [dB] at equal steps from 0 to half the sampling rate.
     """
 
     frequency_hz: np.ndarray
     energy_db: np.ndarray
-    is_line: np.ndarray
     floor_db: np.ndarray
 
 

@@ -50,7 +50,7 @@ class SecondStage:
 
 @dataclass(frozen=True, slots=True)
 class StageLine:
-    """A line of the stage, or a sideband of its shaft beside it: name, level [dB re 1 unit²] and how it is drawn."""
+    """A line at a whole order of a shaft: name, level [dB re 1 unit²] and how it is drawn."""
 
     name: str
     level_db: Fitted
@@ -120,16 +120,17 @@ def stage_lines(stage: SecondStage, multiples: ShaftMultiples) -> tuple[StageLin
             number = h * stage.teeth + side
             if number <= multiples.excess_db.size and multiples.excess_db[number - 1] >= LINE_EXCESS_DB:
                 name = f"line {h}" + (f", sideband {side:+d}" if side else "")
-                found.append(_stage_line(name, number, stage, multiples))
+                found.append(shaft_line(name, number, stage.step, multiples))
     return tuple(found)
 
 
-def _stage_line(name: str, number: int, stage: SecondStage, multiples: ShaftMultiples) -> StageLine:
+def shaft_line(name: str, number: int, step: float, multiples: ShaftMultiples) -> StageLine:
+    """Return the line at a multiple of a shaft's order (step), less what errors of the teeth add there."""
     power = 10.0 ** (0.1 * multiples.level_db[:, number - 1])
     usual = 10.0 ** (0.1 * multiples.usual_db[number - 1])
     own = np.maximum(power - usual, 0.1 * power)
     amplitude = np.sqrt(2.0 * own)
     least = LEAST_SPREAD if own.size >= FEWEST_RECORDINGS else UNKNOWN_SPREAD
     spread = max(float(np.sqrt(amplitude.max() / amplitude.min())), least)
-    line = OwnLine(number * stage.step, 0.0, float(np.median(amplitude)), spread)
+    line = OwnLine(number * step, 0.0, float(np.median(amplitude)), spread)
     return StageLine(name, jackknife(10.0 * np.log10(own)), line)

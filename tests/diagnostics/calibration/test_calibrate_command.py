@@ -63,9 +63,8 @@ def test_the_calibrated_set_lies_nearer_to_held_out_recordings_than_the_rig(
 ) -> None:
     rig, mine, _ = calibrated
     before, after = distance_db(rig, recordings[3:]), distance_db(mine, recordings[3:])
-    # of this machine 8.8 and 8.3 dB before, 4.7 and 4.4 dB after (7.2 and 6.4 dB without the lines of its second
-    # stage); what the simulated source adds keeps it from 0
-    assert (after < 0.7 * before).all(), (before, after)
+    # of this machine 8.8 and 8.4 dB before, 3.2 and 4.1 dB after; 7.2 and 6.4 dB without lines at whole orders
+    assert (after < 0.6 * before).all(), (before, after)
 
 
 def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path, Path, str]) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnostics.calibration.order_record import OrderRecord, line_groups, order_record
 from diagnostics.calibration.second_stage import machine_multiples, second_stage, stage_lines
+from diagnostics.calibration.wave_lines import wave_lines
 
 FS_HZ, SAMPLES = 12_800.0, 25_600
 HIGHEST_ORDER = 170.0
@@ -87,6 +90,24 @@ def test_a_drive_near_a_multiple_of_a_shaft_is_no_stage_of_that_shaft() -> None:
     drive = [(25.02, 0.5 / np.arange(1.0, 6.0))]
     channels = {name: [_record(speed, drive, (18, 47), rng) for speed in SPEEDS_HZ] for name in ("one", "two")}
     assert second_stage(machine_multiples(channels, (18, 47)), (18, 47)) is None
+
+
+def test_a_wave_on_the_flanks_is_a_line_of_its_own_with_what_it_adds_to_the_errors() -> None:
+    teeth, step = (18, 47), 18 / 47
+    # one wave of 29 periods round the gear: no comb, so no stage
+    channels = records(4, teeth, None)
+    number = np.zeros(29)
+    number[-1] = 0.8
+    rng = np.random.default_rng(5)
+    for name, plain in channels.items():
+        waves = [_record(speed, [(step, number)], teeth, rng) for speed in SPEEDS_HZ]
+        channels[name] = [replace(one, power=one.power + wave.power) for one, wave in zip(plain, waves, strict=True)]
+    multiples = machine_multiples(channels, teeth)
+    assert second_stage(multiples, teeth) is None
+    (found,) = [line for line in wave_lines(multiples, teeth, "one", ()) if line.amplitude > 0.4]
+    assert found.order == pytest.approx(29 * step)
+    assert found.amplitude == pytest.approx(0.8, rel=0.05)
+    assert all(line.order != found.order for line in wave_lines(multiples, teeth, "one", (found.order,)))
 
 
 def test_sidebands_at_lines_of_a_stage_are_no_measure_of_the_path() -> None:
