@@ -44,7 +44,7 @@ STRAIGHT = 10.0
 """tanh is 1 within 4e-9 beyond."""
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def write_node_forces(
     scalars: FloatArray,
     numbers: FloatArray,
@@ -92,7 +92,7 @@ def write_node_forces(
     return -1 - touching if changed else touching
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _write_roots(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slots: int
 ) -> None:
@@ -144,7 +144,7 @@ def _load(
             node[NODE_SLOPE_RATE, q] += damping
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _middle(weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> tuple[float, float, float]:
     """Return means over the nodes at which the drive flank of a slot carries; no force where it never does.
 

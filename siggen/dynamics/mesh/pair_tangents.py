@@ -42,7 +42,7 @@ KINKED_CHANGE = 1e-4
 MOST_STEPS = 8
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def write_springs(
     scalars: FloatArray,
     numbers: FloatArray,

@@ -144,7 +144,7 @@ def _follow(node: FloatArray, excess: FloatArray, channels: int, q: int, moved: 
         excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     scheme: Scheme,
     law: PairLaw,
@@ -211,7 +211,7 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
     return True
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _has_event(
     law: PairLaw,
     pairs: FloatArray,
