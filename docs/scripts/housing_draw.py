@@ -42,7 +42,8 @@ def audited(name: str, changes: dict[str, Any], gearboxes: int, reference: str) 
     if not (path / "manifest.json").exists():
         raw = inherited(read_yaml(CONFIGS / "bench.yaml"), CONFIGS)
         raw = {**raw, "specimens": gearboxes, "states": raw["states"][:1]}
-        siggen.generate(siggen.load_config(raw, [f"{key}={json.dumps(value)}" for key, value in changes.items()]), path)
+        overrides = [f"{key}={json.dumps(value)}" for key, value in changes.items()]
+        siggen.generate(siggen.load_config(raw, overrides), path, workers=1)
     out = path.with_name(f"{path.name}_audit")
     if not (out / "audit.json").exists():
         run(f"siggen-diagnostics audit {path} --realism --reference {reference} --reference-fs 25600 --out {out}")
