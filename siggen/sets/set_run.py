@@ -22,7 +22,7 @@ from siggen.dataset.label_tables import write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
 from siggen.dataset.seal import sealed
 from siggen.dataset.shard import TableFile, table_draft
-from siggen.dataset.sidecar import Sidecar, committed, data_name, put_sidecar
+from siggen.dataset.sidecar import Sidecar, committed, data_name, put_sidecar, sidecar_name
 from siggen.dataset.storage import Storage
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import Engine
@@ -51,12 +51,10 @@ class InterruptionError(SiggenError):
 
 @dataclass(frozen=True, slots=True)
 class Generation:
-    """What a call of `generate` did.
+    """What a call of `generate` did to the finished set at `path`.
 
     Attributes
     ----------
-    path
-        The finished set.
     records_made, shards_taken_over
         Work of this call, and of earlier ones.
     was_finished
@@ -314,8 +312,11 @@ class SetRun:
         self.journal.end("done", "", self.made, len(self.sidecars) - self.shards_made)
 
     def _how_to_continue(self) -> str:
+        # a signal may come between the commit of the first shard that is missing here and its note
+        following = next((shard.key for shard in self.planned if shard.key not in self.sidecars), "")
+        kept = len(self.sidecars) + self.storage.exists(sidecar_name(following))
         return (
-            f"stopped: {len(self.sidecars)} of {len(self.planned)} shards of {self.storage.location} are finished and "
+            f"stopped: {kept} of {len(self.planned)} shards of {self.storage.location} are finished and "
             "stay; the same command continues from there"
         )
 

@@ -53,7 +53,7 @@ def test_the_figure_has_units_labels_and_sidebands_at_the_shafts_distances(folde
     assert waveform.get_xlabel() == "time [s]"
     assert waveform.get_ylabel() == "acceleration [m/s²]"
     assert first.get_xlabel() == "frequency [Hz]"
-    assert first.get_ylabel() == "amplitude [m/s^2]"
+    assert first.get_ylabel() == "amplitude [m/s²]"
     marks_hz = sorted(line.get_xdata()[0] for line in first.lines if len(line.get_xdata()) == 2)
     pinion = [540.0 + 30.0 * k for k in range(-SIDEBANDS, SIDEBANDS + 1)]
     gear = [540.0 + 30.0 * 18 / 47 * k for k in range(-SIDEBANDS, SIDEBANDS + 1) if k]
