@@ -1,15 +1,15 @@
-"""The audit's strongest attacker beside three that are not its own: `python docs/scripts/attackers.py SET`.
+"""The audit's strongest attacker beside three that are not its own: `python docs/scripts/attackers.py SET [STATE ...]`.
 
-For every damaged state of a generated set: AUC on gearboxes that were not seen, of the strongest of the audit's
-attackers on the signals and of three references, all on the same folds of gearboxes; alone and as differences from the
-gearbox's healthy record.
+For damaged states of a generated set, all unless some are named: AUC on gearboxes that were not seen, of the strongest
+of the audit's attackers on the signals and of three references, all on the same folds of gearboxes; alone and as
+differences from the gearbox's healthy record.
 
 * kurtosis: the kurtosis of the averaged residual in one band of orders, the best of all bands on the other gearboxes;
 * MiniRocket: features of aeon 1.6.0 (`pip install aeon`, in an environment of its own), ridge regression of
   scikit-learn;
 * network: a residual network (three blocks, Wang et al. 2017) on the averaged residual, PyTorch.
 
-The audit's own networks take part on its side.
+The audit's own networks take no part on its side.
 """
 
 from __future__ import annotations
@@ -154,11 +154,11 @@ def areas(measured: MeasuredSet, attackers: list[Attacker], state: str) -> dict[
 
 
 @single_thread
-def main(path: str) -> None:
+def main(path: str, asked: list[str]) -> None:
     """Print both tables."""
     torch.set_num_threads(1)
     begin, measured = time.process_time(), measured_set(siggen.open(path))
-    bank = signal_attackers(measured, 0, lambda: None)
+    bank = [each for each in signal_attackers(measured, 0, lambda: None) if each.permutable]
     residual = residual_lines(line_array(measured.waveforms), measured.labels["teeth_pinion"])
     reference = reference_records(measured)
     known = np.where((reference >= 0)[:, None, None], residual[reference], np.nan)
@@ -173,7 +173,7 @@ def main(path: str) -> None:
         print(f"\n{title}\n\n| state | strongest of the audit | by | {' | '.join(each.name for each in others)} |")
         print(f"|{'---|' * (3 + len(others))}", flush=True)
         behind = {each.name: 0.0 for each in others}
-        for state in damaged_states(measured):
+        for state in asked or damaged_states(measured):
             ours, theirs = areas(measured, own, state), areas(measured, others, state)
             best = max(ours, key=lambda name, ours=ours: ours[name])
             for name, area in theirs.items():
@@ -185,4 +185,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], sys.argv[2:])
