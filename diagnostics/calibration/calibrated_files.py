@@ -211,8 +211,8 @@ ALWAYS_OPEN = (
     "give an accuracy class if you know it",
     "structure and tip relief: as wide as in the rig",
     "torque and its variation: as in the rig, or --torque",
-    "lines at multiples of a shaft's order above the fourth that are no second stage's: they count as errors of the "
-    "teeth, which are simulated",
+    "lines at multiples of a shaft's order above the fourth that stand out by less than 6 dB: they count as errors of "
+    "the teeth, which are simulated",
     "correlation time of the noise's level: 1 to 8 ms",
     "range of the sensor: four times the largest value",
     "other gearboxes of this type: one assembly was measured",
