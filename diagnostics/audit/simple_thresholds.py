@@ -1,4 +1,8 @@
-"""Trap: a threshold on one simple number finds the slightest damage on specimens that were never seen."""
+"""Trap: a threshold on one simple number finds the slightest damage on specimens that were never seen.
+
+Where gearboxes differ more in level than a trap does, the level beside the gearbox's own healthy record gives it away.
+That slight damage changes the level a little is physics; that it doubles the power is not.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,13 @@ import numpy as np
 
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.reference_pairs import reference_records
 from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
 
 QUANTITIES = ("rms", "kurtosis")
 LARGEST_AUC = 0.9
+LEAST_CHANGE_DB = 3.0
+"""Twice the power. States called slight change the rms by 0.15 dB in the median in the sets of all shipped presets."""
 FEWEST_SPECIMENS = 3
 RESAMPLES = 200
 
@@ -31,23 +38,42 @@ def simple_thresholds(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return a finding for each of RMS and kurtosis that separates slight damage from healthy in some channel."""
     found = []
     for quantity in QUANTITIES:
-        best = max(
-            (
-                (_distance(measured, quantity, channel, state, seed), state, name)
-                for state in slight_states(measured)
-                for channel, name in enumerate(measured.channels)
-            ),
-            default=None,
-        )
+        best = _best(measured, measured.values[quantity], seed)
         if best and best[0] > LARGEST_AUC:
             found.append(_finding(quantity, *best))
-    return found
+    return found or _change_of_level(measured, seed)
 
 
-def _distance(measured: MeasuredSet, quantity: str, channel: int, state: str, seed: int) -> float:
+def _best(measured: MeasuredSet, values: np.ndarray, seed: int) -> tuple[float, str, str] | None:
+    """Return lower limit of the AUC, state and channel where values (records, channels) separate best."""
+    return max(
+        (
+            (_distance(measured, values[:, channel], state, seed), state, name)
+            for state in slight_states(measured)
+            for channel, name in enumerate(measured.channels)
+        ),
+        default=None,
+    )
+
+
+def _change_of_level(measured: MeasuredSet, seed: int) -> list[Finding]:
+    """Return a finding if rms beside the healthy reference tells slight damage, by 3 dB or more."""
+    reference, rms = reference_records(measured), measured.values["rms"]
+    known = reference >= 0
+    change_db = np.full(rms.shape, np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change_db[known] = 20.0 * np.log10(rms[known] / rms[reference[known]])
+    best = _best(measured, change_db, seed)
+    if best is None or best[0] <= LARGEST_AUC:
+        return []
+    of_state = change_db[measured.labels["state"] == best[1], measured.channels.index(best[2])]
+    median_db = float(np.nanmedian(of_state))
+    return [] if abs(median_db) < LEAST_CHANGE_DB else [_level_finding(*best, median_db)]
+
+
+def _distance(measured: MeasuredSet, values: np.ndarray, state: str, seed: int) -> float:
     """Return the lower limit of the AUC, turned so that it is above 0.5; the AUC itself with very few specimens."""
     labels = measured.labels
-    values = measured.values[quantity][:, channel]
     chosen = np.isfinite(values) & (measured.healthy | (labels["state"] == state))
     specimen = labels["specimen_id"][chosen]
     positive = ~measured.healthy[chosen]
@@ -64,4 +90,14 @@ def _finding(quantity: str, auc: float, state: str, channel: str) -> Finding:
         f"{auc:.2f} (lower 95 % limit over specimens)",
         f"at most {LARGEST_AUC:g} is allowed",
         "Use smaller damage, larger manufacturing errors, more noise or a wider spread of speed and torque.",
+    )
+
+
+def _level_finding(auc: float, state: str, channel: str, change_db: float) -> Finding:
+    return Finding(
+        "slight_separable_by_rms",
+        f"the rms of {channel} beside the gearbox's own healthy record separates {state} with an AUC of at least "
+        f"{auc:.2f} (lower 95 % limit over specimens) and changes by {change_db:+.1f} dB (median)",
+        f"at most {LARGEST_AUC:g}, or less than {LEAST_CHANGE_DB:g} dB, is allowed",
+        "Record all states of a gearbox at the same gain; if they are, use smaller damage.",
     )

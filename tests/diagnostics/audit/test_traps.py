@@ -14,6 +14,7 @@ from diagnostics.audit.condition_traps import condition_traps
 from diagnostics.audit.error_draws import chance_bound, likeness
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.separability_findings import separability_findings, verdict
+from diagnostics.audit.simple_thresholds import simple_thresholds
 from diagnostics.audit.state_ties import permuted_states, told_share
 
 
@@ -142,6 +143,17 @@ def test_noise_that_few_records_share_in_twos_is_found(clean: MeasuredSet) -> No
 def test_kurtosis_alone_that_separates_slight_is_found(clean: MeasuredSet) -> None:
     kurtosis = clean.values["kurtosis"] + 5.0 * (clean.labels["state"] == "slight")[:, None]
     assert traps(replace(clean, values={**clean.values, "kurtosis": kurtosis})) == ["slight_separable_by_kurtosis"]
+
+
+@pytest.mark.parametrize(("gain_db", "expected"), [(9.5, ["slight_separable_by_rms"]), (1.0, [])])
+def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(gain_db: float, expected: list[str]) -> None:
+    """Levels of gearboxes are spread over 40 dB, so that no threshold on the rms alone tells a gain of three."""
+    clean = measured(Plant(points=1, repeats=2))
+    specimens, of_record = np.unique(clean.labels["specimen_id"], return_inverse=True)
+    of_gearbox = 10.0 ** np.random.default_rng(3).permutation(np.linspace(-1.0, 1.0, specimens.size))
+    gain = np.where(clean.healthy, 1.0, 10.0 ** (gain_db / 20.0)) * of_gearbox[of_record]
+    changed = replace(clean, values={**clean.values, "rms": clean.values["rms"] * gain[:, None]})
+    assert [finding.trap for finding in simple_thresholds(changed)] == expected
 
 
 def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:
