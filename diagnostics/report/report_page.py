@@ -35,6 +35,8 @@ from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
 ANSWER = "answer"
+MOST_SHOWN = 500
+"""Features in the table: all of two channels; a page of six would be twice as large with all."""
 CAPTION = (
     "Black, chosen: each gearbox judged by the detector that is best on others. Above: AUC of healthy against each "
     "state, with 95 % limits of the black one; 0.5 is chance. Lines are dashed by kind of damage, as its name is "
@@ -159,11 +161,15 @@ def _named(reported: Reported) -> list[str]:
 
 def _indicators(reported: Reported) -> list[str]:
     found = reported.found
+    shown = found[:MOST_SHOWN]
+    has = f"all {counted(len(found), 'feature')}"
+    if len(shown) < len(found):
+        has = f"the {len(shown)} strongest of {counted(len(found), 'feature')} (all: separability.csv)"
     text = (
-        f"The table has all {counted(len(found), 'feature')} on all specimens. Nothing is trained here, so no "
+        f"The table has {has} on all specimens. Nothing is trained here, so no "
         "specimen is held out. An AUC of 0.5 means no separation; 0 and 1 mean a perfect one."
     )
     return [
         html.paragraph(" ".join([*area_sentence(found), text])),
-        tables.separability_html(found, term_cell, reported.explorer),
+        tables.separability_html(shown, term_cell, reported.explorer),
     ]
