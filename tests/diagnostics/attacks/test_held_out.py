@@ -99,6 +99,17 @@ def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_wit
     assert found + target[train].mean() == pytest.approx(expected, abs=1e-8)
 
 
+def test_with_one_gearbox_to_learn_from_the_largest_penalty_stands() -> None:
+    """Its two records differ in one direction only, so a penalty scales the scores and leaves their order."""
+    values = np.random.default_rng(5).normal(size=(6, 3))
+    train, damaged = np.arange(6) < 2, np.array([[True, False, True, False, True, False]])
+    found = ridge_scores(products(values), damaged, np.array([0, 0, 1, 1, 2, 2]), train)[0]
+    scaled = (values - values.mean(axis=0)) / values.std(axis=0)
+    assert np.isfinite(found).all()
+    expected = (scaled[2:] - scaled[:2].mean(axis=0)) @ (scaled[0] - scaled[1])
+    assert found / np.abs(found).max() == pytest.approx(expected / np.abs(expected).max(), abs=1e-9)
+
+
 def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_chance_reaches() -> None:
     specimen, damaged = design()
     turned = permuted(damaged, specimen, specimen, 0, 1)[0]
