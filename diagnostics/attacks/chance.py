@@ -21,6 +21,8 @@ PERMUTATIONS = 499
 LEVEL = 0.95
 OWNER = 1000
 """Owner of the permutations' generator: other traps have others."""
+BLOCK, GEARBOX, GEARBOXES = "block", "gearbox", "gearboxes"
+"""What states are exchanged within; the last: whole gearboxes among each other."""
 
 
 def permuted(positive: np.ndarray, block: np.ndarray, specimen: np.ndarray, seed: int, turns: int) -> np.ndarray:
@@ -37,13 +39,26 @@ def permuted(positive: np.ndarray, block: np.ndarray, specimen: np.ndarray, seed
     seed, turns : int
         Which permutations, and how many.
     """
-    rng = generator(seed, Purpose.PERMUTATION, OWNER)
-    for groups in (block, specimen):
-        if _is_mixed(positive, groups):
-            return _exchanged(positive, groups, rng.random((turns, positive.size)))
+    rng, unit = generator(seed, Purpose.PERMUTATION, OWNER), exchanged_unit(positive, block, specimen)
+    if unit != GEARBOXES:
+        groups = block if unit == BLOCK else specimen
+        return _exchanged(positive, groups, rng.random((turns, positive.size)))
     _, first, place = np.unique(specimen, return_index=True, return_inverse=True)
     lead = _exchanged(positive[first], np.zeros_like(first), rng.random((turns, first.size)))
     return np.asarray(lead[:, place.ravel()])
+
+
+def exchanged_unit(positive: np.ndarray, block: np.ndarray, specimen: np.ndarray) -> str:
+    """Return within what states are exchanged: `block`, else `gearbox`, or `gearboxes` where these move as a whole.
+
+    Parameters
+    ----------
+    positive, block, specimen
+        As of `permuted`.
+    """
+    if _is_mixed(positive, block):
+        return BLOCK
+    return GEARBOX if _is_mixed(positive, specimen) else GEARBOXES
 
 
 def _is_mixed(positive: np.ndarray, groups: np.ndarray) -> bool:

@@ -76,11 +76,17 @@ def _left_out_errors(
     specimen: np.ndarray,
     penalties: np.ndarray,
 ) -> np.ndarray:
-    """Return the squared error on left-out gearboxes, (penalties, turns); rotated and target are (records, turns)."""
+    """Return the squared error on left-out gearboxes, (penalties, turns); rotated and target are (records, turns).
+
+    With one gearbox nothing is left to fit where it is left out: the errors rank the largest penalty first.
+    """
+    owners = np.unique(specimen)
+    if owners.size < 2:
+        return np.repeat(1.0 / penalties[:, None], target.shape[1], axis=1)
     shrunk = values / (values + penalties[:, None])
     left = target - vectors @ (shrunk[:, :, None] * rotated)
     total = np.zeros((penalties.size, target.shape[1]))
-    for owner in np.unique(specimen):
+    for owner in owners:
         rows = np.flatnonzero(specimen == owner)
         # the mean is fitted with the rest: 1/n beside the hat matrix
         hat = (vectors[rows] * shrunk[:, None, :]) @ vectors[rows].T + 1.0 / len(target)

@@ -78,7 +78,8 @@ def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
 
 def _chance_numbers(chance: ChanceLimit) -> dict[str, Any]:
     states = {
-        state: {name: _number(value) for name, value in asdict(law).items()} for state, law in chance.states.items()
+        state: asdict(law) | {"auc": _number(law.auc), "p_value": _number(law.p_value)}
+        for state, law in chance.states.items()
     }
     return asdict(chance) | {"auc": _number(chance.auc), "states": states}
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, bank_maxima, permuted
+from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, bank_maxima, exchanged_unit, permuted
 from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.detectability import Detection, damage_sizes, in_order
@@ -28,10 +28,13 @@ class StateChance:
         Limit that it exceeds in 5 % of the cases at most.
     p_value : float
         (1 + permutations that reach at least what the stated states do) / (1 + permutations).
+    exchanged : str
+        Within what states were exchanged, as of `diagnostics.attacks.chance.exchanged_unit`.
     """
 
     auc: float
     p_value: float
+    exchanged: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +142,8 @@ def _state_chance(
     maxima = bank_maxima(able, rows, np.concatenate([of_state[None, rows], ways]), specimen[rows], folds[:, rows])
     stated, drawn = maxima[0], maxima[1:][np.isfinite(maxima[1:])]
     p_value = float((1 + np.sum(drawn >= stated)) / (1 + drawn.size)) if np.isfinite(stated) else math.nan
-    return StateChance(exceeded_by_chance(drawn), p_value)
+    unit = exchanged_unit(of_state[rows], blocks[rows], specimen[rows])
+    return StateChance(exceeded_by_chance(drawn), p_value, unit)
 
 
 def exceeded_by_chance(maxima: np.ndarray) -> float:

@@ -14,12 +14,12 @@ def chance_sentence(audit: Audit) -> str:
     if chance is None or not math.isfinite(chance.auc):
         return ""
     strongest = f"By chance the strongest of {counted(chance.attackers, 'attacker')}"
-    limits = [law.auc for law in chance.states.values()]
-    highest = decimal(max(limits, default=chance.auc))
-    spread = f" to {highest}, by state," if highest != decimal(chance.auc) else ""
+    limits = [law.auc for law in chance.states.values() if math.isfinite(law.auc)]
+    lowest, highest = decimal(chance.auc), decimal(max(limits, default=chance.auc))
+    spread = f"a limit between {lowest} and {highest}, by state," if highest != lowest else f"an AUC of {lowest}"
     turns = f"{chance.permutations} permutations of the states."
     if audit.gearboxes_needed is None:
-        return f"{strongest} stays below an AUC of {decimal(chance.auc)}{spread} in 95 % of {turns}"
+        return f"{strongest} stays below {spread} in 95 % of {turns}"
     return (
         f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
         "chance, and no length of damage is named."

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.attacks.chance import bank_maxima, permuted
+from diagnostics.attacks.chance import bank_maxima, exchanged_unit, permuted
 from diagnostics.attacks.column_attackers import all_columns, best_column
 from diagnostics.attacks.held_out import dealt_folds, held_out, held_out_values, judged_rows, trials
 from diagnostics.attacks.ridge_scores import PENALTIES, products, ridge_scores
@@ -99,6 +99,17 @@ def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_wit
     assert found + target[train].mean() == pytest.approx(expected, abs=1e-8)
 
 
+def test_with_one_gearbox_to_learn_from_the_largest_penalty_stands() -> None:
+    """Its two records differ in one direction only, so a penalty scales the scores and leaves their order."""
+    values = np.random.default_rng(5).normal(size=(6, 3))
+    train, damaged = np.arange(6) < 2, np.array([[True, False, True, False, True, False]])
+    found = ridge_scores(products(values), damaged, np.array([0, 0, 1, 1, 2, 2]), train)[0]
+    scaled = (values - values.mean(axis=0)) / values.std(axis=0)
+    assert np.isfinite(found).all()
+    expected = (scaled[2:] - scaled[:2].mean(axis=0)) @ (scaled[0] - scaled[1])
+    assert found / np.abs(found).max() == pytest.approx(expected / np.abs(expected).max(), abs=1e-9)
+
+
 def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_chance_reaches() -> None:
     specimen, damaged = design()
     turned = permuted(damaged, specimen, specimen, 0, 1)[0]
@@ -108,6 +119,8 @@ def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_cha
     among = permuted(one_state_each, specimen, specimen, 0, 1)[0]
     assert among.sum() == one_state_each.sum()
     assert all(np.unique(among[specimen == owner]).size == 1 for owner in range(GEARBOXES))
+    assert exchanged_unit(damaged, np.arange(specimen.size), specimen) == "gearbox"
+    assert exchanged_unit(one_state_each, specimen, specimen) == "gearboxes"
     folds, every, values = dealt_folds(specimen, 0), np.arange(specimen.size), noise(9)
     bank = [best_column("best", values, names()), all_columns("all", values)]
     maxima = bank_maxima(bank, every, permuted(damaged, specimen, specimen, 0, 20), specimen, folds)
@@ -119,6 +132,7 @@ def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_cha
 def test_what_stands_alone_in_its_block_keeps_its_state() -> None:
     specimen, damaged = design()
     block = np.where(np.arange(specimen.size) % 3 == 0, specimen, GEARBOXES + specimen)
+    assert exchanged_unit(damaged, block, specimen) == "block"
     turned = permuted(damaged, block, specimen, 0, 40)
     assert not turned[:, ::3].any()
     assert np.all(turned.reshape(40, GEARBOXES, 3).sum(axis=2) == 1)
