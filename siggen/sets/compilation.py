@@ -20,4 +20,5 @@ def compilation_text(config: Config, workers: int) -> str:
     if is_compiled(config):
         return ""
     wait_s = COMPILED_S * (LARGER_SHARE if workers > 1 else 1.0)
-    return f"compiling the simulation once, for all workers: about {wait_s:.0f} s before the first record"
+    machine = f"about {wait_s:.0f} s on an idle machine"
+    return f"compiling the simulation once, for all workers: {machine} before the first record"
