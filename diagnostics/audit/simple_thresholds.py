@@ -16,7 +16,7 @@ from diagnostics.statistics.evaluation import bootstrap_weights, interval, weigh
 QUANTITIES = ("rms", "kurtosis")
 LARGEST_AUC = 0.9
 LEAST_CHANGE_DB = 3.0
-"""Twice the power. States called slight change the rms by 0.15 dB in the median in the sets of all shipped presets."""
+"""Twice the power: small pits cannot do that, a gain can (assumed); the AUC of the change has to be large too."""
 FEWEST_SPECIMENS = 3
 RESAMPLES = 200
 
