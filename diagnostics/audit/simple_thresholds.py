@@ -63,12 +63,21 @@ def _change_of_level(measured: MeasuredSet, seed: int) -> list[Finding]:
     change_db = np.full(rms.shape, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
         change_db[known] = 20.0 * np.log10(rms[known] / rms[reference[known]])
-    best = _best(measured, change_db, seed)
-    if best is None or best[0] <= LARGEST_AUC:
-        return []
-    of_state = change_db[measured.labels["state"] == best[1], measured.channels.index(best[2])]
-    median_db = float(np.nanmedian(of_state))
-    return [] if abs(median_db) < LEAST_CHANGE_DB else [_level_finding(*best, median_db)]
+    # the size is asked first: among states that are told without fail the one with the gain is not always the first
+    large = (
+        (_distance(measured, change_db[:, channel], state, seed), state, name, median_db)
+        for state in slight_states(measured)
+        for channel, name in enumerate(measured.channels)
+        if abs(median_db := _median(change_db[measured.labels["state"] == state, channel])) >= LEAST_CHANGE_DB
+    )
+    best = max(large, default=None)
+    return [_level_finding(*best)] if best and best[0] > LARGEST_AUC else []
+
+
+def _median(values: np.ndarray) -> float:
+    """Return the median of what is finite, 0 where nothing is."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else 0.0
 
 
 def _distance(measured: MeasuredSet, values: np.ndarray, state: str, seed: int) -> float:

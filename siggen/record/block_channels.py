@@ -42,8 +42,8 @@ def block_channels(
     for seen in inputs.seen():
         for name, values in seen.items():
             recorders[name].take(values)
-    disturbances = _disturbances(config, specimen, record, instrument, recorders)
     rotation = _rotation(config, specimen, record)
+    disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
     for first in range(0, config.samples, BLOCK_SAMPLES):
         count = min(BLOCK_SAMPLES, config.samples - first)
         follows = any(disturbance.follows_angle for disturbance in disturbances.values())
@@ -65,9 +65,10 @@ def _disturbances(
     record: PlannedRecord,
     instrument: Instrument,
     recorders: Mapping[str, Recorder],
+    rotation: Rotation,
 ) -> dict[str, ChannelDisturbance]:
     """Return channel -> what is added to it; its recorder learns its noise and its converter."""
-    largest = _largest_step_rad(config, _rotation(config, specimen, record))
+    largest = _largest_step_rad(config, rotation)
     turning = Turning(specimen.gears.pinion.teeth / specimen.gears.gear.teeth, largest)
     noise_length = NoiseLength(instrument.length, config.fs_hz, in_blocks=True)
     found = {}

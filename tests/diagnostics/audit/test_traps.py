@@ -156,6 +156,21 @@ def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(gain_db:
     assert [finding.trap for finding in simple_thresholds(changed)] == expected
 
 
+def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well() -> None:
+    """1 dB on the channel that comes last by name tells the states too, and may be physics; 9.5 dB may not."""
+    clean = measured(Plant(points=1, repeats=2))
+    specimens, of_record = np.unique(clean.labels["specimen_id"], return_inverse=True)
+    spread = 10.0 ** np.random.default_rng(3).permutation(np.linspace(-1.0, 1.0, specimens.size))
+    # every record as loud as its gearbox: nothing but the gains differs
+    rms = np.repeat(spread[of_record][:, None], len(clean.channels), axis=1)
+    first, last = (clean.channels.index(choice(clean.channels)) for choice in (min, max))
+    rms[~clean.healthy, first] *= 10.0 ** (9.5 / 20.0)
+    rms[~clean.healthy, last] *= 10.0 ** (1.0 / 20.0)
+    found = simple_thresholds(replace(clean, values={**clean.values, "rms": rms}))
+    assert [finding.trap for finding in found] == ["slight_separable_by_rms"]
+    assert clean.channels[first] in found[0].measured
+
+
 def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:
     states = [{"name": "healthy"}, {"name": "slight", "dynamics": {"integrator": "runge_kutta"}}]
     assert traps(replace(clean, config={"states": states})) == ["solver_settings_by_state"]
