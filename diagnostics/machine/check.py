@@ -12,6 +12,7 @@ import numpy as np
 
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import Machine
+from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
@@ -172,4 +173,4 @@ def _reason(score: ChangeScore, moved: tuple[Moved, ...]) -> str:
 
 
 def _names(moved: tuple[Moved, ...]) -> str:
-    return ", ".join(f"{m.indicator} on {m.channel} x {m.factor:.3g}" for m in moved[:3])
+    return "; ".join(f"{indicator_title(m.indicator)} on {m.channel} x {m.factor:.3g}" for m in moved[:3])

@@ -59,7 +59,7 @@ def _draw_pitch(axis: Axes, chart: GearChart) -> None:
     axis.set_xlabel("tooth")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
     axis.set_ylabel("cumulative pitch [µm]")
-    axis.legend(loc="upper right", fontsize=8)
+    axis.legend(loc="upper right", fontsize=8, frameon=True, facecolor="white", framealpha=1.0)
 
 
 def _draw_profiles(axis: Axes, chart: GearChart) -> None:
@@ -79,7 +79,7 @@ def _draw_profiles(axis: Axes, chart: GearChart) -> None:
     axis.set_title(f"{len(chart.profile_um)} profiles: {text}", fontsize=9)
     axis.set_xlabel("root end to tip of the active flank")
     axis.set_ylabel("profile about its middle [µm]")
-    axis.legend(loc="upper right", fontsize=8)
+    axis.legend(loc="upper right", fontsize=8, frameon=True, facecolor="white", framealpha=1.0)
 
 
 def _draw_helix(axis: Axes, chart: GearChart) -> None:
@@ -106,7 +106,7 @@ def _draw_helix(axis: Axes, chart: GearChart) -> None:
     )
     axis.set_xlabel("near to far end of the face")
     axis.set_ylabel("missing across the face [µm]")
-    axis.legend(loc="best", fontsize=8)
+    axis.legend(loc="best", fontsize=8, frameon=True, facecolor="white", framealpha=1.0)
 
 
 def _band(axis: Axes, middle_um: float, height_um: float, chart: GearChart, name: str) -> None:
