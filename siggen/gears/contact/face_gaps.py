@@ -15,7 +15,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.damage.flank_chords import FlankChords, depth_at
+from siggen.gears.damage.flank_chords import FlankChords, depth_on_line
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 
@@ -80,7 +80,13 @@ def _fill(
         roll_1, roll_2 = position[i] / pinion.base_radius_m, (line - position[i]) / gear.base_radius_m
         arc_1, arc_2 = 0.5 * pinion.base_radius_m * roll_1**2, 0.5 * gear.base_radius_m * roll_2**2
         height_1, height_2 = _height(pinion, arc_1), _height(gear, arc_2)
+        room[0, 0], room[1, 0] = tip_1 - arc_1, NO_EDGE
+        room[0, 1], room[1, 1] = -NO_EDGE, arc_2 - tip_2
+        behind, ahead = _nearest(room, 2)
         for j in range(pinion.intervals.size):
+            if pinion.intervals[j] == 0 and gear.intervals[j] == 0:
+                gaps.left_m[i, j], gaps.right_m[i, j] = -behind, ahead
+                continue
             filled = 0
             for k in range(pinion.intervals[j]):
                 room[0, filled], room[1, filled] = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
@@ -137,7 +143,7 @@ def _depth(pinion: FlankChords, gear: FlankChords, j: int, height_1: float, heig
     """Return the depth of both flanks together at a point of the tangent of slice j."""
     total = 0.0
     if pinion.intervals[j] > 0 and not np.isnan(height_1):
-        total += depth_at(height_1, pinion.face_m[j], pinion.pits)
+        total += depth_on_line(pinion, j, height_1)
     if gear.intervals[j] > 0 and not np.isnan(height_2):
-        total += depth_at(height_2, gear.face_m[j], gear.pits)
+        total += depth_on_line(gear, j, height_2)
     return total
