@@ -249,12 +249,24 @@ def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def depth_on_line(flank: FlankChords, j: int, height: float) -> float:
-    """Return the largest depth of the pits at a height on the middle line of slice j, 0 on a land."""
+def depth_on_line(
+    j: int,
+    height: float,
+    face: FloatArray,
+    pits: FloatArray,
+    crossing: IntArray,
+    row: IntArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> float:
+    """Return the largest depth of the pits at a height on the middle line of slice j, 0 on a land.
+
+    Arrays are those of `FlankChords` and its `lines`, one by one: to hand over the tuple costs more than the rest.
+    """
     deepest = 0.0
-    for k in range(flank.lines.crossing[j]):
-        if flank.lines.low_m[j, k] < height < flank.lines.high_m[j, k]:
-            deepest = max(deepest, square_depth(height, flank.face_m[j], flank.pits, flank.lines.row[j, k]))
+    for k in range(crossing[j]):
+        if low[j, k] < height < high[j, k]:
+            deepest = max(deepest, square_depth(height, face[j], pits, row[j, k]))
     return sqrt(deepest)
 
 
@@ -284,6 +296,9 @@ def _fill_contact(
     out: ContactChords,
 ) -> None:
     merged = np.empty_like(room)
+    face_1, pits_1, face_2, pits_2 = pinion.face_m, pinion.pits, gear.face_m, gear.pits
+    crossing_1, row_1, low_1, high_1 = pinion.lines
+    crossing_2, row_2, low_2, high_2 = gear.lines
     for i in range(position.size):
         roll_1 = position[i] / pinion.base_radius_m
         roll_2 = (line - position[i]) / gear.base_radius_m
@@ -302,4 +317,6 @@ def _fill_contact(
                 if low < 0.0 < high:
                     out.edge_m[i, j] = min(-low, high)
                     out.edge_radius_m[i, j] = merged[2, k] if -low <= high else merged[3, k]
-                    out.depth_m[i, j] = depth_on_line(pinion, j, height_1) + depth_on_line(gear, j, height_2)
+                    depth = depth_on_line(j, height_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
+                    depth += depth_on_line(j, height_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)
+                    out.depth_m[i, j] = depth

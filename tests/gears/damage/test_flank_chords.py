@@ -107,7 +107,7 @@ def test_the_floor_of_crowded_pits_is_the_deepest_one_that_holds_the_point() -> 
     crowd = [pit(*rng.uniform((1.0, 0.0, 0.2, 0.1, 0.1), (3.0, 20.0, 1.0, 0.5, 0.4)), floor) for floor in ["dish"] * 60]
     flank = flank_chords(PAIR.pinion, crowd, WIDTH, 40)
     for height in np.linspace(1e-3, 3e-3, 21):
-        found = [depth_on_line(flank, j, height) for j in range(40)]
+        found = [depth_on_line(j, height, flank.face_m, flank.pits, *flank.lines) for j in range(40)]
         u = (height - np.array([p.height_m for p in crowd])) / [p.semi_axis_profile_m for p in crowd]
         v = (flank.face_m[:, None] - [p.face_m for p in crowd]) / [p.semi_axis_face_m for p in crowd]
         square = np.square([p.depth_m for p in crowd]) * (1.0 - u**2 - v**2)
