@@ -27,7 +27,6 @@ from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import internal_quantities
 from siggen.sensing.block_filter import AHEAD
 from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
-from siggen.specimen.damage import state_damage
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
 from siggen.specimen.errors import SpecimenErrors, error_labels
 from siggen.specimen.flank_waves import wave_labels
@@ -85,7 +84,7 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
     """
     pair, options = made.pair, stiffness_options(specimen.stiffness)
     with refused_as("impossible_damage"):
-        damage = state_damage(config, specimen.specimen_id, pair, state_id)
+        damage = made.damage(state_id)
         load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = made.errors(state_id)
         lead = None if errors is None or errors.even else errors.lead_m

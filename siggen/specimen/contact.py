@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -114,10 +115,15 @@ def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:
     """Return the healthy stiffness for every kind of pair: what the equations of motion count deviations from."""
-    healthy = mesh_tables(pair, (), options, points=points)
+    healthy = _healthy_tables(pair, options, points)
     kinds = pair_kinds(pair, tuple(pit for pit in damage if has_extent(pit)))
     stiffness = np.repeat(healthy.pair_stiffness_n_per_m, len(kinds), axis=0)
     return replace(healthy, pair_stiffness_n_per_m=stiffness, table_of_pair=table_of_pair(pair, kinds))
+
+
+@lru_cache(maxsize=2)  # states of a specimen share them
+def _healthy_tables(pair: GearPair, options: StiffnessOptions, points: int) -> MeshTables:
+    return mesh_tables(pair, (), options, points=points)
 
 
 def largest_force_n(points: Sequence[OperatingRange], pair: GearPair) -> float:

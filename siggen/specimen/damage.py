@@ -7,6 +7,9 @@ spall hides is no damage of its own any more.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, ListedPits, Spalls
 from siggen.config.irregular import IrregularSpalls
 from siggen.gears.damage.tooth_damage import Damage
@@ -48,12 +51,19 @@ def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int
     ValueError
         If a height in the configuration lies below the base circle of the drawn gear.
     """
+    return grown_damage(config, specimen_id, pair, state_id, partial(state_damage, config, specimen_id, pair))
+
+
+def grown_damage(
+    config: Config, specimen_id: int, pair: GearPair, state_id: int, milder_damage: Callable[[int], Damage]
+) -> Damage:
+    """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
     config = gearbox_config(config, specimen_id)
     damage_model = config.states[state_id].damage
     if damage_model is None:
         return ()
     milder = config.grown_from(state_id)
-    before = () if milder is None else state_damage(config, specimen_id, pair, milder)
+    before = () if milder is None else milder_damage(milder)
     growth = Growth(config, specimen_id, pair, state_id, before)
     return _united(before, kind_of(damage_model).draw(damage_model, growth))
 

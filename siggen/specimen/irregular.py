@@ -29,7 +29,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
 from siggen.specimen.gears import pit_height_m
 from siggen.specimen.growth import MM, Growth
-from siggen.specimen.spalls import axial_m, read_m
+from siggen.specimen.spalls import axial_heights_m, axial_m, read_m
 
 PER_10MM = 0.1
 """mm of arc per 10 mm of face as a slope."""
@@ -62,7 +62,10 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
         model.gear,
         tooth,
         face,
-        lambda low, high: (axial_m(gear, low, size.height_reading), axial_m(gear, high, size.height_reading)),
+        lambda low, high: (
+            axial_heights_m(gear, low, size.height_reading),
+            axial_heights_m(gear, high, size.height_reading),
+        ),
         (arcs[0], arcs[1]),
         _depth_m(size, length, across) * _rough(size, growth, name, face, width),
         MM * constant(size.edge_radius_mm),

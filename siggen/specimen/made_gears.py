@@ -1,13 +1,15 @@
-"""MadeGears: the deviations of one specimen's gears, computed once for all states that share their gears."""
+"""MadeGears: deviations and damage of one specimen's gears, computed once for all states that share them."""
 
 from __future__ import annotations
 
 from functools import cache
 
 from siggen.config import Config
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.planning.specimen import Specimen
+from siggen.specimen.damage import grown_damage
 from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
 from siggen.specimen.flank_waves import SpecimenWaves, specimen_waves, wavy_teeth
 from siggen.specimen.gears import gear_pair
@@ -15,7 +17,10 @@ from siggen.specimen.motion import teeth_missing
 
 
 class MadeGears:
-    """Errors, waves and missing material by state; those of `manufacture.draw: specimen` are one for all states."""
+    """Errors, waves, missing material and damage by state.
+
+    What is made by `manufacture.draw: specimen` is one for all states; damage is drawn on that of the milder state.
+    """
 
     def __init__(self, config: Config, specimen: Specimen) -> None:
         self.pair: GearPair = gear_pair(specimen.gears)
@@ -23,6 +28,7 @@ class MadeGears:
         # not over instances: what belongs to a gearbox ends with it
         self._errors = cache(self._computed_errors)
         self._waves_and_missing = cache(self._computed_missing)
+        self._damage = cache(self._drawn_damage)
 
     def errors(self, state_id: int) -> SpecimenErrors | None:
         """Return the errors; None for perfect gears.
@@ -41,6 +47,19 @@ class MadeGears:
     def missing(self, state_id: int) -> MissingMaterial:
         """Return the missing material of relief, errors and waves."""
         return self._waves_and_missing(self._drawn_for(state_id))[1]
+
+    def damage(self, state_id: int) -> Damage:
+        """Return the damage of a state.
+
+        Raises
+        ------
+        ValueError
+            As `state_damage`.
+        """
+        return self._damage(state_id)
+
+    def _drawn_damage(self, state_id: int) -> Damage:
+        return grown_damage(self._config, self._specimen.specimen_id, self.pair, state_id, self.damage)
 
     def _drawn_for(self, state_id: int) -> int:
         section = self._config.manufacture

@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
+from siggen.arrays import FloatArray
 from siggen.config import Spalls, SpallSize, at, bounds, constant, corners, draw
 from siggen.config.stages import stage_of
 from siggen.errors import Problem
@@ -91,20 +94,27 @@ def read_m(gear: SpurGear, height_m: float, reading: str) -> float:
 
 
 def axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
-    """Return the axial height of a reading; below the base circle and above the tip along the flank's tangent [m].
+    """Return the axial height of one reading, as `axial_heights_m` [m]."""
+    return float(axial_heights_m(gear, np.array(value_m), reading))
+
+
+def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> FloatArray:
+    """Return the axial heights of readings; below the base circle and above the tip along the flank's tangent [m].
+
+    Any shape.
 
     Ends of damage that reach off the flank need a height, whatever is cut off there afterwards. Derived: dx/darc =
     cos(psi - alpha_2), dx/dR = cos(psi - alpha_2) sqrt(1 + psi^2)/psi (finite at the base circle only per arc, so a
     radial reading goes on below it as the arc does).
     """
     if reading == "axial":
-        return value_m
+        return values_m
     tip = read_m(gear, float(gear.height_m(gear.tip_roll_rad)), reading)
-    if value_m < 0.0:
-        return value_m * math.cos(gear.base_half_angle_rad)
-    ratio = min(value_m, tip) / gear.base_radius_m
-    roll = math.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else math.sqrt(2.0 * ratio)
-    return float(gear.height_m(roll)) + max(value_m - tip, 0.0) * math.cos(gear.tip_roll_rad - gear.base_half_angle_rad)
+    ratio = np.clip(values_m, 0.0, tip) / gear.base_radius_m
+    roll = np.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else np.sqrt(2.0 * ratio)
+    beyond = np.maximum(values_m - tip, 0.0) * math.cos(gear.tip_roll_rad - gear.base_half_angle_rad)
+    below = values_m * math.cos(gear.base_half_angle_rad)
+    return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)
 
 
 def _spalls(model: Spalls, growth: Growth) -> Damage:

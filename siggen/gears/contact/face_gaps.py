@@ -15,7 +15,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.damage.flank_chords import FlankChords, depth_at
+from siggen.gears.damage.flank_chords import FlankChords, depth_on_line
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 
@@ -76,33 +76,51 @@ def _fill(
 ) -> None:
     # The floor in the middle of a gap stays the same while the contact moves over a pit of the pinion alone.
     known_at, known = np.full(pinion.intervals.size, np.inf), np.zeros(pinion.intervals.size)
+    base_1, half_1 = pinion.base_radius_m, pinion.half_angle_rad
+    base_2, half_2 = gear.base_radius_m, gear.half_angle_rad
+    count_1, from_1, to_1, face_1, pits_1 = pinion.intervals, pinion.low, pinion.high, pinion.face_m, pinion.pits
+    count_2, from_2, to_2, face_2, pits_2 = gear.intervals, gear.low, gear.high, gear.face_m, gear.pits
+    crossing_1, row_1, low_1, high_1 = pinion.lines
+    crossing_2, row_2, low_2, high_2 = gear.lines
+    left_m, right_m, notch_m, floor_m, on_damage = gaps
     for i in range(position.size):
-        roll_1, roll_2 = position[i] / pinion.base_radius_m, (line - position[i]) / gear.base_radius_m
-        arc_1, arc_2 = 0.5 * pinion.base_radius_m * roll_1**2, 0.5 * gear.base_radius_m * roll_2**2
-        height_1, height_2 = _height(pinion, arc_1), _height(gear, arc_2)
-        for j in range(pinion.intervals.size):
+        roll_1, roll_2 = position[i] / base_1, (line - position[i]) / base_2
+        arc_1, arc_2 = 0.5 * base_1 * roll_1**2, 0.5 * base_2 * roll_2**2
+        height_1, height_2 = _height(arc_1, base_1, half_1), _height(arc_2, base_2, half_2)
+        room[0, 0], room[1, 0] = tip_1 - arc_1, NO_EDGE
+        room[0, 1], room[1, 1] = -NO_EDGE, arc_2 - tip_2
+        behind, ahead = _nearest(room, 2)
+        for j in range(count_1.size):
+            if count_1[j] == 0 and count_2[j] == 0:
+                left_m[i, j], right_m[i, j] = -behind, ahead
+                continue
             filled = 0
-            for k in range(pinion.intervals[j]):
-                room[0, filled], room[1, filled] = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
+            for k in range(count_1[j]):
+                room[0, filled], room[1, filled] = from_1[j, k] - arc_1, to_1[j, k] - arc_1
                 filled += 1
-            for k in range(gear.intervals[j]):
-                room[0, filled], room[1, filled] = arc_2 - gear.high[j, k], arc_2 - gear.low[j, k]
+            for k in range(count_2[j]):
+                room[0, filled], room[1, filled] = arc_2 - to_2[j, k], arc_2 - from_2[j, k]
                 filled += 1
             damaged = filled
             room[0, filled], room[1, filled] = tip_1 - arc_1, NO_EDGE
             room[0, filled + 1], room[1, filled + 1] = -NO_EDGE, arc_2 - tip_2
             low, high = _nearest(room, filled + 2)
-            gaps.left_m[i, j], gaps.right_m[i, j] = -low, high
+            left_m[i, j], right_m[i, j] = -low, high
             if low > -0.5 * NO_EDGE and high < 0.5 * NO_EDGE:
                 middle = 0.5 * (low + high)
-                if gear.intervals[j] > 0 or abs(arc_1 + middle - known_at[j]) > SAME_M:
+                if count_2[j] > 0 or abs(arc_1 + middle - known_at[j]) > SAME_M:
                     known_at[j] = arc_1 + middle
-                    known[j] = _depth(pinion, gear, j, _height(pinion, arc_1 + middle), _height(gear, arc_2 - middle))
-                gaps.notch_m[i, j] = known[j]
+                    at_1, at_2 = _height(arc_1 + middle, base_1, half_1), _height(arc_2 - middle, base_2, half_2)
+                    known[j] = depth_on_line(j, at_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
+                    known[j] += depth_on_line(j, at_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)
+                notch_m[i, j] = known[j]
             for k in range(damaged):
                 if room[0, k] < 0.0 < room[1, k]:
-                    gaps.on_damage[i, j] = 1.0
-                    gaps.floor_m[i, j] = _depth(pinion, gear, j, height_1, height_2)
+                    on_damage[i, j] = 1.0
+                    floor_m[i, j] = depth_on_line(j, height_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
+                    if count_2[j] > 0:
+                        floor_m[i, j] += depth_on_line(j, height_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)
+                    break
 
 
 @njit(cache=True)
@@ -125,19 +143,8 @@ def _nearest(room: FloatArray, count: int) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def _height(flank: FlankChords, arc: float) -> float:
-    """Return the height of a point of the flank at an arc, NaN beside the involute [m]."""
+def _height(arc: float, base_radius: float, half_angle: float) -> float:
+    """Return the height of a point of the flank at an arc, NaN beside the involute, where no pit is [m]."""
     if arc <= 0.0:
         return np.nan
-    return involute.height(sqrt(2.0 * arc / flank.base_radius_m), flank.base_radius_m, flank.half_angle_rad)
-
-
-@njit(cache=True)
-def _depth(pinion: FlankChords, gear: FlankChords, j: int, height_1: float, height_2: float) -> float:
-    """Return the depth of both flanks together at a point of the tangent of slice j."""
-    total = 0.0
-    if pinion.intervals[j] > 0 and not np.isnan(height_1):
-        total += depth_at(height_1, pinion.face_m[j], pinion.pits)
-    if gear.intervals[j] > 0 and not np.isnan(height_2):
-        total += depth_at(height_2, gear.face_m[j], gear.pits)
-    return total
+    return involute.height(sqrt(2.0 * arc / base_radius), base_radius, half_angle)

@@ -41,12 +41,26 @@ BEYOND_TIP = 1.5
 """Pits are followed up to this multiple of the tip's roll angle: a pit open at the tip has no edge there."""
 
 
+class LineRows(NamedTuple):
+    """Rows that cross the middle line of every slice.
+
+    `crossing` (slices,): how many; (slices, rows) each: their numbers `row`, and the heights `low_m`, `high_m` [m]
+    between which they cover the line.
+    """
+
+    crossing: IntArray
+    row: IntArray
+    low_m: FloatArray
+    high_m: FloatArray
+
+
 class FlankChords(NamedTuple):
     """Pits of one flank on the middle line of every slice (a named tuple, since compiled code takes no dataclass).
 
     `low`, `high` (slices, most): merged intervals along the arc [m], ascending; `low_radius_m`, `high_radius_m`: radii
     of their edges [m], negative where the damage states none; `intervals` (slices,): how many; `face_m` (slices,): the
-    lines; `pits` (n, COLUMNS): rows of `pit_rows`; `base_radius_m`, `half_angle_rad`: the involute.
+    lines; `pits` (n, COLUMNS): rows of `pit_rows`; `lines`: those that cross each line; `base_radius_m`,
+    `half_angle_rad`: the involute.
     """
 
     low: FloatArray
@@ -56,6 +70,7 @@ class FlankChords(NamedTuple):
     intervals: IntArray
     face_m: FloatArray
     pits: FloatArray
+    lines: LineRows
     base_radius_m: float
     half_angle_rad: float
 
@@ -96,7 +111,9 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
     rows = pit_rows(one for one in pits if has_extent(one))
     face = face_width_m * (np.arange(slices) + 0.5) / slices
     highest = float(gear.height_m(min(BEYOND_TIP * gear.tip_roll_rad, 0.5 * pi)))
-    low, high, low_radius, high_radius, count = _line_unions(face, rows, highest)
+    lines = _line_rows(face, rows)
+    found, count = _line_unions(lines, rows, highest)
+    low, high, low_radius, high_radius = np.ascontiguousarray(found[:, :, : count.max()])
     return FlankChords(
         low=_arcs(gear, low),
         high=_arcs(gear, high),
@@ -105,6 +122,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
         intervals=count,
         face_m=face,
         pits=rows,
+        lines=lines,
         base_radius_m=gear.base_radius_m,
         half_angle_rad=gear.base_half_angle_rad,
     )
@@ -138,25 +156,38 @@ def semi_ellipse_share(offset: float) -> float:
 
 
 @njit(cache=True)
-def _line_unions(
-    face: FloatArray, pits: FloatArray, highest: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, IntArray]:
-    """Return merged intervals of height and the radii of their edges (slices, rows each), clipped to 0 and `highest`.
-
-    The last array is how many there are on every line.
-    """
-    found = np.zeros((4, face.size, pits.shape[0]))
-    room = np.empty((4, pits.shape[0]))
-    merged = np.zeros(face.size, np.int64)
+def _line_rows(face: FloatArray, pits: FloatArray) -> LineRows:
+    """Return which rows cross the lines at `face` (slices,), and where."""
+    shape = (face.size, pits.shape[0])
+    lines = LineRows(np.zeros(face.size, np.int64), np.zeros(shape, np.int64), np.zeros(shape), np.zeros(shape))
     for j in range(face.size):
-        filled = 0
         for i in range(pits.shape[0]):
-            first, last = _heights_on_line(face[j], pits, i)
-            first, last = max(first, 0.0), min(last, highest)
+            low, high = _heights_on_line(face[j], pits, i)
+            if low < high:
+                k = lines.crossing[j]
+                lines.row[j, k], lines.low_m[j, k], lines.high_m[j, k] = i, low, high
+                lines.crossing[j] += 1
+    return lines
+
+
+@njit(cache=True)
+def _line_unions(lines: LineRows, pits: FloatArray, highest: float) -> tuple[FloatArray, IntArray]:
+    """Return merged intervals of height and the radii of their edges (4, slices, rows), clipped to 0 and `highest`.
+
+    The second array is how many there are on every line.
+    """
+    found = np.zeros((4, *lines.row.shape))
+    room = np.empty((4, pits.shape[0]))
+    merged = np.zeros(lines.crossing.size, np.int64)
+    for j in range(lines.crossing.size):
+        filled = 0
+        for k in range(lines.crossing[j]):
+            radius = pits[lines.row[j, k], EDGE_RADIUS]
+            first, last = max(lines.low_m[j, k], 0.0), min(lines.high_m[j, k], highest)
             if last > first:
-                filled = _insert(first, last, pits[i, EDGE_RADIUS], pits[i, EDGE_RADIUS], room, filled)
+                filled = _insert(first, last, radius, radius, room, filled)
         merged[j] = _merge(room, filled, found[:, j])
-    return found[0], found[1], found[2], found[3], merged
+    return found, merged
 
 
 @njit(cache=True)
@@ -218,14 +249,25 @@ def _arcs(gear: SpurGear, height_m: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def depth_at(height: float, face: float, pits: FloatArray) -> float:
-    """Return the largest depth of the pits at a point of the flank, 0 on a land."""
+def depth_on_line(
+    j: int,
+    height: float,
+    face: FloatArray,
+    pits: FloatArray,
+    crossing: IntArray,
+    row: IntArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> float:
+    """Return the largest depth of the pits at a height on the middle line of slice j, 0 on a land.
+
+    Arrays are those of `FlankChords` and its `lines`, one by one: to hand over the tuple costs more than the rest.
+    """
     deepest = 0.0
-    for i in range(pits.shape[0]):
-        low, high = _heights_on_line(face, pits, i)
-        if low < height < high:
-            deepest = max(deepest, sqrt(square_depth(height, face, pits, i)))
-    return deepest
+    for k in range(crossing[j]):
+        if low[j, k] < height < high[j, k]:
+            deepest = max(deepest, square_depth(height, face[j], pits, row[j, k]))
+    return sqrt(deepest)
 
 
 @njit(cache=True)
@@ -254,6 +296,9 @@ def _fill_contact(
     out: ContactChords,
 ) -> None:
     merged = np.empty_like(room)
+    face_1, pits_1, face_2, pits_2 = pinion.face_m, pinion.pits, gear.face_m, gear.pits
+    crossing_1, row_1, low_1, high_1 = pinion.lines
+    crossing_2, row_2, low_2, high_2 = gear.lines
     for i in range(position.size):
         roll_1 = position[i] / pinion.base_radius_m
         roll_2 = (line - position[i]) / gear.base_radius_m
@@ -272,5 +317,6 @@ def _fill_contact(
                 if low < 0.0 < high:
                     out.edge_m[i, j] = min(-low, high)
                     out.edge_radius_m[i, j] = merged[2, k] if -low <= high else merged[3, k]
-                    depth = depth_at(height_1, pinion.face_m[j], pinion.pits)
-                    out.depth_m[i, j] = depth + depth_at(height_2, gear.face_m[j], gear.pits)
+                    depth = depth_on_line(j, height_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
+                    depth += depth_on_line(j, height_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)
+                    out.depth_m[i, j] = depth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from math import gcd
 
 import numpy as np
@@ -26,7 +27,11 @@ def pit_rows(pits: Iterable[ToothDamage]) -> FloatArray:
     ValueError
         If one is not finite, has no extent, an unknown floor or edges that cross.
     """
-    pits = tuple(pits)
+    return _rows_of(tuple(pits)).copy()
+
+
+@lru_cache(maxsize=64)  # tables and labels ask some twenty times for the same teeth
+def _rows_of(pits: Damage) -> FloatArray:
     for index, pit in enumerate(pits):
         for problem in _located(index, pit, pit.own_problems()):
             raise ValueError(str(problem))

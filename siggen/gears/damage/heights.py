@@ -5,7 +5,9 @@ from __future__ import annotations
 from math import isfinite, sqrt, tan
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from siggen.arrays import FloatArray
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
@@ -67,5 +69,10 @@ def profile_arc_m(gear: SpurGear, outline: Outline) -> float:
 
 def clipped_arc_m(gear: SpurGear, height_range_m: tuple[float, float]) -> float:
     """Return the arc along the involute between two heights, clipped to the flank [m]."""
-    low, high = gear.roll_at_height(np.clip(height_range_m, *flank_heights(gear)))
-    return float(0.5 * gear.base_radius_m * (high - low) * (high + low))
+    return float(clipped_arcs_m(gear, *height_range_m))
+
+
+def clipped_arcs_m(gear: SpurGear, low_m: ArrayLike, high_m: ArrayLike) -> FloatArray:
+    """Return the arcs along the involute from lower to upper heights, clipped to the flank, in their shape [m]."""
+    low, high = gear.roll_at_height(np.clip(np.array([low_m, high_m], dtype=np.float64), *flank_heights(gear)))
+    return np.asarray(0.5 * gear.base_radius_m * (high - low) * (high + low))

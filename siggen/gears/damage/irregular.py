@@ -12,13 +12,14 @@ upper ones. The milder one's stations are stations of the grown one, so it lies 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.heights import clipped_arc_m
+from siggen.gears.damage.heights import clipped_arcs_m
 from siggen.gears.damage.on_flank import OnFlank, floor_problems
 from siggen.gears.damage.outlines import Polygon
 from siggen.gears.damage.tooth_damage import Refusal, ToothDamage
@@ -86,7 +87,8 @@ class IrregularSpall(OnFlank):
     strip_depths_m: tuple[float, ...]
     edge_radius_m: float
     floor: str = "flat"
-    milder: IrregularSpall | None = None
+    # The stations tell spalls apart as a rule: a hash of the whole chain would cost more than what it looks up.
+    milder: IrregularSpall | None = field(default=None, hash=False)
 
     @property
     def kind(self) -> str:
@@ -107,17 +109,12 @@ class IrregularSpall(OnFlank):
 
     def rows(self) -> list[tuple[float, ...]]:
         """Return the rows of all strips, with those of the milder spall where a dish could be shallower than it."""
-        dish = self.floor == "dish"
-        span, found = self.outline.height_range_m, []
-        for (one, two), depth in zip(pairwise(self.stations_m), self.strip_depths_m, strict=True):
-            corners = ((one[1], one[0]), (two[1], two[0]), (two[2], two[0]), (one[2], one[0]))
-            strip = Polygon(tuple(dict.fromkeys(corners)))
-            found += strip.rows(depth, dish, self.edge_radius_m, span)
-        return found + (self.milder.rows() if dish and self.milder is not None else [])
+        held = self.milder.rows() if self.floor == "dish" and self.milder is not None else []
+        return [*_strip_rows(self), *held]
 
     def profile_arc_m(self, gear: SpurGear) -> float:
         """Return the longest arc between both edges at one place across the face, clipped to the flank [m]."""
-        return max(clipped_arc_m(gear, (low, high)) for _, low, high in self.stations_m)
+        return float(np.max(clipped_arcs_m(gear, *np.array(self.stations_m)[:, 1:].T)))
 
     def hides(self, other: ToothDamage) -> bool:
         """Return whether `other` is one that it has grown from, or lies inside one of its strips and nowhere deeper."""
@@ -153,6 +150,17 @@ class IrregularSpall(OnFlank):
         return {**OnFlank.table_row(self), "edge_radius_mm": 1e3 * self.edge_radius_m, "strip_depth_mm": depths}
 
 
+@lru_cache(maxsize=32)  # a grown spall asks all milder ones
+def _strip_rows(spall: IrregularSpall) -> tuple[tuple[float, ...], ...]:
+    dish, span = spall.floor == "dish", spall.outline.height_range_m
+    found: list[tuple[float, ...]] = []
+    for (one, two), depth in zip(pairwise(spall.stations_m), spall.strip_depths_m, strict=True):
+        corners = ((one[1], one[0]), (two[1], two[0]), (two[2], two[0]), (one[2], one[0]))
+        strip = Polygon(tuple(dict.fromkeys(corners)))
+        found += strip.rows(depth, dish, spall.edge_radius_m, span)
+    return tuple(found)
+
+
 def stations_across(
     face_width_m: float, left_m: float, right_m: float, milder: IrregularSpall | None = None
 ) -> FloatArray:
@@ -170,7 +178,7 @@ def grown_spall(
     gear: str,
     tooth: int,
     face_m: FloatArray,
-    heights_m: Callable[[float, float], tuple[float, float]],
+    heights_m: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
     arcs_m: tuple[FloatArray, FloatArray],
     strip_depths_m: FloatArray,
     edge_radius_m: float,
@@ -186,13 +194,13 @@ def grown_spall(
     face_m : (k,)
         `stations_across` [m].
     heights_m : callable
-        Readings of the lower and the upper edge at one station [m] -> heights x [m].
+        Readings of the lower and the upper edge at stations (k,), (k,) [m] -> heights x (k,), (k,) [m].
     arcs_m : (k,), (k,)
         Readings of both edges at the stations [m].
     strip_depths_m : (k - 1,)
         [m].
     """
-    low, high = (np.array(edge) for edge in zip(*map(heights_m, *map(np.ndarray.tolist, arcs_m)), strict=True))
+    low, high = (np.array(edge) for edge in heights_m(*arcs_m))
     depths = np.array(strip_depths_m)
     if milder is not None:
         face, lower, upper = np.array(milder.stations_m).T

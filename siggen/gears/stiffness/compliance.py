@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,14 +23,14 @@ from numpy.typing import ArrayLike
 from siggen.arrays import FloatArray
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.damage.tooth_damage import ToothDamage
+from siggen.gears.damage.tooth_damage import Damage, ToothDamage
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.beams import beam_integrals, first_roll
 from siggen.gears.stiffness.calibration import calibration_factor
 from siggen.gears.stiffness.foundation import foundation_compliance
-from siggen.gears.stiffness.pitted_beams import pit_integrals
+from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 SHEAR_FACTOR = 1.2
@@ -77,11 +78,26 @@ def tooth_compliance(
 
     Source: paper A, section 2.2; with 'calibrated' derived (finite elements, healthy tooth).
     """
+    return tooth_compliances(pair, which, roll, options, (pits,))[0]
+
+
+def tooth_compliances(
+    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
+) -> list[ToothCompliance]:
+    """Return `tooth_compliance` of several teeth of one gear by their pits: what all share is computed once."""
     gear = pair.member(which)
-    pits = tuple(pits)
-    rows = pit_rows(pits)
+    damages = [tuple(pits) for pits in teeth]
     angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
-    beam = _beam_compliances(pair, gear, angles, beam_integrals(gear, options.shape, angles, pair.face_width_m))
+    arms = _arms(gear, angles)
+    healthy = _healthy(pair, gear, angles, arms, options)
+    return [_damaged(pair, gear, angles, arms, options, pits, healthy) for pits in damages]
+
+
+def _healthy(
+    pair: GearPair, gear: SpurGear, angles: FloatArray, arms: FloatArray, options: StiffnessOptions
+) -> tuple[FloatArray, FloatArray]:
+    """Return bending, shear and axial compliance (3, k) and foundation (k,) [m/N]."""
+    beam = _beam_compliances(pair, arms, beam_integrals(gear, options.shape, angles, pair.face_width_m))
     if options.foundation == "none":
         foundation = np.zeros(angles.size)
     else:
@@ -91,8 +107,21 @@ def tooth_compliance(
     if options.beam == "calibrated":
         factor = calibration_factor(gear, angles)
         beam, foundation = factor * beam, factor * foundation
-    if rows.size:
-        beam = beam + _beam_compliances(pair, gear, angles, _pit_gain(pair, gear, options.shape, angles, rows))
+    return beam, foundation
+
+
+def _damaged(
+    pair: GearPair,
+    gear: SpurGear,
+    angles: FloatArray,
+    arms: FloatArray,
+    options: StiffnessOptions,
+    pits: Damage,
+    healthy: tuple[FloatArray, FloatArray],
+) -> ToothCompliance:
+    beam, foundation = healthy
+    if pit_rows(pits).size:
+        beam = beam + _beam_compliances(pair, arms, _pit_gain(pair, gear, options.shape, angles, pits))
     for one in pits:
         foundation = foundation + one.tooth_compliance_m_per_n(pair, angles)
     for array in (beam, foundation):
@@ -111,15 +140,25 @@ def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, which: str) -> FloatA
     return np.clip(roll, first, last)
 
 
-def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, rows: FloatArray) -> FloatArray:
-    start = first_roll(gear, beam)
-    breaks = section_breaks(gear, rows, pair.face_width_m, start)
-    gain = pit_integrals(roll, breaks, rows, gear.base_radius_m, gear.base_half_angle_rad, pair.face_width_m)
+def _pit_gain(pair: GearPair, gear: SpurGear, beam: str, roll: FloatArray, pits: Damage) -> FloatArray:
+    breaks, cuts, sums = _pit_pieces(gear, beam, pits, pair.face_width_m)
+    flank = (pit_rows(pits), gear.base_radius_m, gear.base_half_angle_rad, pair.face_width_m)
+    gain = pit_integrals(roll, breaks, cuts, sums, *flank)
     if not np.all(np.isfinite(gain)):
         raise ValueError(
             "pits consume a whole section of the tooth; allowed: depth below the local half tooth thickness"
         )
     return gain
+
+
+@lru_cache(maxsize=64)  # tables and labels ask at many positions
+def _pit_pieces(
+    gear: SpurGear, beam: str, pits: Damage, face_width_m: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return breaks, cuts and sums of `pit_sums`."""
+    rows = pit_rows(pits)
+    breaks = section_breaks(gear, rows, face_width_m, first_roll(gear, beam))
+    return breaks, *pit_sums(breaks, rows, gear.base_radius_m, gear.base_half_angle_rad, face_width_m)
 
 
 def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start: float) -> FloatArray:
@@ -129,11 +168,16 @@ def section_breaks(gear: SpurGear, rows: FloatArray, face_width_m: float, start:
     return np.unique(np.concatenate([np.arange(start, gear.tip_roll_rad, PIECE_RAD), inside]))
 
 
-def _beam_compliances(pair: GearPair, gear: SpurGear, roll: FloatArray, integrals: FloatArray) -> FloatArray:
-    """Return bending, shear and axial compliance (3, k) [m/N] of integrals (J0, J1, J2, JA), (4, k)."""
+def _arms(gear: SpurGear, roll: FloatArray) -> FloatArray:
+    """Return the lever of a unit load about the base-circle point [m], and its parts along and across the tooth."""
     slant = roll - gear.base_half_angle_rad
     along, across = np.sin(slant), np.cos(slant)
-    lever = across * gear.height_m(roll) - along * gear.half_thickness_m(roll)
+    return np.stack([across * gear.height_m(roll) - along * gear.half_thickness_m(roll), along, across])
+
+
+def _beam_compliances(pair: GearPair, arms: FloatArray, integrals: FloatArray) -> FloatArray:
+    """Return bending, shear and axial compliance (3, k) [m/N] of integrals (J0, J1, J2, JA), (4, k)."""
+    lever, along, across = arms
     young = pair.youngs_modulus_pa
     shear_modulus = young / (2.0 * (1.0 + pair.poisson_ratio))
     j0, j1, j2, ja = integrals

@@ -20,7 +20,7 @@ from siggen.gears.damage.row_columns import HEIGHT, HIGHEST, LOWEST
 from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.compliance import tooth_compliances
 from siggen.gears.stiffness.coupled_pairs import approach_forces
 from siggen.gears.stiffness.coupled_rows import CoupledRows, coupled_contributions, neighbour_runs
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, rolls_at
@@ -168,9 +168,10 @@ def kind_stiffness(
     rolls = dict(zip(("pinion", "gear"), rolls_at(pair, position_m), strict=True))
     tooth: dict[tuple[str, int], FloatArray] = {}
     for which, column in (("pinion", 0), ("gear", 1)):
-        for index in sorted({kind[column] for kind in kinds}):
-            pits = pits_of(damage, which, index)
-            tooth[which, index] = tooth_compliance(pair, which, rolls[which], options, pits).total
+        teeth = sorted({kind[column] for kind in kinds})
+        damages = [pits_of(damage, which, index) for index in teeth]
+        found = tooth_compliances(pair, which, rolls[which], options, damages)
+        tooth |= {(which, index): one.total for index, one in zip(teeth, found, strict=True)}
     out = np.empty((len(kinds), position_m.size))
     for row, (first, second) in enumerate(kinds):
         pinion_pits, gear_pits = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
@@ -281,17 +282,14 @@ def _losses(
     """Return the relative loss of mesh stiffness of each run of pairs at positions of its newest pair, (runs, k)."""
     healthy = np.zeros(newest_m.size)
     damaged = np.zeros((sequences.shape[0], newest_m.size))
-    alone = np.zeros((len(kinds), sequences.shape[1], newest_m.size))
-    for older in range(sequences.shape[1]):
-        position = newest_m + older * pair.base_pitch_m
-        inside = position <= pair.contact_end_m
-        if not np.any(inside):
-            continue
-        stiffness = kind_stiffness(pair, damage, options, kinds, position[inside], through_face=True)
-        alone[:, older, inside] = stiffness
-        healthy[inside] += stiffness[0]
-        damaged[:, inside] += stiffness[sequences[:, older]]
+    position = newest_m + np.arange(sequences.shape[1])[:, np.newaxis] * pair.base_pitch_m
+    inside = position <= pair.contact_end_m
+    alone = np.zeros((len(kinds), *position.shape))
+    alone[:, inside] = kind_stiffness(pair, damage, options, kinds, position[inside], through_face=True)
     if options.coupling == "none":
+        for older in range(sequences.shape[1]):
+            healthy += alone[0, older]
+            damaged += alone[sequences[:, older], older]
         return 1.0 - damaged / healthy
     pairs = np.count_nonzero(alone[0], axis=0)
     for number in np.unique(pairs):

@@ -169,27 +169,22 @@ def _stride(
 
 
 @njit(cache=True)
-def pit_integrals(
-    rolls: FloatArray, breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
-) -> FloatArray:
-    """Return what rows (n, 14) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
+def pit_sums(
+    breaks: FloatArray, pits: FloatArray, base_radius: float, half_angle: float, face_width: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return cuts (k,) and what rows (n, 14) add to (J0, J1, J2, JA) between `breaks[0]` and each of the cuts, (k, 4).
 
-    `breaks` are ascending rolls that hold every kink. Pieces between breaks are cut into parts from below (`_stride`),
-    each summed once; a contact adds what lies above the last cut: nothing above a contact and no other contact changes
-    a bit of its result. NaN where a section is consumed.
+    `breaks` are ascending rolls that hold every kink. Pieces between them are cut into parts from below (`_stride`);
+    nothing above a cut changes a bit of its sums. NaN from where a section is consumed.
     """
-    out = np.zeros((4, rolls.size))
     room = pits.shape[0]
     left, right = np.empty(room), np.empty(room)
     owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
     stretches, lowest = stretch_room(room), _lower_ends(pits)
-    highest = np.max(rolls) if rolls.size else breaks[0]
     total = np.zeros(4)
     below = [breaks[0]]
     sums = [total.copy()]
     for k in range(1, breaks.size):
-        if breaks[k - 1] >= highest:
-            break
         low, high = breaks[k - 1], breaks[k]
         count = _active_between(low, high, pits, base_radius, half_angle, face_width, left, right, owner, active)
         parts = 0
@@ -217,9 +212,34 @@ def pit_integrals(
             sums.append(total.copy())
             low = high
             parts += 1
-            if low > highest:
-                break
-    cuts = np.array(below)
+    found = np.empty((len(sums), 4))
+    for k in range(len(sums)):
+        found[k] = sums[k]
+    return np.array(below), found
+
+
+@njit(cache=True)
+def pit_integrals(
+    rolls: FloatArray,
+    breaks: FloatArray,
+    cuts: FloatArray,
+    sums: FloatArray,
+    pits: FloatArray,
+    base_radius: float,
+    half_angle: float,
+    face_width: float,
+) -> FloatArray:
+    """Return what rows (n, 14) add to (J0, J1, J2, JA) between `breaks[0]` and each of the rolls, (4, k).
+
+    `cuts`, `sums`: of `pit_sums`. A contact adds what lies above the last cut: nothing above a contact and no other
+    contact changes a bit of its result. NaN where a section is consumed.
+    """
+    out = np.zeros((4, rolls.size))
+    room = pits.shape[0]
+    left, right = np.empty(room), np.empty(room)
+    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    stretches, lowest = stretch_room(room), _lower_ends(pits)
+    total = np.zeros(4)
     present, count = -1, 0
     for i in range(rolls.size):
         cut = max(np.searchsorted(cuts, rolls[i], side="right") - 1, 0)

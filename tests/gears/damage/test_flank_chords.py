@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from siggen.gears.damage.flank_chords import contact_chords, flank_chords, semi_ellipse_share
+from siggen.gears.damage.flank_chords import contact_chords, depth_on_line, flank_chords, semi_ellipse_share
 from siggen.gears.stiffness.sections import contact_length_loss
 from tests.gears.builders import layers, pair_18_47, pit
 from tests.gears.pit_shapes import arc_of, chord_pit
@@ -102,10 +102,22 @@ def test_the_floor_of_a_dish_is_deepest_in_its_middle() -> None:
     assert depth[0] == 0.0
 
 
+def test_the_floor_of_crowded_pits_is_the_deepest_one_that_holds_the_point() -> None:
+    rng = np.random.default_rng(3)
+    crowd = [pit(*rng.uniform((1.0, 0.0, 0.2, 0.1, 0.1), (3.0, 20.0, 1.0, 0.5, 0.4)), floor) for floor in ["dish"] * 60]
+    flank = flank_chords(PAIR.pinion, crowd, WIDTH, 40)
+    for height in np.linspace(1e-3, 3e-3, 21):
+        found = [depth_on_line(j, height, flank.face_m, flank.pits, *flank.lines) for j in range(40)]
+        u = (height - np.array([p.height_m for p in crowd])) / [p.semi_axis_profile_m for p in crowd]
+        v = (flank.face_m[:, None] - [p.face_m for p in crowd]) / [p.semi_axis_face_m for p in crowd]
+        square = np.square([p.depth_m for p in crowd]) * (1.0 - u**2 - v**2)
+        assert found == pytest.approx(np.sqrt(np.maximum(square.max(axis=1), 0.0)), rel=1e-9, abs=1e-12)
+
+
 @pytest.mark.parametrize("name", ["a_mm", "b_mm", "depth_mm"])
 def test_pits_without_extent_are_no_pits(name: str) -> None:
     none = flank_chords(PAIR.pinion, (), WIDTH, 20)
     for got, expected in zip(flank_chords(PAIR.pinion, (pit(**{name: 0.0}),), WIDTH, 20), none, strict=True):
-        np.testing.assert_array_equal(got, expected)
+        np.testing.assert_equal(got, expected)
     with pytest.raises(ValueError, match="slices"):
         flank_chords(PAIR.pinion, (), WIDTH, 0)

@@ -7,7 +7,7 @@ import pytest
 
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.stiffness.compliance import section_breaks
-from siggen.gears.stiffness.pitted_beams import pit_integrals
+from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
 from tests.gears.builders import pair_18_47, pit
 
 PAIR = pair_18_47()
@@ -25,8 +25,7 @@ def test_crowded_pits_are_integrated_as_exactly_as_on_ever_finer_parts(floor):
     # Parts towards either end, down to 1e-4 of a piece: a square root's end leaves less than 1e-6 of it there.
     shares = np.array([1e-4, 1e-3, 0.01, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85, 0.95, 0.99, 0.999, 0.9999])
     fine = np.unique(np.concatenate([ends, (ends[:-1, np.newaxis] + np.diff(ends)[:, np.newaxis] * shares).ravel()]))
-    found, exact = (
-        pit_integrals(roll, cuts, rows, gear.base_radius_m, gear.base_half_angle_rad, width) for cuts in (breaks, fine)
-    )
+    flank = (rows, gear.base_radius_m, gear.base_half_angle_rad, width)
+    found, exact = (pit_integrals(roll, cuts, *pit_sums(cuts, *flank), *flank) for cuts in (breaks, fine))
     # Damage adds less than a hundredth to a compliance, which therefore holds to 1e-8.
     np.testing.assert_allclose(found, exact, rtol=1e-6, atol=1e-12 * exact.max())

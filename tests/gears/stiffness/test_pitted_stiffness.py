@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.stiffness.compliance import tooth_compliance
+from siggen.gears.stiffness.compliance import tooth_compliance, tooth_compliances
 from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
 from siggen.gears.stiffness.sections import contact_length_loss, section_loss
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -256,6 +256,21 @@ def test_order_and_repetition_of_pits_change_no_bit(layout, which, random):
     key = f"{which}_pits"
     one, two = (pair_stiffness(PAIR, S, TROCHOID, **{key: p}) for p in (layout, mixed))
     assert np.array_equal(one, two)
+
+
+@settings(max_examples=20, deadline=None)
+@given(layouts, st.sampled_from(["pinion", "gear"]))
+def test_teeth_and_contacts_asked_for_together_are_those_asked_for_alone_to_the_bit(layout, which):
+    """Healthy parts, sums over pits and rows are computed once for teeth, tables and labels; nothing may tell."""
+    rolls = np.linspace(*(np.array(PAIR.active_flank[which == "gear"])), 37)
+    together = tooth_compliances(PAIR, which, rolls, TROCHOID, ((), layout, layout[:1]))
+    for pits_of_tooth, found in zip(((), layout, layout[:1]), together, strict=True):
+        rows = pit_rows(pits_of_tooth)
+        # what a caller does to its rows is its own affair
+        pit_rows(pits_of_tooth)[:] = np.nan
+        assert np.array_equal(pit_rows(pits_of_tooth), rows)
+        alone = [tooth_compliance(PAIR, which, roll, TROCHOID, pits_of_tooth).total[0] for roll in rolls[::-1]]
+        assert np.array_equal(found.total, alone[::-1])
 
 
 @settings(max_examples=50, deadline=None)

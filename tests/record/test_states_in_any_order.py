@@ -1,0 +1,49 @@
+"""What the states of a gearbox share is reused to the bit: tables and labels of a state, whatever was made before."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.checks.loading import load_config
+from siggen.gears.contact import contact_table
+from siggen.gears.damage import flank_damage, irregular, outlines
+from siggen.gears.stiffness import compliance
+from siggen.planning.gearbox import gearbox_config
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import StateTeeth, state_teeth
+from siggen.specimen import contact
+from siggen.specimen.made_gears import MadeGears
+
+SHARED = (
+    contact._healthy_tables,
+    contact_table._healthy,
+    flank_damage._rows_of,
+    irregular._strip_rows,
+    outlines.trapezoids,
+    compliance._pit_pieces,
+)
+CONFIG = gearbox_config(load_config("configs/bench.yaml", ["specimens=20"]), 3)
+SPECIMEN = draw_specimen(CONFIG, 3)
+NAMES = [state.name for state in CONFIG.states]
+
+
+def numbers(teeth: StateTeeth) -> list[bytes]:
+    tables, solved = teeth.tables.tables, teeth.tables.contact
+    assert solved is not None
+    arrays = (*solved, tables.pair_stiffness_n_per_m, tables.contributions_n_per_m, tables.row_of_pair)
+    return [np.asarray(array).tobytes() for array in arrays]
+
+
+def test_teeth_of_a_state_are_the_same_to_the_bit_whatever_states_were_made_before() -> None:
+    """A chain of grown dishes, backwards and with others before it, against the state alone without anything kept."""
+    made = MadeGears(CONFIG, SPECIMEN)
+    order = ("face_40", "slight", "healthy", "face_20", "through_020")
+    after_others = {name: state_teeth(CONFIG, SPECIMEN, NAMES.index(name), made) for name in order}
+    for name in ("face_20", "face_40"):
+        for kept in SHARED:
+            kept.cache_clear()
+        alone = state_teeth(CONFIG, SPECIMEN, NAMES.index(name), MadeGears(CONFIG, SPECIMEN))
+        assert alone.labels["mesh_stiffness_loss"] != 0.0
+        assert alone.damage == after_others[name].damage
+        assert alone.labels == after_others[name].labels
+        assert numbers(alone) == numbers(after_others[name])
