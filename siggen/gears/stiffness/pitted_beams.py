@@ -91,7 +91,8 @@ def _add_piece(
     a smooth function of t; two heights of the piece away from every such point 6 plain nodes are exact to 1e-11 of the
     piece, three heights away 4 nodes to 1e-9.
     A square root's end weighs as the 1.5th power of the piece's height over the damage's, so thin pieces do with fewer
-    nodes: 1e-7 of what one damage adds, itself less than 1e-2 of a compliance.
+    nodes: 1e-7 of what one damage adds in 98 of 100 random layouts, 3e-6 in the worst of 8,000, which is 7e-9 of the
+    tooth's own integral (against pieces cut into halves).
     """
     if count == 0:
         return
