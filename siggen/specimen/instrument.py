@@ -146,12 +146,16 @@ def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
     """Return the filters of all channels; those of the floor if it belongs to the gearbox."""
     section = None if instrument.background is None else instrument.background.section
     floor = section.floor if section is not None and section.redraw == "gearbox" else None
-    ways = {channel.name: channel_ways(instrument, channel, floor) for channel in instrument.channels}
-    return block_responses(grid, ways)
+    return block_responses(grid, instrument_ways(instrument, floor))
 
 
-def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floor | None) -> dict[Input, ComplexArray]:
-    """Return input -> response (length // 2 + 1,) of a channel, sensor included, but for motions of a plain one."""
+def instrument_ways(instrument: Instrument, floor: Floor | None) -> dict[str, dict[Input, ComplexArray]]:
+    """Return channel -> input -> response (length // 2 + 1,), sensor included, but for motions of a plain one."""
+    shape = None if floor is None else floor_response(floor, instrument.length, instrument.fs_hz)
+    return {channel.name: _ways(instrument, channel, shape) for channel in instrument.channels}
+
+
+def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArray | None) -> dict[Input, ComplexArray]:
     ways: dict[Input, ComplexArray] = {}
     sensed = channel.sensor_response
     if sensed is None:
@@ -166,7 +170,7 @@ def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floo
     rows = dict(zip(background.inputs, background.responses[channel.name], strict=True))
     ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows.items()}
     if floor is not None:
-        shaped = sensed * floor_response(floor, instrument.length, instrument.fs_hz)
+        shaped = sensed * floor
         ways |= {Input(FLOOR, name): rows[name] * shaped for name in FLOOR_INPUTS}
     return ways
 
