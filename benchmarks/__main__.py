@@ -23,6 +23,7 @@ TOPICS = (
         "presets",
         "memory",
         "blocks",
+        "filtering",
         "stiffness",
         "integration",
         "precision",

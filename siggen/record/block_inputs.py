@@ -13,9 +13,9 @@ from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_blocks import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks
-from siggen.sensing.block_filter import AHEAD
+from siggen.sensing.block_filter import AHEAD, TOGETHER
 from siggen.specimen.block_responses import MOTION, BlockResponses, Input, block_responses
-from siggen.specimen.instrument import Instrument, channel_ways
+from siggen.specimen.instrument import Instrument, instrument_ways
 
 
 class BlockInputs:
@@ -36,8 +36,10 @@ class BlockInputs:
             if background.section.redraw == "record":
                 self._filters = _with_floor(instrument, self._background).filters
         self._plain = {c.name: Input(MOTION, next(iter(c.motions))) for c in instrument.channels if c.is_plain}
-        felt = (one for filters in self._filters.values() for one in filters)
-        self._buffers = {one: np.zeros(self._grid.length) for one in dict.fromkeys([*felt, *self._plain.values()])}
+        felt = dict.fromkeys(one for filters in self._filters.values() for one in filters)
+        seen = tuple(dict.fromkeys([*felt, *self._plain.values()]))
+        self._felt, self._values = tuple(felt), np.zeros((len(seen), self._grid.length))
+        self._buffers = dict(zip(seen, self._values, strict=True))
 
     @property
     def labels(self) -> dict[str, object]:
@@ -68,23 +70,24 @@ class BlockInputs:
             n: np.zeros(bins, complex) for n, filters in self._filters.items() if filters
         }
         product = np.empty(bins, complex)
-        for one, buffer in self._buffers.items():
-            felt = [(name, filters[one]) for name, filters in self._filters.items() if one in filters]
-            if not felt:  # shown as it is
-                continue
-            spectrum = np.fft.rfft(buffer)
-            for name, response in felt:
-                np.multiply(response, spectrum, out=product)
-                totals[name] += product
+        for one, spectrum in zip(self._felt, self._spectra(), strict=True):
+            for name, filters in self._filters.items():
+                if one in filters:
+                    np.multiply(filters[one], spectrum, out=product)
+                    totals[name] += product
         found = {name: np.fft.irfft(total, self._grid.length)[valid] for name, total in totals.items()}
         for name, one in self._plain.items():
             shown = self._buffers[one][valid] + self._motions.offsets[one]
             found[name] = found[name] + shown if name in found else shown
         return found
 
+    def _spectra(self) -> Iterator[ComplexArray]:
+        """Yield the spectrum of every input that a filter sees; others are shown as they are."""
+        for k in range(0, len(self._felt), TOGETHER):
+            yield from np.fft.rfft(self._values[k : min(k + TOGETHER, len(self._felt))])
+
 
 def _with_floor(instrument: Instrument, background: BackgroundBlocks) -> BlockResponses:
     """Return the filters with the floor of one record."""
     assert instrument.blocks is not None
-    ways = {c.name: channel_ways(instrument, c, background.floor) for c in instrument.channels}
-    return block_responses(instrument.blocks.grid, ways)
+    return block_responses(instrument.blocks.grid, instrument_ways(instrument, background.floor))

@@ -7,7 +7,8 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, bearing_force_name
 from siggen.columns.column import Column
-from siggen.config import constant
+from siggen.config import Config, constant
+from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
 from siggen.planning.specimen import Specimen
@@ -36,15 +37,28 @@ MEANINGS = {
 }
 
 
+ANGLE, TRANSMISSION_ERROR = "pinion_angle_rad", "transmission_error_m"
+
+
 def internal_quantities(specimen: Specimen, response: Response) -> dict[str, FloatArray]:
     """Return name -> (n,) at the samples of a response that holds its internals."""
     return {
-        "pinion_angle_rad": np.mod(response.angle_rad, 2.0 * np.pi),
+        ANGLE: np.mod(response.angle_rad, 2.0 * np.pi),
         **{acceleration_name(place): a for place, a in response.acceleration_m_s2.items()},
         **{bearing_force_name(place): f for place, f in response.bearing_force_n.items()},
         **response.internals,
-        "transmission_error_m": _transmission_error(response.internals["approach_m"], specimen),
+        TRANSMISSION_ERROR: transmission_error_m(response.internals["approach_m"], specimen),
     }
+
+
+def is_asked_for(config: Config, name: str) -> bool:
+    """Return whether the section `internals` stores a quantity."""
+    return config.internals is not None and (config.internals.stores_all or name in config.internals.quantities)
+
+
+def pinion_angle_rad(drive: Rotation, fs_hz: float, first: int, count: int) -> FloatArray:
+    """Return the angle of the pinion within its revolution at `count` samples from sample `first` on."""
+    return np.asarray(np.mod(drive.angle_rad(np.arange(first, first + count) / fs_hz), 2.0 * np.pi))
 
 
 def quantity_column(name: str) -> Column:
@@ -58,7 +72,7 @@ def quantity_column(name: str) -> Column:
     return Column(name, pa.float32(), unit, meaning)
 
 
-def _transmission_error(approach_m: FloatArray, specimen: Specimen) -> FloatArray:
+def transmission_error_m(approach_m: FloatArray, specimen: Specimen) -> FloatArray:
     """Return the dynamic transmission error on the line of action: the approach beyond the backlash that it closed.
 
     x_m = R_b1 θ_1 - R_b2 θ_2 + y_1 - y_2, with what bearings give way along the line of action (reference: standard

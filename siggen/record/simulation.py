@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
+from siggen.checks.quantity_names import acceleration_name
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
@@ -24,7 +26,8 @@ from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_po
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
-from siggen.record.quantities import internal_quantities
+from siggen.record.quantities import internal_quantities, is_asked_for
+from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
@@ -213,12 +216,18 @@ def _simulated(
     with_internals = has_internals(config, planned)
     with refused_as("outside_model"), stage("inputs"):
         driven = _driven(config, specimen, state, planned)
-    seen = None if with_internals else {motion for channel in instrument.channels for motion in channel.motions}
-    response: Response | _RefusedPieces
-    if config.filters == "blocks" and not with_internals:
+    seen = {motion for channel in instrument.channels for motion in channel.motions}
+    if with_internals:
+        seen |= {motion for motion in state.mesh.structure.motions if is_asked_for(config, acceleration_name(motion))}
+    response: Response | _RefusedPieces | StreamedInternals
+    if config.filters == "blocks":
         with refused_as("outside_model"):
-            stream, point = _stream(config, specimen, state, planned, driven=driven, motions=seen)
+            stream, point = _stream(
+                config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
+            )
         response = _RefusedPieces(stream)
+        if with_internals:
+            response = StreamedInternals(config, specimen, stream, response)
     else:
         response, point = record_response(
             config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
@@ -237,10 +246,20 @@ def _simulated(
         "status": "ok",
         **channel_labels,
     }
-    found = internal_quantities(specimen, response) if isinstance(response, Response) and with_internals else {}
-    internals = {name: values.astype(np.float32) for name, values in found.items()}
+    internals = _internals(config, specimen, response) if with_internals else None
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
-    return Record(planned, labels, channels, tacho_s, internals if with_internals else None)
+    return Record(planned, labels, channels, tacho_s, internals)
+
+
+def _internals(
+    config: Config, specimen: Specimen, response: Response | _RefusedPieces | StreamedInternals
+) -> dict[str, NDArray[np.float32]]:
+    """Return the quantities that are asked for."""
+    if isinstance(response, StreamedInternals):
+        return response.quantities()
+    assert isinstance(response, Response)
+    found = internal_quantities(specimen, response)
+    return {name: values.astype(np.float32) for name, values in found.items() if is_asked_for(config, name)}
 
 
 class _RefusedPieces:

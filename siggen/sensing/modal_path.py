@@ -63,7 +63,11 @@ SHAPE_RMS = float(np.sqrt(13.0 / 12.0))
 
 
 def modal_accelerance(
-    modes: HousingModes, at_input: FloatArray, at_output: FloatArray, frequency_hz: FloatArray
+    modes: HousingModes,
+    at_input: FloatArray,
+    at_output: FloatArray,
+    frequency_hz: FloatArray,
+    shares: ComplexArray | None = None,
 ) -> ComplexArray:
     """Return the accelerance (inputs, k) in m/s² per N at frequencies (k,).
 
@@ -73,10 +77,19 @@ def modal_accelerance(
     at_input : (inputs, modes) mode shapes where the forces act
     at_output : (modes,) mode shapes at the sensor, along its axis
     frequency_hz : (k,)
+    shares : those of `modal_shares` at these frequencies, if they are at hand
     """
     total = np.zeros((len(at_input), frequency_hz.size), dtype=np.complex128)
     residues = at_input * (at_output / modes.modal_mass_kg)
-    for r, (natural_hz, ratio) in enumerate(zip(modes.frequency_hz, modes.damping_ratio, strict=True)):
-        x = frequency_hz / natural_hz
-        total += residues[:, r, None] * (-(x**2) / (1.0 - x**2 + 2j * ratio * x))
+    for residue, share in zip(residues.T, modal_shares(modes, frequency_hz) if shares is None else shares, strict=True):
+        total += residue[:, None] * share
     return total
+
+
+def modal_shares(modes: HousingModes, frequency_hz: FloatArray) -> ComplexArray:
+    """Return what every mode does at frequencies (k,) with a residue of 1 (modes, k), the same for all places."""
+    shares = np.empty((modes.frequency_hz.size, frequency_hz.size), dtype=np.complex128)
+    for share, natural_hz, ratio in zip(shares, modes.frequency_hz, modes.damping_ratio, strict=True):
+        x = frequency_hz / natural_hz
+        share[:] = -(x**2) / (1.0 - x**2 + 2j * ratio * x)
+    return shares

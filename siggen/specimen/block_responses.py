@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Floor, constant
-from siggen.sensing.block_filter import BlockGrid, limited
+from siggen.sensing.block_filter import TOGETHER, BlockGrid, limited
 from siggen.sensing.force_density import rising_floor, tabulated
 from siggen.sensing.shaped_noise import FINER, least_phase
 from siggen.sensing.spectral_filter import frequencies
@@ -41,9 +41,13 @@ class BlockResponses:
 
 def block_responses(grid: BlockGrid, ways: Mapping[str, Mapping[Input, ComplexArray]]) -> BlockResponses:
     """Return the filters of responses (memory // 2 + 1,)."""
-    return BlockResponses(
-        grid, {name: {one: limited(way, grid) for one, way in found.items()} for name, found in ways.items()}
-    )
+    return BlockResponses(grid, {name: _filters(grid, found) for name, found in ways.items()})
+
+
+def _filters(grid: BlockGrid, ways: Mapping[Input, ComplexArray]) -> dict[Input, NDArray[np.complex64]]:
+    names, responses = tuple(ways), tuple(ways.values())
+    parts = (np.array(responses[k : k + TOGETHER]) for k in range(0, len(responses), TOGETHER))
+    return dict(zip(names, (row for part in parts for row in limited(part, grid)), strict=True))
 
 
 def floor_shape(floor: Floor, frequency_hz: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from siggen.config import Config, SpeedVariation, Variation, constant, draw
 from siggen.config import TorqueVariation as TorqueSection
 from siggen.dynamics.drive.drive import Drive, Rotation
-from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation, turning_of
+from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation
@@ -106,7 +106,7 @@ def variation_labels(config: Config, driven: RecordDrive) -> dict[str, object]:
     speed, torque = Spread(), Spread()
     for first in range(0, config.samples, block):
         samples = np.arange(first, min(first + block, config.samples))
-        turning = turning_of(driven.rotation, samples / config.fs_hz)
+        turning = driven.rotation.turning(samples / config.fs_hz)
         speed.take(turning.speed_rad_s)
         torque.take(driven.torque.motor_torque_nm(turning))
     return {

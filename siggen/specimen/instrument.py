@@ -15,7 +15,7 @@ from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BlockGrid, block_grid
-from siggen.sensing.modal_path import modal_accelerance
+from siggen.sensing.modal_path import modal_accelerance, modal_shares
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensing.spectral_filter import filter_length, frequencies
 from siggen.specimen.background import (
@@ -123,15 +123,17 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     housing = specimen_housing(config, specimen.specimen_id)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     grid = frequencies(length, config.fs_hz)
+    paths = _paths(specimen, housing, grid)
     channels = []
     for sensor in specimen.sensors:
         gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
         for axis, gain in zip(sensor.axes, gains, strict=True):
             draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
-            channels.append(_channel(sensor, axis, constant(gain), draw, housing, grid))
+            channels.append(_channel(sensor, axis, constant(gain), draw, paths))
     background = None
     if section is not None:
-        ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, housing, grid)) for c in channels}
+        ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, paths)) for c in channels}
+        del paths  # as large as the responses of a channel
         background = specimen_background(config, specimen, section, ways, grid)
     found = Instrument(length, config.fs_hz, tuple(channels), background)
     if blocks is None:
@@ -146,12 +148,16 @@ def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
     """Return the filters of all channels; those of the floor if it belongs to the gearbox."""
     section = None if instrument.background is None else instrument.background.section
     floor = section.floor if section is not None and section.redraw == "gearbox" else None
-    ways = {channel.name: channel_ways(instrument, channel, floor) for channel in instrument.channels}
-    return block_responses(grid, ways)
+    return block_responses(grid, instrument_ways(instrument, floor))
 
 
-def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floor | None) -> dict[Input, ComplexArray]:
-    """Return input -> response (length // 2 + 1,) of a channel, sensor included, but for motions of a plain one."""
+def instrument_ways(instrument: Instrument, floor: Floor | None) -> dict[str, dict[Input, ComplexArray]]:
+    """Return channel -> input -> response (length // 2 + 1,), sensor included, but for motions of a plain one."""
+    shape = None if floor is None else floor_response(floor, instrument.length, instrument.fs_hz)
+    return {channel.name: _ways(instrument, channel, shape) for channel in instrument.channels}
+
+
+def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArray | None) -> dict[Input, ComplexArray]:
     ways: dict[Input, ComplexArray] = {}
     sensed = channel.sensor_response
     if sensed is None:
@@ -166,7 +172,7 @@ def channel_ways(instrument: Instrument, channel: ChannelInstrument, floor: Floo
     rows = dict(zip(background.inputs, background.responses[channel.name], strict=True))
     ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows.items()}
     if floor is not None:
-        shaped = sensed * floor_response(floor, instrument.length, instrument.fs_hz)
+        shaped = sensed * floor
         ways |= {Input(FLOOR, name): rows[name] * shaped for name in FLOOR_INPUTS}
     return ways
 
@@ -182,13 +188,26 @@ class _Draw:
         return at(number, self.uniform(f"{self.path}.{name}"))
 
 
-def _channel(
-    sensor: Sensor, axis: str, gain: float, draw: _Draw, housing: SpecimenHousing | None, grid: FloatArray
-) -> ChannelInstrument:
+@dataclass(frozen=True, slots=True)
+class _Paths:
+    """A housing and what its modes do (modes, k) at the frequencies (k,) of a grid, which all paths share."""
+
+    housing: SpecimenHousing | None
+    grid: FloatArray
+    shares: ComplexArray | None
+
+
+def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray) -> _Paths:
+    modal = housing is not None and any(isinstance(sensor.path, ModalPath) for sensor in specimen.sensors)
+    return _Paths(housing, grid, modal_shares(housing.modes, grid) if modal and housing is not None else None)
+
+
+def _channel(sensor: Sensor, axis: str, gain: float, draw: _Draw, paths: _Paths) -> ChannelInstrument:
+    housing, grid = paths.housing, paths.grid
     weights = _weights(sensor, axis, draw)
     accelerance = None
     if sensor.path is not None:
-        one_by_one = (weight * _accelerance(sensor, d, draw, housing, grid) for d, weight in weights.items())
+        one_by_one = (weight * _accelerance(sensor, d, draw, paths) for d, weight in weights.items())
         accelerance = reduce(np.add, one_by_one)
     seen = {d: w for d, w in weights.items() if sensor.sees_model and d != "axial"}
     modal = isinstance(sensor.path, ModalPath) and housing is not None
@@ -224,34 +243,28 @@ def _weights(sensor: Sensor, axis: str, draw: _Draw) -> dict[str, float]:
 
 
 def _accelerance(
-    sensor: Sensor,
-    direction: str,
-    draw: _Draw,
-    housing: SpecimenHousing | None,
-    grid: FloatArray,
-    inputs: tuple[str, ...] = INPUTS,
+    sensor: Sensor, direction: str, draw: _Draw, paths: _Paths, inputs: tuple[str, ...] = INPUTS
 ) -> ComplexArray:
     """Return the accelerance (inputs, k) from forces on the housing to one direction at a sensor."""
+    housing, grid = paths.housing, paths.grid
     match sensor.path:
         case ModalPath() as path if housing is not None:
             shape = housing.at_sensor(sensor, direction)
-            found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid)
+            found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid, paths.shares)
             return np.asarray(found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us")))
         case MeasuredPath(family=(_, *_) as family):
             return decoded_response(family[path_number(sensor, draw.uniform)]).accelerance(direction, inputs, grid)
     raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")
 
 
-def _entries(
-    channel: ChannelInstrument, uniform: Callable[[str], float], housing: SpecimenHousing | None, grid: FloatArray
-) -> ComplexArray | None:
+def _entries(channel: ChannelInstrument, uniform: Callable[[str], float], paths: _Paths) -> ComplexArray | None:
     """Return the accelerance (entries, k) from what presses on the housing beside the bearings; None without modes."""
     sensor, axis = channel.sensor, channel.name.removeprefix(f"{channel.sensor.name}_")
     if not isinstance(sensor.path, ModalPath):
         return None
     draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
     weights = _weights(sensor, axis, draw)
-    return reduce(np.add, (w * _accelerance(sensor, d, draw, housing, grid, ENTRIES) for d, w in weights.items()))
+    return reduce(np.add, (w * _accelerance(sensor, d, draw, paths, ENTRIES) for d, w in weights.items()))
 
 
 def _sensor_response(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray | None:

@@ -50,10 +50,15 @@ def turns_of(angle_rad: FloatArray, order: float) -> ComplexArray:
 @njit(cache=True)
 def harmonic_sum(turns: ComplexArray, phasors: ComplexArray) -> FloatArray:
     """Return Re Σ_h p_h z^h (k,), h from 1, by Horner's rule."""
-    result = np.empty(turns.size)
-    for i in range(turns.size):
-        total = 0.0j
+    result, last = np.empty(turns.size), turns.size - 1
+    for i in range(0, turns.size, 4):
+        # four sums at a time do not wait for each other
+        i_1, i_2, i_3 = min(i + 1, last), min(i + 2, last), min(i + 3, last)
+        t_0, t_1, t_2, t_3 = 0.0j, 0.0j, 0.0j, 0.0j
         for h in range(phasors.size - 1, -1, -1):
-            total = (total + phasors[h]) * turns[i]
-        result[i] = total.real
+            t_0 = (t_0 + phasors[h]) * turns[i]
+            t_1 = (t_1 + phasors[h]) * turns[i_1]
+            t_2 = (t_2 + phasors[h]) * turns[i_2]
+            t_3 = (t_3 + phasors[h]) * turns[i_3]
+        result[i_3], result[i_2], result[i_1], result[i] = t_3.real, t_2.real, t_1.real, t_0.real
     return result

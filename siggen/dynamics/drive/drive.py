@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+
+
+class Turning(NamedTuple):
+    """Times and the prescribed rotation of the pinion at them, each (k,)."""
+
+    time_s: FloatArray
+    angle_rad: FloatArray
+    speed_rad_s: FloatArray
+    acceleration_rad_s2: FloatArray
 
 
 class Rotation(Protocol):
@@ -21,6 +30,9 @@ class Rotation(Protocol):
 
     def acceleration_rad_s2(self, time_s: FloatArray) -> FloatArray:
         """Return the angular acceleration (k,) [rad/s²]."""
+
+    def turning(self, time_s: FloatArray) -> Turning:
+        """Return angle, speed and acceleration together: they share most of their work."""
 
     def tacho_s(self, duration_s: float) -> FloatArray:
         """Return the times (k,) [s] in [0, duration) at which the pinion angle is a whole number of revolutions."""
@@ -50,6 +62,10 @@ class Drive:
     def acceleration_rad_s2(self, time_s: FloatArray) -> FloatArray:
         """Return zeros (k,) [rad/s²]."""
         return np.zeros_like(time_s)
+
+    def turning(self, time_s: FloatArray) -> Turning:
+        """Return angle, speed and acceleration together."""
+        return Turning(time_s, self.angle_rad(time_s), self.speed_rad_s(time_s), self.acceleration_rad_s2(time_s))
 
     def tacho_s(self, duration_s: float) -> FloatArray:
         """Return the times (k,) [s] in [0, duration) at which the pinion angle is a whole number of revolutions."""

@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.drive import Rotation
-
-
-class Turning(NamedTuple):
-    """Times and the prescribed rotation of the pinion at them, each (k,)."""
-
-    time_s: FloatArray
-    angle_rad: FloatArray
-    speed_rad_s: FloatArray
-    acceleration_rad_s2: FloatArray
+from siggen.dynamics.drive.drive import Rotation, Turning
 
 
 class Source(Protocol):
@@ -45,7 +36,7 @@ class Excitation:
 
     def inputs(self, time_s: FloatArray, drive: Rotation) -> FloatArray:
         """Return the inputs (k, m) at the times (k,) [s]."""
-        turning = turning_of(drive, time_s)
+        turning = drive.turning(time_s)
         return np.ascontiguousarray(np.concatenate([source.inputs(turning) for source in self.sources], axis=1))
 
 
@@ -64,8 +55,3 @@ class SpeedDeviation:
     def inputs(self, turning: Turning) -> FloatArray:
         """Return the deviation (k, 1)."""
         return (turning.speed_rad_s / self.nominal_rad_s - 1.0)[:, None]
-
-
-def turning_of(drive: Rotation, time_s: FloatArray) -> Turning:
-    """Return the rotation at the times (k,) [s]."""
-    return Turning(time_s, drive.angle_rad(time_s), drive.speed_rad_s(time_s), drive.acceleration_rad_s2(time_s))

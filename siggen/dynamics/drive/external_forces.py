@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.excitation import Turning
+from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.slow_variation import SlowVariation
 from siggen.dynamics.structure.structure import Structure
 

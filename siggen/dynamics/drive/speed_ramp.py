@@ -47,6 +47,9 @@ class SpeedRamp:
         """Return the revolutions (k,) since time 0."""
         a, fade_in, fade_out = self.slope_hz_s, self._blend_s(self.start_hz), self._blend_s(self.end_hz)
         inside = np.clip(time_s, 0.0, self.duration_s)
+        if a == 0.0:  # powers cost most, and nobody sees them
+            early, late = np.minimum(time_s, 0.0), np.maximum(time_s - self.duration_s, 0.0)
+            return self.start_hz * inside + self.start_hz * early + self.end_hz * late
         result = self.start_hz * inside + 0.5 * a * inside**2
         early, x = np.minimum(time_s, 0.0), self._early(time_s)
         before_hz = self.start_hz - 0.5 * a * fade_in
@@ -57,6 +60,8 @@ class SpeedRamp:
 
     def speed_hz(self, time_s: FloatArray) -> FloatArray:
         """Return the speed (k,) [Hz]."""
+        if self.slope_hz_s == 0.0:
+            return np.full_like(time_s, self.start_hz)
         a, x, y = self.slope_hz_s, self._early(time_s), self._late(time_s)
         inside = self.start_hz + a * np.clip(time_s, 0.0, self.duration_s)
         fading_in = a * self._blend_s(self.start_hz) * (x**3 - 0.5 * x**4 - 0.5)
@@ -64,6 +69,8 @@ class SpeedRamp:
 
     def acceleration_hz_s(self, time_s: FloatArray) -> FloatArray:
         """Return the acceleration (k,) [Hz/s]."""
+        if self.slope_hz_s == 0.0:
+            return np.zeros_like(time_s)
         x, y = self._early(time_s), self._late(time_s)
         return self.slope_hz_s * (3.0 * x**2 - 2.0 * x**3) * (1.0 - 3.0 * y**2 + 2.0 * y**3)
 

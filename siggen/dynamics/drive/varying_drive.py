@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.slow_variation import SlowVariation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 
@@ -56,22 +57,29 @@ class VaryingDrive:
 
     def angle_rad(self, time_s: FloatArray) -> FloatArray:
         """Return the integrated pinion angle (k,) [rad] at the times (k,) [s]; time 0 is the first sample."""
-        carrier = self._carrier_rad(time_s)
+        carrier = self._carrier_rad(self._warped_s(time_s))
         ahead = self._ahead_rad(carrier) - self._ahead_rad(np.array(self.start_angle_rad))
         return carrier + ahead
 
     def speed_rad_s(self, time_s: FloatArray) -> FloatArray:
         """Return the speed (k,) [rad/s]."""
-        turning, _ = self._carrier_rates(time_s)
-        return turning * (1.0 + self._rippling(self._carrier_rad(time_s)))
+        return self.turning(time_s).speed_rad_s
 
     def acceleration_rad_s2(self, time_s: FloatArray) -> FloatArray:
         """Return the angular acceleration (k,) [rad/s²]."""
-        carrier = self._carrier_rad(time_s)
-        turning, quickening = self._carrier_rates(time_s)
+        return self.turning(time_s).acceleration_rad_s2
+
+    def turning(self, time_s: FloatArray) -> Turning:
+        """Return angle, speed and acceleration together."""
+        warped = self._warped_s(time_s)
+        carrier, (speed, quickening) = self._carrier_rad(warped), self._carrier_rates(time_s, warped)
         r = self.ripple
-        bend = r.once * np.sin(carrier + r.phase_once_rad) + 2.0 * r.twice * np.sin(2.0 * carrier + r.phase_twice_rad)
-        return quickening * (1.0 + self._rippling(carrier)) - turning**2 * bend
+        once, twice = carrier + r.phase_once_rad, 2.0 * carrier + r.phase_twice_rad
+        sine_once, sine_twice = r.once * np.sin(once), np.sin(twice)
+        factor = 1.0 + (r.once * np.cos(once) + r.twice * np.cos(twice))
+        ahead = sine_once + 0.5 * r.twice * sine_twice - self._ahead_rad(np.array(self.start_angle_rad))
+        bend = sine_once + 2.0 * r.twice * sine_twice
+        return Turning(time_s, carrier + ahead, speed * factor, quickening * factor - speed**2 * bend)
 
     def tacho_s(self, duration_s: float) -> FloatArray:
         """Return the times (k,) [s] in [0, duration) at which the pinion angle is a whole number of revolutions."""
@@ -91,12 +99,11 @@ class VaryingDrive:
     def _warped_s(self, time_s: FloatArray) -> FloatArray:
         return time_s if self.slow is None else time_s + self.slow_rms * self.slow.integral(time_s)
 
-    def _carrier_rad(self, time_s: FloatArray) -> FloatArray:
-        return self.start_angle_rad + 2.0 * np.pi * self.ramp.turns(self._warped_s(time_s))
+    def _carrier_rad(self, warped: FloatArray) -> FloatArray:
+        return self.start_angle_rad + 2.0 * np.pi * self.ramp.turns(warped)
 
-    def _carrier_rates(self, time_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _carrier_rates(self, time_s: FloatArray, warped: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the first and the second derivative of the carrier angle."""
-        warped = self._warped_s(time_s)
         speed, quickening = 2.0 * np.pi * self.ramp.speed_hz(warped), 2.0 * np.pi * self.ramp.acceleration_hz_s(warped)
         if self.slow is None:
             return speed, quickening
@@ -107,8 +114,3 @@ class VaryingDrive:
         r = self.ripple
         first = r.once * np.sin(carrier_rad + r.phase_once_rad)
         return first + 0.5 * r.twice * np.sin(2.0 * carrier_rad + r.phase_twice_rad)
-
-    def _rippling(self, carrier_rad: FloatArray) -> FloatArray:
-        r = self.ripple
-        first = r.once * np.cos(carrier_rad + r.phase_once_rad)
-        return first + r.twice * np.cos(2.0 * carrier_rad + r.phase_twice_rad)

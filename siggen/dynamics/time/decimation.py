@@ -11,6 +11,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -73,50 +74,93 @@ class Decimator:
     """
 
     def __init__(self, rows: FloatArray, taps: FloatArray, steps_per_sample: int) -> None:
-        self._channels = len(rows)
-        self._rows = np.zeros((-(-self._channels // 4) * 4, rows.shape[1]))
-        self._rows[: self._channels] = rows
-        self._taps = taps
-        self._steps_per_sample = steps_per_sample
-        self._pending = np.empty((0, len(self._rows)))
+        self._taps, self._steps_per_sample = taps, steps_per_sample
+        channel, self._columns = np.nonzero(rows)
+        self._weights = rows[channel, self._columns]
+        self._ends = np.cumsum(np.count_nonzero(rows, axis=1))
+        self._pending = np.empty((len(rows), 0))
 
     def take(self, states: FloatArray) -> FloatArray:
         """Filter the next states (steps, 2n) as far as the filter reaches; return the next samples (channels, k)."""
-        pending = np.concatenate([self._pending, _project(states, self._rows)])
-        ready = max(0, (len(pending) - len(self._taps)) // self._steps_per_sample + 1)
-        values = np.empty((len(self._rows), ready))
+        projected = _project(states, self._columns, self._weights, self._ends)
+        pending = np.concatenate([self._pending, projected], axis=1)
+        ready = max(0, (pending.shape[1] - self._taps.size) // self._steps_per_sample + 1)
+        values = np.zeros((len(pending), ready))
         _filter(pending, self._taps, self._steps_per_sample, values)
-        self._pending = pending[ready * self._steps_per_sample :]
-        return values[: self._channels]
+        self._pending = pending[:, ready * self._steps_per_sample :].copy()
+        return values
 
 
 @njit(cache=True)
-def _project(states: FloatArray, rows: FloatArray) -> FloatArray:
-    """Return rows · state (steps, channels) of each state (steps, 2n); rows are (channels, 2n)."""
-    result = np.empty((states.shape[0], rows.shape[0]))
-    for i in range(states.shape[0]):
-        for c in range(rows.shape[0]):
-            total = 0.0
-            for j in range(rows.shape[1]):
-                total += rows[c, j] * states[i, j]
-            result[i, c] = total
+def _project(
+    states: FloatArray, columns: NDArray[np.int64], weights: FloatArray, ends: NDArray[np.int64]
+) -> FloatArray:
+    """Return rows · state (channels, steps) of each state (steps, 2n); of rows the `columns` that are not 0 alone.
+
+    `ends` (channels,) is where the weights of each row end. What is 0 adds nothing to the last bit either.
+    """
+    result, steps = np.empty((ends.size, states.shape[0])), states.shape[0]
+    for i in range(0, steps, 4):
+        # four sums at a time do not wait for each other
+        i_1, i_2, i_3 = min(i + 1, steps - 1), min(i + 2, steps - 1), min(i + 3, steps - 1)
+        begin = 0
+        for c in range(ends.size):
+            t_0, t_1, t_2, t_3 = 0.0, 0.0, 0.0, 0.0
+            for k in range(begin, ends[c]):
+                j, weight = columns[k], weights[k]
+                t_0 += weight * states[i, j]
+                t_1 += weight * states[i_1, j]
+                t_2 += weight * states[i_2, j]
+                t_3 += weight * states[i_3, j]
+            result[c, i_3], result[c, i_2], result[c, i_1], result[c, i] = t_3, t_2, t_1, t_0
+            begin = ends[c]
     return result
 
 
 @njit(cache=True)
 def _filter(values: FloatArray, taps: FloatArray, steps_per_sample: int, result: FloatArray) -> None:
-    """Write the filtered values (steps, channels) at every steps_per_sample-th step into `result` (channels, samples).
+    """Add the filtered values (channels, steps) at every steps_per_sample-th step to `result` (channels, samples), 0.
 
-    Channels come in groups of four, so that the compiler can work on four at once without reordering sums.
+    Eight taps at a time on all samples: steps that are whole samples apart lie side by side, so that the compiler works
+    on several samples at once, each with its taps in their order.
     """
-    for k in range(result.shape[1]):
-        first = k * steps_per_sample
-        for g in range(0, result.shape[0], 4):
-            a, b, c, d = 0.0, 0.0, 0.0, 0.0
-            for m in range(taps.size):
-                tap = taps[m]
-                a += tap * values[first + m, g]
-                b += tap * values[first + m, g + 1]
-                c += tap * values[first + m, g + 2]
-                d += tap * values[first + m, g + 3]
-            result[g, k], result[g + 1, k], result[g + 2, k], result[g + 3, k] = a, b, c, d
+    samples, together = result.shape[1], taps.size - taps.size % 8
+    apart = np.empty((steps_per_sample, -(-values.shape[1] // steps_per_sample)))
+    for c in range(result.shape[0]):
+        for phase in range(steps_per_sample):
+            for i in range(phase, values.shape[1], steps_per_sample):
+                apart[phase, i // steps_per_sample] = values[c, i]
+        for m in range(0, together, 8):
+            _add_eight(
+                result[c], taps[m : m + 8], _behind(apart, m, samples), _behind(apart, m + 1, samples),
+                _behind(apart, m + 2, samples), _behind(apart, m + 3, samples), _behind(apart, m + 4, samples),
+                _behind(apart, m + 5, samples), _behind(apart, m + 6, samples), _behind(apart, m + 7, samples),
+            )  # fmt: skip
+        for m in range(together, taps.size):
+            _add_one(result[c], taps[m], _behind(apart, m, samples))
+
+
+@njit(cache=True)
+def _behind(apart: FloatArray, steps: int, samples: int) -> FloatArray:
+    """Return the values (samples,) so many steps behind the first step of each sample."""
+    first = steps // apart.shape[0]
+    return apart[steps % apart.shape[0], first : first + samples]
+
+
+@njit(cache=True)
+def _add_eight(
+    result: FloatArray, taps: FloatArray,
+    a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray,
+    e: FloatArray, f: FloatArray, g: FloatArray, h: FloatArray,
+) -> None:  # fmt: skip
+    """Add eight taps times values (samples,), one after the other."""
+    t, u, v, w, x, y, z, q = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5], taps[6], taps[7]
+    for k in range(result.size):
+        first = result[k] + t * a[k] + u * b[k] + v * c[k] + w * d[k]
+        result[k] = first + x * e[k] + y * f[k] + z * g[k] + q * h[k]
+
+
+@njit(cache=True)
+def _add_one(result: FloatArray, tap: float, values: FloatArray) -> None:
+    for k in range(result.size):
+        result[k] += tap * values[k]

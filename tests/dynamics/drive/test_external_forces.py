@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.drive.excitation import Excitation, Source, turning_of
+from siggen.dynamics.drive.excitation import Excitation, Source
 from siggen.dynamics.drive.external_forces import (
     Harmonic,
     HarmonicForce,
@@ -84,7 +84,7 @@ def test_unbalance_is_the_inertia_of_an_eccentric_mass_also_while_the_speed_chan
     second = (place(time + h) - 2.0 * place(time) + place(time - h)) / h**2
     # Differences of second order: (ω h)²/12 = 1e-5 of the force.
     expected = -2e-4 * second
-    np.testing.assert_allclose(source.inputs(turning_of(drive, time)), expected, atol=3e-5 * np.abs(expected).max())
+    np.testing.assert_allclose(source.inputs(drive.turning(time)), expected, atol=3e-5 * np.abs(expected).max())
 
 
 def test_shafts_turn_against_each_other_and_as_the_pitch_lines_move() -> None:
@@ -110,7 +110,7 @@ def test_a_bearing_pushes_shaft_and_casing_apart_with_equal_forces(place: str, a
 def test_a_harmonic_is_a_line_at_its_order_with_its_amplitude(structure: Structure) -> None:
     force = HarmonicForce(bearing_direction(structure, "pinion_bearing", "vertical"), (Harmonic(3.0, 3.5, 0.2),))
     time = np.arange(51200) / FS
-    values = force.inputs(turning_of(Drive(SPEED, 0.0), time))[:, 0]
+    values = force.inputs(Drive(SPEED, 0.0).turning(time))[:, 0]
     assert line(values, 3.5 * SPEED) == pytest.approx(3.0 * np.exp(0.2j), abs=1e-9)
 
 
@@ -118,7 +118,7 @@ def test_a_wandering_phase_widens_the_line_but_keeps_the_power(structure: Struct
     wander = slow_variation(np.random.default_rng(2), 2.0, -7.0, 11.0)
     direction = bearing_direction(structure, "pinion_bearing", "vertical")
     still, moved = (HarmonicForce(direction, (Harmonic(1.0, 3.5, 0.0, jitter),), wander) for jitter in (0.0, 1.0))
-    turning = turning_of(Drive(SPEED, 0.0), np.arange(512000) / FS)
+    turning = Drive(SPEED, 0.0).turning(np.arange(512000) / FS)
     first, second = (one.inputs(turning)[:, 0] for one in (still, moved))
     assert second.std() == pytest.approx(first.std(), rel=0.01)
     # A Gaussian phase of 1 rad leaves e^(-1/2) of the line; 10 s at 2 Hz hold about 60 independent values.

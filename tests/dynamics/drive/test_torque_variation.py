@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from siggen.dynamics.drive.drive import Drive, Rotation
-from siggen.dynamics.drive.excitation import Excitation, SpeedDeviation, turning_of
+from siggen.dynamics.drive.excitation import Excitation, SpeedDeviation
 from siggen.dynamics.drive.slow_variation import slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation, rigid_rotation, without_drift
@@ -183,7 +183,7 @@ def test_slow_torque_is_followed_by_the_mesh_force(structure: Structure, constan
                                                        load_once=0.0, line_ripple=0.0))  # fmt: skip
     response = respond(linear(structure, constant_tables, source), Drive(30.0, 0.0), source, 51200, internals=True)
     time = np.arange(51200) / FS
-    expected = source.motor_torque_nm(turning_of(Drive(30.0, 0.0), time)) / structure.mesh_vector[3]
+    expected = source.motor_torque_nm(Drive(30.0, 0.0).turning(time)) / structure.mesh_vector[3]
     # The torque changes within 10/(2π) s; the shafts' first mode at 38 Hz follows to (0.1..0.8 Hz/38 Hz)² of the 3 %.
     # The static start knows the mean torque alone: after the transient a hundredth of its error of 2 % is left.
     found = response.internals["mesh_force_n"]
