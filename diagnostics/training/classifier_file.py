@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from diagnostics.indicators.settings import IndicatorSettings
@@ -24,10 +27,8 @@ def save_classifier(
 
     A prefix before both names keeps variants of a classifier apart.
     """
-    import skops.io
-
     path = folder / f"{prefix}{CLASSIFIER_FILE}"
-    skops.io.dump(model.pipeline, path)
+    _skops_io().dump(model.pipeline, path)
     facts = {
         "features": model.features,
         "classes": model.classes,
@@ -44,9 +45,7 @@ def save_classifier(
 
 def untrusted_types(path: Path) -> tuple[str, ...]:
     """Return the types in a skops file that neither skops nor `TRUSTED_TYPES` names; nothing is executed."""
-    import skops.io
-
-    return tuple(name for name in skops.io.get_untrusted_types(file=path) if name not in TRUSTED_TYPES)
+    return tuple(name for name in _skops_io().get_untrusted_types(file=path) if name not in TRUSTED_TYPES)
 
 
 def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
@@ -58,20 +57,33 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
         If the file is missing, damaged, or holds types that are not trusted, which are listed; it is then not loaded.
         If the names beside it are of another schema, or hold values that cannot be.
     """
-    import skops.io
-
     path = folder / f"{prefix}{CLASSIFIER_FILE}"
     try:
         found = untrusted_types(path)
         facts = _facts(folder, prefix)
         if found:
             raise UsageError(f"{path}: holds types that are not trusted: {', '.join(found)}; it is not loaded")
-        pipeline = skops.io.load(path, trusted=list(TRUSTED_TYPES))
+        pipeline = _skops_io().load(path, trusted=list(TRUSTED_TYPES))
     except UsageError:
         raise
     except Exception as error:  # whatever a damaged archive makes its reader raise
         raise UsageError(f"{folder}: no readable {path.name} with {prefix}{NAMES_FILE} ({error})") from error
     return _classifier(folder / f"{prefix}{NAMES_FILE}", pipeline, facts)
+
+
+def _skops_io() -> ModuleType:
+    """Import skops.io without torch, where nothing has imported that yet.
+
+    skops walks through all packages of scikit-learn. One of them is a wrapper of torch, a second of CPU time, and what
+    cannot be imported is passed over.
+    """
+    if "torch" in sys.modules:
+        return import_module("skops.io")
+    sys.modules["torch"] = None  # type: ignore[assignment]
+    try:
+        return import_module("skops.io")
+    finally:
+        del sys.modules["torch"]
 
 
 def _classifier(path: Path, pipeline: Any, facts: dict[str, Any]) -> FeatureClassifier:

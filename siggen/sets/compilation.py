@@ -9,8 +9,8 @@ from siggen.record.compilation import is_compiled
 if TYPE_CHECKING:
     from siggen.config import Config
 
-COMPILED_S = 60
-"""CPU time of compiling all that a first record needs (`python -m benchmarks cold`), for the law of tooth pairs."""
+COMPILED_S = 45
+"""CPU time of compiling what a first record of `quickstart` needs, check included (`python -m benchmarks cold`)."""
 LARGER_SHARE = 0.6
 """Of the larger part, with which two processes are done."""
 

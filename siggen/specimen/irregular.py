@@ -12,7 +12,7 @@ from siggen.config import Number, at, bounds, constant, draw
 from siggen.config.irregular import IrregularSpalls
 from siggen.config.stages import stage_of
 from siggen.errors import Problem
-from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.flank_damage import single_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
 from siggen.gears.damage.irregular import (
     STRIPS,
@@ -200,7 +200,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
             return
         heights = axial_m(gear, along - reach_m, reading), axial_m(gear, along + reach_m, reading)
         spall = Spall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
-        for problem in damage_problems(pair, (spall,)):
+        for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
                 key = "depth_share" if size.depth_mm is None else "depth_mm"
                 yield Problem(key, in_mm(problem.received), allowed_text(problem.allowed))

@@ -13,6 +13,7 @@ from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
+from siggen.gears.damage import whole_loss
 from siggen.record import compilation
 from siggen.record.compilation import CompilationPart, is_compiled, run_part, to_compile
 from siggen.record.simulation import simulate_specimen
@@ -41,6 +42,14 @@ def test_the_parts_compile_all_that_a_record_needs(short: Config, monkeypatch: p
     assert later == []
 
 
+def test_a_configuration_is_checked_without_what_looks_for_lost_contacts(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*arguments: object) -> None:
+        raise AssertionError("would be compiled before anything is told")
+
+    monkeypatch.setattr(whole_loss, "section_kinks", refused)
+    siggen.load_config("configs/quickstart.yaml")
+
+
 def test_an_empty_cache_is_told_and_a_filled_one_is_not(
     short: Config, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -51,7 +60,7 @@ def test_an_empty_cache_is_told_and_a_filled_one_is_not(
         stats=SimpleNamespace(cache_path=str(tmp_path / "nothing")), py_func=exponential_step.advance.py_func
     )
     monkeypatch.setattr(exponential_step, "advance", empty)
-    assert "compiling the simulation once, for all workers: about 36 s" in compilation_text(short, 2)
+    assert "compiling the simulation once, for all workers: about 27 s" in compilation_text(short, 2)
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 

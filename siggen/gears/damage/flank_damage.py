@@ -47,11 +47,16 @@ def damage_problems(pair: GearPair, damage: Iterable[ToothDamage]) -> tuple[Dama
     flank nor by two mating ones together; that is looked for only when every damage is possible by itself.
     """
     damage = tuple(damage)
+    return single_problems(pair, damage) or tuple(_contact_problems(pair, damage))
+
+
+def single_problems(pair: GearPair, damage: Iterable[ToothDamage]) -> tuple[DamageProblem, ...]:
+    """Return what is wrong with each damage by itself; a contact without length is none of it."""
     problems: list[DamageProblem] = []
     for index, pit in enumerate(damage):
         own = tuple(pit.own_problems())
         problems.extend(_located(index, pit, own or pit.place_problems(pair)))
-    return tuple(problems or _contact_problems(pair, damage))
+    return tuple(problems)
 
 
 def _located(index: int, damage: ToothDamage, refusals: Iterable[Refusal]) -> Iterator[DamageProblem]:

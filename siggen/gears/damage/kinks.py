@@ -289,9 +289,14 @@ def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) ->
             out.append(x)
 
 
-@njit(cache=True)
 def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
     """Return all heights where the section of a flank with `pits` (n, 14) changes its form, ascending (k,) [m]."""
+    return _merged(np.unique(_kinks(pits, face_width)))  # numba's own unique costs a second of compilation
+
+
+@njit(cache=True)
+def _kinks(pits: FloatArray, face_width: float) -> FloatArray:
+    """Return all kinks in any order, some of them twice."""
     out = [0.0]
     out.pop()
     points = [(0.0, 0.0)]
@@ -317,7 +322,7 @@ def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
                 for x, w in points:
                     if shows(x, w, square_depth(x, w, pits, i), pits, i, j):
                         out.append(x)
-    return _merged(np.unique(np.array(out)))
+    return np.array(out)
 
 
 @njit(cache=True)

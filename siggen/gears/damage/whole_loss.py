@@ -35,6 +35,8 @@ from siggen.gears.geometry.gear_pair import GearPair
 
 WHOLE_FACE = 1e-12
 """Remaining share of the face width below which a contact counts as lost: rounding of the union's ends."""
+MARGIN = 1e-9
+"""Of the face width: far above the rounding of a sum of widths."""
 NARROWEST = 1e-8
 """Closed stretches shorter than this share of the path of contact are not looked for: 0.2 nm of usual gears."""
 
@@ -45,6 +47,8 @@ def takes_whole_contact(pair: GearPair, pinion_rows: FloatArray, gear_rows: Floa
     Source: derived, see this module.
     """
     pinion, gear, width = pair.pinion, pair.gear, pair.face_width_m
+    if _widths_m(pinion_rows) + _widths_m(gear_rows) < width * (1.0 - MARGIN):
+        return False  # compiles nothing: a configuration is checked with single pits, before anything is told
     flanks = (
         (pinion_rows, pinion.base_radius_m, pinion.base_half_angle_rad),
         (gear_rows, gear.base_radius_m, gear.base_half_angle_rad),
@@ -53,6 +57,12 @@ def takes_whole_contact(pair: GearPair, pinion_rows: FloatArray, gear_rows: Floa
     ends = np.array([pair.contact_start_m, pair.contact_end_m])
     cuts = np.clip(np.concatenate([rolls[0], pair.line_of_action_m - rolls[1], ends]), *ends)
     return bool(_closes(np.unique(cuts), pair.line_of_action_m, *flanks, width))
+
+
+def _widths_m(rows: FloatArray) -> float:
+    """Return the sum of the largest widths of all rows [m]: no position has a longer union."""
+    ends = np.maximum(rows[:, RIGHT_LOW], rows[:, RIGHT_HIGH]) - np.minimum(rows[:, LEFT_LOW], rows[:, LEFT_HIGH])
+    return float(np.where(rows[:, TRAPEZOID] != 0.0, ends, 2.0 * rows[:, SEMI_FACE]).sum())
 
 
 @njit(cache=True)

@@ -122,16 +122,19 @@ def involute_integrals(
         ends.append(ends[-1] + _panel_width(ends[-1], base_radius, half_angle))
     sums = np.zeros((len(ends), 4))
     for k in range(1, len(ends) - 1):
-        sums[k] = sums[k - 1]
+        for m in range(4):  # not whole rows, here and below: what numba compiles for those costs a second
+            sums[k, m] = sums[k - 1, m]
         _add_panel(ends[k - 1], ends[k], base_radius, half_angle, sums[k])
     lows = np.array(ends)
     total = np.empty(4)
     for i in range(rolls.size):
         k = min(max(np.searchsorted(lows, rolls[i], side="right") - 1, 0), max(lows.size - 2, 0))
-        total[:] = sums[k]
+        for m in range(4):
+            total[m] = sums[k, m]
         if rolls[i] > lows[k]:
             _add_panel(lows[k], rolls[i], base_radius, half_angle, total)
-        out[:, i] = total / face_width
+        for m in range(4):
+            out[m, i] = total[m] / face_width
     return out
 
 
