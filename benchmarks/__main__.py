@@ -21,10 +21,10 @@ from siggen.engines.worker import ONE_THREAD
 
 DEFAULT = (
     *("presets", "record", "sensing", "background", "blocks", "stiffness", "integration", "precision", "lanes"),
-    *("instructions", "indicators", "loader", "audit", "cold", "memory", "engines", "pages"),
-    *("startup", "storage", "workers", "quickstart", "house"),
+    *("instructions", "loader", "cold", "memory", "startup", "storage", "workers", "quickstart"),
+    *("indicators", "pages", "house", "engines", "audit"),
 )
-"""CPU time and memory first, then wall time."""
+"""CPU time and memory first, then wall time, then what takes long."""
 APART = ("contact", "faults")
 """Only where they are named: they check physics and integrity; `faults` takes an hour."""
 TOPICS = (*DEFAULT, *APART)

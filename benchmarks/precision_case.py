@@ -54,13 +54,13 @@ class Case:
         grid = time_grid(self.config, self.specimen, mesh.structure, mesh.tables)
         return grid.per_sample // grid.stride
 
-    def response(self, integrator: str, steps: int) -> Response:
-        """Return the response to SIGNAL_S."""
+    def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:
+        """Return the response to SIGNAL_S, behind the transient or what is discarded if that is longer."""
         return response_of(
             self.motion(integrator, steps), self.driven.rotation, fs_hz=self.config.fs_hz,
             samples=round(SIGNAL_S * self.config.fs_hz), bearing_forces=False,
             steps_per_sample=state_grid(integrator, steps).per_sample,
-            excitation=self.driven.excitation,
+            excitation=self.driven.excitation, settle_s=settle_s,
         )  # fmt: skip
 
     def driven_steps(self, motion: Motion, per_sample: int, duration_s: float) -> tuple[FloatArray, FloatArray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from random import Random
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 import siggen
 from siggen.columns.record import Record, signal_column
 from siggen.config import Config
+from siggen.dynamics.time import transient
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, simulate, specimen_state, start_angle_rad
@@ -27,6 +29,9 @@ PRESETS = ("bench", "bench_parallel", "families", "ideal", "industrial", "paper_
 REFERENCE_STEPS = 64
 WINDOW_S, STARTING_S = 0.04, 0.01
 CHANNEL_S = 0.15
+SETTLED = 9.0
+"""Decay times before the reference. It starts without the deflection of a softly held load by friction: behind the
+usual five, 8e-4 of a record of paper_b is left of it, more than the error that is looked for."""
 
 
 def drawn_record(preset: str, number: int, duration_s: float = WINDOW_S) -> tuple[Config, int]:
@@ -108,9 +113,11 @@ def test_the_worst_delivered_channel_of_the_hardest_record_of_quickstart_meets_i
 
 
 def channel_error(config: Config, record_id: int) -> float:
-    """Return the relative rms error of the worst channel as it reaches its converter, as `siggen verify` finds it."""
+    """Return the relative rms error of the worst channel as it reaches its converter."""
     unrounding = unrounded(config)
-    delivered, fine = (delivered_channels(one, record_id) for one in (unrounding, reference_config(unrounding)))
+    delivered = delivered_channels(unrounding, record_id)
+    with patch.object(transient, "DECAY_TIMES", SETTLED):
+        fine = delivered_channels(reference_config(unrounding), record_id)
     return record_error(config, delivered, fine)
 
 
