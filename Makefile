@@ -39,7 +39,6 @@ test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow
 
 bench: $(STAMP)
-	mkdir -p runs
 	$(BIN)/python -m benchmarks --json runs/benchmarks.json
 
 # SETS=DIR takes sets from there instead of generating them.

@@ -42,6 +42,8 @@ def main() -> int:
     lines = machine_lines()
     for line in lines:
         console.print(line, style="yellow" if line.startswith("WARNING") else None, highlight=False)
+    if arguments.json is not None:
+        arguments.json.parent.mkdir(parents=True, exist_ok=True)
     results = ResultsFile(arguments.json, " ".join(["python -m benchmarks", *sys.argv[1:]]), lines)
     rows: list[tuple[str, Row]] = []
     for topic in arguments.topics or DEFAULT:

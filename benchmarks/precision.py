@@ -65,8 +65,7 @@ def _work_rows(case: Case, law: str, quick: bool) -> Iterator[Row]:
     for method in dict.fromkeys(point.method for point in points if point.method != case.method):
         yield _gain_row(law, own, [point for point in points if point.method == method])
     if ROSS not in {point.method for point in points}:
-        why = "not installed" if law == LINEAR else "its integrator takes matrices: no backlash, pairs, friction"
-        yield Row(f"{law}: {own.method} beside ROSS", "", f"ROSS: {why}")
+        yield Row(f"{law}: {own.method} beside ROSS", "", "not installed (pip install ross-rotordynamics 'plotly<6')")
 
 
 def _gain_row(law: str, own: Point, others: Sequence[Point]) -> Row:

@@ -162,22 +162,26 @@ def _scipy_solver(case: Case, method: Scipy, rtol: float) -> Solver:
 
 
 def _ross_solvers(case: Case) -> Iterator[tuple[int, Solver]]:
-    """Yield ROSS's own integrator by steps per sample where it is installed and the law is one that it can take."""
-    motion, start = case.motion("runge_kutta", 1), _start(case)
-    if not isinstance(motion, LinearMotion):
-        return
+    """Yield ROSS's own integrator by steps per sample, where it is installed."""
     try:
-        from benchmarks.ross_newmark import ross_newmark
+        from benchmarks.ross_newmark import ross_linear, ross_pairs
     except ImportError:
         return
+    start = _start(case)
 
     def prepared(steps: int, duration_s: float) -> Run:
-        pitches, _ = case.driven_steps(motion, steps, duration_s)
+        motion, step_s = case.motion("runge_kutta", steps), 1.0 / (case.config.fs_hz * steps)
+        pitches, inputs = case.driven_steps(motion, steps, duration_s)
         path = np.zeros((pitches.size, start.size))
         path[0] = start
 
         def run() -> FloatArray:
-            ross_newmark(motion, stiffness_along(motion.law, pitches), 1.0 / (case.config.fs_hz * steps), path)
+            if isinstance(motion, LinearMotion):
+                ross_linear(motion, stiffness_along(motion.law, pitches), step_s, path)
+            else:
+                assert isinstance(motion, PairMotion)
+                rate = driven_rate(motion, case.driven.speed_input, pitches, inputs, 1.0 / step_s)
+                ross_pairs(motion, rate, step_s, path)
             return path[::steps]
 
         return run
