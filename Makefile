@@ -39,7 +39,7 @@ test-slow: $(STAMP) $(VENV)/.documented
 	$(BIN)/python -m pytest -m slow
 
 bench: $(STAMP)
-	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks --json runs/benchmarks.json
 
 # SETS=DIR takes sets from there instead of generating them.
 pages: $(STAMP)

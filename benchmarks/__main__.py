@@ -1,4 +1,4 @@
-"""`python -m benchmarks [topic ...] [--quick]`: what siggen costs, as a table beside named alternatives."""
+"""`python -m benchmarks [topic ...] [--quick] [--json FILE]`: what siggen costs, beside named alternatives."""
 
 from __future__ import annotations
 
@@ -6,38 +6,29 @@ import argparse
 import importlib
 import os
 import sys
+import time
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks import faults
 from benchmarks.machine import load_average, machine_lines
+from benchmarks.results_file import ResultsFile
 from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
-TOPICS = (
-    *(
-        "startup",
-        "cold",
-        "presets",
-        "memory",
-        "blocks",
-        "filtering",
-        "stiffness",
-        "integration",
-        "precision",
-        "lanes",
-        "instructions",
-        "record",
-        "sensing",
-        "background",
-        "storage",
-        "loader",
-    ),
-    *("indicators", "audit", "pages", "workers", "engines", "quickstart", "contact", "faults", "house"),
+DEFAULT = (
+    *("presets", "record", "sensing", "background", "blocks", "filtering"),
+    *("stiffness", "integration", "precision", "lanes"),
+    *("instructions", "loader", "cold", "memory", "startup", "storage", "workers", "quickstart"),
+    *("indicators", "pages", "house", "engines", "audit"),
 )
-
+"""CPU time and memory first, then wall time, then what takes long."""
+APART = ("contact", "faults")
+"""Only where they are named: they check physics and integrity; `faults` takes an hour."""
+TOPICS = (*DEFAULT, *APART)
 
 PARTS = tuple(f"faults.{part}" for part in faults.PARTS)
 """Of a long topic, by themselves."""
@@ -49,9 +40,20 @@ def main() -> int:
     # before numpy is loaded by a topic; idle threads of its linear algebra spin, which would count as CPU time
     os.environ.update(ONE_THREAD)
     console = Console(width=None if Console().is_terminal else 160)
-    for line in machine_lines():
+    lines = machine_lines()
+    for line in lines:
         console.print(line, style="yellow" if line.startswith("WARNING") else None, highlight=False)
-    rows = [(topic, row) for topic in arguments.topics or TOPICS for row in _rows(topic, arguments.quick, console)]
+    if arguments.json is not None:
+        arguments.json.parent.mkdir(parents=True, exist_ok=True)
+    results = ResultsFile(arguments.json, " ".join(["python -m benchmarks", *sys.argv[1:]]), lines)
+    rows: list[tuple[str, Row]] = []
+    for topic in arguments.topics or DEFAULT:
+        begin = time.perf_counter()
+        found = list(_rows(topic, arguments.quick, console))
+        seconds = time.perf_counter() - begin
+        results.add(topic, found, seconds, load_average())
+        console.print(f"{topic}: {seconds:.0f} s, load average {load_average():.2f}", highlight=False)
+        rows += [(topic, row) for row in found]
     console.print(_table(rows))
     console.print(f"load average at the end: {load_average():.2f}", highlight=False)
     return int(any(row.what == f"{topic} failed" for topic, row in rows))
@@ -64,9 +66,12 @@ def _arguments() -> argparse.Namespace:
         "topics",
         nargs="*",
         metavar="topic",
-        help=f"one or more of {', '.join(TOPICS)}; default: all; parts: {', '.join(PARTS)}",
+        help=f"one or more of {', '.join(TOPICS)}; default: all but {', '.join(APART)}; parts: {', '.join(PARTS)}",
     )
     parser.add_argument("--quick", action="store_true", help="fewer repeats, smaller sets, no whole quickstart")
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help="keep the rows here; docs/scripts/benchmark_page.py prints them"
+    )
     arguments = parser.parse_args()
     if unknown := [topic for topic in arguments.topics if topic not in (*TOPICS, *PARTS)]:
         parser.error(f"received topic {unknown[0]!r}; allowed: {', '.join((*TOPICS, *PARTS))}")

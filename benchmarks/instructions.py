@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from benchmarks.precision import PRESETS, precision_case
+from benchmarks.precision import PRESETS
+from benchmarks.precision_case import precision_case
 from benchmarks.row import Row
 from benchmarks.shipped import shipped
 from siggen.dynamics.time.exponential_motion import ExponentialMotion

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -21,6 +22,8 @@ class Row:
         The bound that the measurement should keep, as text; empty without one.
     met
         Whether it does; None without a goal.
+    numbers
+        What a figure is drawn from, by name; None without.
     """
 
     what: str
@@ -29,6 +32,7 @@ class Row:
     ratio: float | None = None
     goal: str = ""
     met: bool | None = None
+    numbers: Mapping[str, float | str | bool] | None = None
 
 
 def cost_row(what: str, cost_s: float, alternative: str, alternative_s: float, goal_s: float | None = None) -> Row:

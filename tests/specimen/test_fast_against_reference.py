@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 from random import Random
+from unittest.mock import patch
 
 import numpy as np
 import pytest
+from hypothesis import Phase, event, given, settings
+from hypothesis import strategies as st
 
 import siggen
 from siggen.columns.record import Record, signal_column
 from siggen.config import Config
+from siggen.dynamics.time import transient
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, simulate, specimen_state, start_angle_rad
@@ -20,15 +24,19 @@ from siggen.specimen.integration import time_grid
 from siggen.specimen.motion import specimen_motion
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-PRESETS = ("bench", "bench_parallel", "ideal", "industrial", "paper_b", "quickstart", "transfer_path")
+PRESETS = ("bench", "bench_parallel", "families", "ideal", "industrial", "paper_b", "quickstart", "transfer_path")
 """Those with the law pairs."""
 REFERENCE_STEPS = 64
 WINDOW_S, STARTING_S = 0.04, 0.01
+CHANNEL_S = 0.15
+SETTLED = 9.0
+"""Decay times before the reference. It starts without the deflection of a softly held load by friction: behind the
+usual five, 8e-4 of a record of paper_b is left of it, more than the error that is looked for."""
 
 
-def drawn_record(preset: str, number: int) -> tuple[Config, int]:
+def drawn_record(preset: str, number: int, duration_s: float = WINDOW_S) -> tuple[Config, int]:
     """Return a preset and the id of one of its records, drawn by name and number."""
-    config = siggen.load_config(CONFIGS / f"{preset}.yaml", [f"duration_s={WINDOW_S}"])
+    config = siggen.load_config(CONFIGS / f"{preset}.yaml", [f"duration_s={duration_s}"])
     return config, Random(f"{preset} {number}").randrange(config.specimens * config.records_per_specimen)
 
 
@@ -81,23 +89,40 @@ def test_a_random_record_of_every_preset_meets_the_stated_error(preset: str) -> 
     assert np.median(errors(preset, 0)) <= 1e-3
 
 
+def test_every_preset_that_takes_the_exponential_integrator_is_drawn_from() -> None:
+    methods = {path.stem: siggen.load_config(path).dynamics.method for path in CONFIGS.glob("*.yaml")}
+    assert {name for name, method in methods.items() if method == "exponential"} == set(PRESETS)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(1, 5))
 @pytest.mark.parametrize("preset", PRESETS)
-def test_more_random_records_meet_it(preset: str, number: int) -> None:
-    assert np.median(errors(preset, number)) <= 1e-3
+@given(number=st.integers(0, 10**6))
+@settings(max_examples=6, deadline=None, derandomize=False, database=None, phases=[Phase.generate])
+def test_the_worst_delivered_channel_of_random_records_meets_the_tolerance(preset: str, number: int) -> None:
+    config, record_id = drawn_record(preset, number, CHANNEL_S)
+    error = channel_error(config, record_id)
+    event(f"record {record_id}: {error:.1e}")
+    assert 0.0 < error <= config.dynamics.integration_tolerance
 
 
 @pytest.mark.slow
 def test_the_worst_delivered_channel_of_the_hardest_record_of_quickstart_meets_its_tolerance() -> None:
     """Record 56 was the worst of 24 with one step per sample, 1.15e-3; what is promised is the worst channel."""
-    config = unrounded(siggen.load_config(CONFIGS / "quickstart.yaml", ["duration_s=0.5"]))
-    delivered, fine = (delivered_channels(one) for one in (config, reference_config(config)))
-    assert 0.0 < record_error(config, delivered, fine) <= config.dynamics.integration_tolerance
+    config = siggen.load_config(CONFIGS / "quickstart.yaml", ["duration_s=0.5"])
+    assert 0.0 < channel_error(config, 56) <= config.dynamics.integration_tolerance
 
 
-def delivered_channels(config: Config) -> dict[str, np.ndarray]:
-    """Return what reaches the converters in record 56, by column."""
-    (record,) = simulate(config, [56])
+def channel_error(config: Config, record_id: int) -> float:
+    """Return the relative rms error of the worst channel as it reaches its converter."""
+    unrounding = unrounded(config)
+    delivered = delivered_channels(unrounding, record_id)
+    with patch.object(transient, "DECAY_TIMES", SETTLED):
+        fine = delivered_channels(reference_config(unrounding), record_id)
+    return record_error(config, delivered, fine)
+
+
+def delivered_channels(config: Config, record_id: int) -> dict[str, np.ndarray]:
+    """Return what reaches the converters in a record, by column."""
+    (record,) = simulate(config, [record_id])
     assert isinstance(record, Record)
     return {signal_column(name): samples for name, samples in record.channels.items()}

@@ -1,0 +1,96 @@
+"""DrivenRate: the rate of a state at a time, compiled, for solvers that are not siggen's.
+
+Angle and inputs are straight between the points of a grid of their own. So scipy, Newmark's method and Runge-Kutta
+solve the same equations with the same compiled mesh law; what they cost beyond it is their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.compiled import njit
+from siggen.dynamics.mesh.mesh_force import MeshLaw, mesh_stiffness
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.time.equations import Equations, state_rate
+from siggen.dynamics.time.linear_motion import LinearMotion
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.pair_motion import PairEquations, PairMotion, pair_rate
+
+Rate = Callable[[float, FloatArray], FloatArray]
+
+
+def driven_rate(motion: Motion, speed_input: int, pitches: FloatArray, inputs: FloatArray, rate_hz: float) -> Rate:
+    """Return ż (2n,) of time [s] and state (2n,); `pitches` (k,) and `inputs` (k, m) at `rate_hz` from time 0 on."""
+    if isinstance(motion, PairMotion):
+        equations, law, pairs = motion.pair_equations, motion.law, pair_table(motion.law)
+
+        def of_pairs(t: float, state: FloatArray) -> FloatArray:
+            found = np.empty_like(state)
+            _pair_rate(equations, law, pairs, speed_input, pitches, inputs, t * rate_hz, state, found)
+            return found
+
+        return of_pairs
+    assert isinstance(motion, LinearMotion)
+    linear, mesh = motion.equations, motion.law
+
+    def of_linear(t: float, state: FloatArray) -> FloatArray:
+        found = np.empty_like(state)
+        _linear_rate(linear, mesh, pitches, t * rate_hz, state, found)
+        return found
+
+    return of_linear
+
+
+@njit(cache=True)
+def stiffness_along(law: MeshLaw, pitches: FloatArray) -> FloatArray:
+    """Return the mesh stiffness (k,) [N/m] of the linear law at angles (k,) in base pitches."""
+    found = np.empty_like(pitches)
+    for i in range(pitches.size):
+        found[i] = mesh_stiffness(law, pitches[i])
+    return found
+
+
+@njit(cache=True)
+def _pair_rate(
+    equations: PairEquations,
+    law: PairLaw,
+    pairs: FloatArray,
+    speed_input: int,
+    pitches: FloatArray,
+    inputs: FloatArray,
+    place: float,
+    state: FloatArray,
+    rate: FloatArray,
+) -> None:
+    first = min(max(int(place), 0), pitches.size - 2)
+    share, half = place - first, state.size // 2
+    deviation = 0.0
+    if speed_input >= 0:
+        deviation = inputs[first, speed_input] * (1.0 - share) + inputs[first + 1, speed_input] * share
+    here = PairEquations(
+        equations.rows,
+        equations.static_force,
+        equations.static_approach,
+        equations.rigid_sliding_0 * (1.0 + deviation),
+        equations.rigid_sliding_1 * (1.0 + deviation),
+        equations.external_input,
+        equations.static_tilt,
+    )
+    pair_rate((here, law, pairs), state, pitches[first] * (1.0 - share) + pitches[first + 1] * share, rate)
+    for k in range(inputs.shape[1]):
+        value = inputs[first, k] * (1.0 - share) + inputs[first + 1, k] * share
+        for i in range(half):
+            rate[half + i] += value * equations.external_input[k, i]
+
+
+@njit(cache=True)
+def _linear_rate(
+    equations: Equations, law: MeshLaw, pitches: FloatArray, place: float, state: FloatArray, rate: FloatArray
+) -> None:
+    first = min(max(int(place), 0), pitches.size - 2)
+    share = place - first
+    state_rate(equations, law, state, pitches[first] * (1.0 - share) + pitches[first + 1] * share, rate)

@@ -1,0 +1,120 @@
+"""A record of a preset, ready to be integrated in many ways."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.shipped import QUICKSTART, shipped
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.dynamics.time.equations import no_inputs
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.response import Response, response_of
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
+from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
+from siggen.specimen.drive import RecordDrive, record_drive
+from siggen.specimen.integration import TimeGrid, time_grid
+from siggen.specimen.motion import specimen_motion
+
+SIGNAL_S, LOOP_S = 0.3, 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A record, ready to be integrated in many ways."""
+
+    config: Config
+    specimen: Specimen
+    state: SpecimenState
+    point: OperatingPoint
+    driven: RecordDrive
+
+    def motion(self, integrator: str, steps: int) -> Motion:
+        """Return a motion with so many steps of integration per sample."""
+        dynamics, grid = (
+            self.specimen.dynamics.model_copy(update={"integrator": integrator}),
+            state_grid(integrator, steps),
+        )
+        step_s = 1.0 / (self.config.fs_hz * grid.per_sample)
+        return specimen_motion(dynamics, self.state.mesh, self.point, step_s, self.driven, stride=grid.stride)
+
+    @property
+    def method(self) -> str:
+        """The integrator of the configuration."""
+        return self.specimen.dynamics.method
+
+    def own_steps(self) -> int:
+        """Return the steps of integration per sample that the rule takes."""
+        mesh = self.state.mesh
+        grid = time_grid(self.config, self.specimen, mesh.structure, mesh.tables)
+        return grid.per_sample // grid.stride
+
+    def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:
+        """Return the response to SIGNAL_S, behind the transient or what is discarded if that is longer."""
+        return response_of(
+            self.motion(integrator, steps), self.driven.rotation, fs_hz=self.config.fs_hz,
+            samples=round(SIGNAL_S * self.config.fs_hz), bearing_forces=False,
+            steps_per_sample=state_grid(integrator, steps).per_sample,
+            excitation=self.driven.excitation, settle_s=settle_s,
+        )  # fmt: skip
+
+    def driven_steps(self, motion: Motion, per_sample: int, duration_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return the angles in base pitches and the inputs at so many steps per sample from sample 0 on."""
+        rate_hz = self.config.fs_hz * per_sample
+        times = np.arange(round(duration_s * rate_hz) + 1) / rate_hz
+        pitches = self.driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
+        excitation = self.driven.excitation
+        inputs = no_inputs(pitches) if excitation is None else excitation.inputs(times, self.driven.rotation)
+        return pitches, inputs
+
+    def loop_s(self, integrator: str, steps: int, rounds: int = 3) -> float:
+        """Return the CPU time of the loop per second of signal, the median of some rounds."""
+        motion = self.motion(integrator, steps)
+        pitches, inputs = self.driven_steps(motion, state_grid(integrator, steps).per_sample, LOOP_S)
+        path = np.empty((pitches.size, 2 * len(motion.structure.coordinates)))
+        found = []
+        for _ in range(rounds + 1):
+            path[0] = motion.start(pitches[0])
+            begin = time.process_time()
+            motion.advance(pitches, inputs, path)
+            found.append((time.process_time() - begin) / LOOP_S)
+        return float(np.median(found[1:]))  # the first one compiles
+
+
+def state_grid(integrator: str, steps: int) -> TimeGrid:
+    """Return where states are with so many steps per sample: of the exponential one never fewer than two per sample."""
+    return TimeGrid(2, 2) if (integrator, steps) == ("exponential", 1) else TimeGrid(steps, 1)
+
+
+def precision_case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = True) -> Case:
+    """Return a record of a preset of a state, negative from the last one on, ready to be integrated in many ways."""
+    rigid = ("dynamics.shafts=null",) if contact == "slices" or not tilt else ()  # slices do not feel a tilt
+    return _case(shipped(preset, f"dynamics.mesh.contact={contact}", f"duration_s={SIGNAL_S}", *rigid), gearbox, state)
+
+
+def linear_case(gearbox: int, state: int) -> Case:
+    """Return a record of linear_pits: eight coordinates, mesh stiffness times approach."""
+    return _case(shipped(QUICKSTART, f"duration_s={SIGNAL_S}"), gearbox, state)
+
+
+def _case(config: Config, gearbox: int, state: int) -> Case:
+    state_id = state % len(config.states)
+    record = next(
+        one
+        for one in (
+            planned_record(config, gearbox * config.records_per_specimen + i)
+            for i in range(config.records_per_specimen)
+        )
+        if one.state_id == state_id
+    )
+    specimen = draw_specimen(config, gearbox)
+    made = specimen_state(config, specimen, state_id)
+    point = draw_operating_point(config, gearbox, record.operating_point_id)
+    angle = start_angle_rad(config, made.pair, record)
+    driven = record_drive(config, specimen, made.pair, made.mesh.structure, point, record, angle)
+    return Case(config, specimen, made, point, driven)

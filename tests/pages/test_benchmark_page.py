@@ -1,0 +1,49 @@
+"""The measured part of docs/develop/benchmarks.md is what its script prints from the results that are committed."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from tests.house.source_tree import ROOT
+
+PAGE, RESULTS = ROOT / "docs" / "develop" / "benchmarks.md", ROOT / "docs" / "develop" / "benchmarks.json"
+
+
+def script() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("benchmark_page", ROOT / "docs" / "scripts" / "benchmark_page.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def row(what: str, **values: Any) -> dict[str, Any]:
+    empty = {"measured": "", "alternative": "", "ratio": None, "goal": "", "met": None, "numbers": None}
+    return {"what": what, **empty, **values}
+
+
+def test_rows_become_lines_and_points_a_table_of_their_own() -> None:
+    point = {"law": "linear", "method": "product", "setting": "4 steps", "cost_s": 0.05, "error": 2e-5, "rule": True}
+    rows = [row("a | b", measured="1 s", ratio=2.0, goal="<= 2 s", met=True), row("of a method", numbers=point)]
+    topics = {"precision": {"seconds": 3.2, "load_average": 0.5, "rows": rows}}
+    text = script().printed([{"command": "python -m benchmarks precision", "machine": ["a machine"], "topics": topics}])
+    assert "| precision | a / b | 1 s |  | 2 | <= 2 s | yes |" in text
+    assert "| product | **4 steps: 50 ms, 2.0e-05** |" in text
+    assert "of a method" not in text
+
+
+def test_the_page_holds_what_is_printed_from_the_committed_results() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    tables = script().printed([json.loads(RESULTS.read_text(encoding="utf-8"))]) if RESULTS.is_file() else "| a |"
+    written = script().with_tables(page, tables)
+    assert f"\n{tables}\n" in written
+    if RESULTS.is_file():
+        assert written == page
+    with pytest.raises(ValueError, match="without"):
+        script().with_tables("no marks", tables)
