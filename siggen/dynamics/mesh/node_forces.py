@@ -67,7 +67,7 @@ def write_node_forces(
         Pinion angle at the ends of the step, in base pitches.
     pairs : (k slots, COLUMNS)
         Tables of pairs of all nodes, one behind the other (`pair_table`); what they hold is the first guess.
-    node : (NODE_ROWS, k)
+    node : (NODE_ROWS, k or more)
     """
     count = nodes.size
     slots, tilts = pairs.shape[0] // count, index[layout.CONTACT_VALUES] > 4
@@ -172,7 +172,7 @@ def _rub(
     node: FloatArray,
 ) -> None:  # fmt: skip
     """Add the friction of a slot at all nodes."""
-    for q in range(node.shape[1]):
+    for q in range(pairs.shape[0] // slots):
         i = q * slots + slot
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:
