@@ -15,7 +15,7 @@ from siggen.lanes import LANES, Lanes, load_like, scalar_at, splat, splat_of, st
 _two_registers, _four_registers = splat_of(2 * LANES), splat_of(4 * LANES)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def free_motion(
     transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, between: FloatArray, free: FloatArray
 ) -> None:
@@ -31,7 +31,7 @@ def free_motion(
         store(free, c, _free_columns(transition, inputs, level, start, between, c, splat(0.0)))
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _free_columns(
     transition: FloatArray, inputs: FloatArray, level: int, start: FloatArray, between: FloatArray, c: int, free: Lanes
 ) -> Lanes:
@@ -78,7 +78,7 @@ def _free_columns(
     return free
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def add_response(
     response: FloatArray, level: int, excess: FloatArray, first: int, last: int, values: FloatArray, found: FloatArray
 ) -> None:
@@ -95,7 +95,7 @@ def add_response(
         c += LANES
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _answer(response: FloatArray, level: int, excess: FloatArray, c: int, values: Lanes) -> Lanes:
     channels, row = response.shape[1], response.shape[3]
     at = level * channels * NODES * row + c
@@ -105,7 +105,7 @@ def _answer(response: FloatArray, level: int, excess: FloatArray, c: int, values
     return values
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _three(table: FloatArray, at: int, row: int, forces: FloatArray, first: int, like: Lanes) -> Lanes:
     """Return three rows of a table times the forces of a channel at the nodes."""
     return (
@@ -115,7 +115,7 @@ def _three(table: FloatArray, at: int, row: int, forces: FloatArray, first: int,
     )
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def write_middle(
     middle: FloatArray, start: FloatArray, memory: FloatArray, channels: int, between: FloatArray, state: FloatArray
 ) -> None:
@@ -129,7 +129,7 @@ def write_middle(
         c += LANES
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _middle_columns(
     middle: FloatArray, start: FloatArray, memory: FloatArray, channels: int, between: FloatArray, c: int, state: Lanes
 ) -> Lanes:

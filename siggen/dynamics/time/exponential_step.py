@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
+from siggen.dynamics.mesh.lane_table import lane_table
 from siggen.dynamics.mesh.node_forces import (
     NODE_APPROACH,
     NODE_FRICTION,
@@ -72,7 +74,7 @@ _rates = shuffle(4, 5, 6, 7, 4, 5, 6, 7)
 """What stands in the second half of a vector: rates behind the approach, and the like."""
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _correct(
     response: FloatArray, linear: FloatArray, level: int, first: int, node: FloatArray, excess: FloatArray
 ) -> float:
@@ -126,7 +128,7 @@ def _correct(
     return largest
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _attempt(
     scheme: Scheme,
     law: PairLaw,
@@ -141,7 +143,7 @@ def _attempt(
 ) -> bool:
     """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
-    node, excess, seen, start, end, between = work
+    node, excess, seen, start, end, between, table = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
     tilts = channels > 3
     first = size + -size % LANES
@@ -169,9 +171,11 @@ def _attempt(
             tilt = load(seen, first + 2 * LANES)
             store(node, NODE_TILT * LANES, tilt + linear[TILT])
             store(node, NODE_TILT_RATE * LANES, _rates(tilt))
-        touching = write_node_forces(
-            law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
-        )
+        touching = write_lane_forces(law.scalars, law.numbers, law.places, pitches_0, pitches_1, pairs, table, node)
+        if touching == NOT_HERE:
+            touching = write_node_forces(
+                law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
+            )
         change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
@@ -215,13 +219,14 @@ def _has_event(
     return False
 
 
-def work_arrays(columns: int, inputs: int) -> Work:
-    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs.
+def work_arrays(scheme: Scheme, law: PairLaw) -> Work:
+    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs, pairs in lanes.
 
     Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
     """
+    columns, inputs = scheme.transition.shape[2], scheme.input_response.shape[2]
     shapes = ((NODE_ROWS, LANES), (CHANNELS, LANES), (columns,), (columns,), (columns,), (2, inputs))
-    return tuple(aligned(np.zeros(shape)) for shape in shapes)
+    return *(aligned(np.zeros(shape)) for shape in shapes), lane_table(law, scheme.nodes)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
