@@ -108,7 +108,7 @@ def _write_roots(
             pairs[q * slots + i, DAMPING] = root
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _load(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool,
     node: FloatArray,
@@ -166,7 +166,7 @@ def _middle(weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> tu
     return load / max(carrying, LEAST_CARRYING * whole), position / whole, rough / whole
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _rub(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, slot: int, slots: int, tilts: bool,
     node: FloatArray,
