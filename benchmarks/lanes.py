@@ -1,9 +1,12 @@
-"""Lanes: whether numba vectorises the pair law over records side by side, and what that gives.
+"""Lanes: the pair law over records side by side, by numba's vectoriser and with explicit vectors, and what both give.
 
 The spring of the contact across the face (`contact_spring`, without tilt) at random approaches and positions: one
-record after the other with branches, as the integrator does it, and in groups of LANES with selections, all in one
-loop and with the reads of the table apart from the arithmetic. All give the same bytes. The vectoriser's result is
-read off the machine code: instructions on packed doubles, and gathers.
+record after the other with branches; in groups of LANES with selections, all in one loop and with the reads of the
+table apart from the arithmetic; and the same selections with the vector type of `siggen.lanes`. All give the same
+bytes. What the compiler made of them is read off the machine code: instructions on packed doubles, and gathers.
+
+Lanes of the time loop are the pairs of one step (`lane_forces`). Records side by side would share only what is scalar
+there: their bound is Amdahl's law with the gain measured here.
 """
 
 from __future__ import annotations
@@ -20,8 +23,8 @@ from numba import njit
 
 from benchmarks.row import Row
 from siggen.arrays import FloatArray
+from siggen.lanes import LANES, as_doubles, gather, larger, load, select, smaller, square_root, store, truncated
 
-LANES = 8
 RECORDS, ROUNDS = 4096, 60
 NODES, COLUMNS, VALUES = 24, 400, 4
 REACH_M = 40e-6
@@ -124,7 +127,34 @@ def _apart(table: FloatArray, approach: FloatArray, column: FloatArray, force: F
             force[first + lane] = found if approach[first + lane] > 0.0 else 0.0
 
 
-FORMS = {"one record after the other": _one_by_one, "8 together": _together, "8 together, reads apart": _apart}
+@njit(error_model="numpy")
+def _explicit(table: FloatArray, approach: FloatArray, column: FloatArray, force: FloatArray) -> None:
+    """Write the same with explicit vectors."""
+    unit = REACH_M / ((NODES - 1.0) * (NODES - 1.0))
+    for first in range(0, approach.size, LANES):
+        given, place = load(approach, first), load(column, first)
+        depth = larger(given, 0.0)
+        node = smaller(truncated(square_root(depth / unit)), NODES - 2)
+        count = as_doubles(node)
+        span, over = unit * (2.0 * count + 1.0), depth - unit * (count * count)
+        t, whole = over / span, truncated(place)
+        share = place - as_doubles(whole)
+        here = (whole * NODES + node) * VALUES
+        there = here + NODES * VALUES
+        f_0 = gather(table, here) * (1.0 - share) + gather(table, there) * share
+        f_1 = gather(table, here + VALUES) * (1.0 - share) + gather(table, there + VALUES) * share
+        s_0 = gather(table, here + 1) * (1.0 - share) + gather(table, there + 1) * share
+        s_1 = gather(table, here + (VALUES + 1)) * (1.0 - share) + gather(table, there + (VALUES + 1)) * share
+        rise = (f_1 - f_0) / span
+        inside = f_0 + over * (s_0 + t * (3.0 * rise - 2.0 * s_0 - s_1 + t * (s_0 + s_1 - 2.0 * rise)))
+        found = select(t > 1.0, f_1 + s_1 * (over - span), inside)
+        store(force, first, select(given > 0.0, found, 0.0))
+
+
+FORMS = {
+    "one record after the other": _one_by_one, "8 together": _together, "8 together, reads apart": _apart,
+    "8 together, explicit vectors": _explicit,
+}  # fmt: skip
 
 
 def _given() -> tuple[FloatArray, FloatArray, FloatArray]:

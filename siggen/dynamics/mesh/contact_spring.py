@@ -16,7 +16,7 @@ from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TOUCH, WEIGHT, between
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> None:
     """Write what `contact_spring` needs of slot i at its angle: first touch, beginning and share of its columns."""
     row, cell, weight, points = int(pairs[i, ROW]), int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
@@ -28,14 +28,14 @@ def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: in
     pairs[i, SHARE] = column - whole
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _node(approach: float, unit_m: float, nodes: int) -> int:
     """Return the node before an approach, the last but one from there on, however far."""
     root = sqrt(approach / unit_m)
     return int(root) if root < nodes - 1.0 else nodes - 2
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def contact_spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -124,7 +124,7 @@ def contact_moment(
     return moment + turning * tilt, slope + turning_slope * tilt, turning
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def contact_shares(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -145,7 +145,7 @@ def contact_shares(
     return carrying_0 + share * (carrying_1 - carrying_0), rough_0 + share * (rough_1 - rough_0)
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def contact_state(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float, float, float, float, float]:
@@ -182,7 +182,7 @@ def contact_state(
     return max(force, 0.0), max(slope, 0.0), moment + turning * tilt, cross, turning, carrying, rough
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _across(numbers: FloatArray, here: int, there: int, share: float) -> float:
     """Return the value between two columns."""
     low = numbers[np.uint64(here)]  # never negative, which the compiler cannot know of a signed one
@@ -190,7 +190,7 @@ def _across(numbers: FloatArray, here: int, there: int, share: float) -> float:
     return value
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _hermite(
     numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, per_span: float, beyond: bool
 ) -> tuple[float, float, float]:

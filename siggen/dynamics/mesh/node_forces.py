@@ -67,7 +67,7 @@ def write_node_forces(
         Pinion angle at the ends of the step, in base pitches.
     pairs : (k slots, COLUMNS)
         Tables of pairs of all nodes, one behind the other (`pair_table`); what they hold is the first guess.
-    node : (NODE_ROWS, k)
+    node : (NODE_ROWS, k or more)
     """
     count = nodes.size
     slots, tilts = pairs.shape[0] // count, index[layout.CONTACT_VALUES] > 4
@@ -108,7 +108,7 @@ def _write_roots(
             pairs[q * slots + i, DAMPING] = root
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _load(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool,
     node: FloatArray,
@@ -166,13 +166,13 @@ def _middle(weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> tu
     return load / max(carrying, LEAST_CARRYING * whole), position / whole, rough / whole
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _rub(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, slot: int, slots: int, tilts: bool,
     node: FloatArray,
 ) -> None:  # fmt: skip
     """Add the friction of a slot at all nodes."""
-    for q in range(node.shape[1]):
+    for q in range(pairs.shape[0] // slots):
         i = q * slots + slot
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:

@@ -70,7 +70,7 @@ def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitch
         pair -= 1
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def place_pair(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, place: float
 ) -> None:
@@ -106,7 +106,7 @@ def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int,
     pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
     """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
     for i in range(pairs.shape[0]):

@@ -119,7 +119,7 @@ def _write_alone(
     return touching
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float]:
@@ -134,14 +134,14 @@ def _spring(
     return force, slope
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _write(pairs: FloatArray, i: int, elastic: float, tangent: float) -> None:
     pairs[i, NORMAL] = elastic
     pairs[i, STIFFNESS] = tangent if elastic != 0.0 else 0.0
     pairs[i, FLANK] = 1.0 if elastic > 0.0 else (-1.0 if elastic < 0.0 else 0.0)
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _write_two(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, j: int, back: int
 ) -> None:
@@ -175,7 +175,7 @@ def _write_two(
     pairs[j, YIELD] = k_j * (1.0 - c * k_i) * inverse
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _state_before(pairs: FloatArray, i: int, before: int) -> tuple[float, float, float]:
     """Return force, stiffness and change of the penetration by itself since a state near by; zeros of another pair."""
     if pairs[before, PAIR] != pairs[i, PAIR]:

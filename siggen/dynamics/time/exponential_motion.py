@@ -68,7 +68,7 @@ class ExponentialMotion(PairMotion):
         if law.places[layout.ROUGHNESSES] > 0:
             self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
-        self._work = work_arrays(self.scheme.transition.shape[2], self.scheme.input_response.shape[2])
+        self._work = work_arrays(self.scheme, law)
 
     def start(self, pitches: float) -> FloatArray:
         """Return the state (2n,) at rest in which the pairs carry the torque, moved by their mean friction.

@@ -23,8 +23,11 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.structure.structure import Structure, friction_tilt_vector
 from siggen.dynamics.time.equations import Equations, inverse_times, state_matrix
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
+from siggen.lanes import LANES, aligned
 
 NODES = 3
+PLACES = LANES // 2
+"""For the values of one kind at the nodes; the last is empty."""
 LEVELS = 5
 SPLIT = 2
 """A step with an event becomes this many, and each of them again this many, up to LEVELS lengths in all."""
@@ -34,19 +37,20 @@ class Scheme(NamedTuple):
     """Constants of the method (a named tuple, since compiled code takes no dataclass).
 
     First axis of the first four: lengths of a step, h, h/2, .. h/16. The columns are the 2n numbers of the state at the
-    end, then NODES values each of what the mesh sees at the nodes, and zeros up to a multiple of four.
+    end, zeros up to a multiple of LANES, then PLACES places each for what the mesh sees at the nodes: two of it are one
+    vector. Arrays begin where a line of the cache does.
     """
 
     steps_s: FloatArray  # (LEVELS,)
     transition: FloatArray  # (LEVELS, 2n, columns)
     response: FloatArray  # (LEVELS, channels, NODES, columns) to ΣN, ΣF, Σ s F, and where gears tilt Σμ, Σ ζ F
     input_response: FloatArray  # (LEVELS, 2, m, columns)
-    middle: FloatArray  # (2n + channels x NODES + 2 m, 2n) of start, excess forces and inputs to the state after h/2
+    middle: FloatArray  # (2n + channels x NODES + 2 m, 2n and zeros) of start, forces and inputs to the state at h/2
     nodes: FloatArray  # (NODES,) τ_q on [0, 1]
     weights: FloatArray  # (NODES,)
     legendre: FloatArray  # (NODES, NODES) (2l + 1) w_q P_l(τ_q): values at the nodes to Legendre coefficients
     extrapolation: (
-        FloatArray  # (LEVELS, LEVELS, NODES, NODES) of the values at the nodes of the step before, to those of this
+        FloatArray  # (LEVELS, LEVELS, NODES, LANES) of the values at the nodes of the step before, to those of this
     )
     linear: FloatArray  # (7,) stiffness, damping, static force, approach, tilt; both parts of the rigid sliding
 
@@ -104,8 +108,13 @@ def _all_levels(keys: tuple[tuple[tuple[int, ...], bytes], ...], step_s: float) 
     steps = step_s * float(SPLIT) ** -np.arange(LEVELS)
     parts = [_propagated(matrix, forces, inputs, float(step), nodes, observed) for step in steps]
     half = _exponentials(matrix, forces, inputs, step_s, 0.5, nodes)
-    middle = np.concatenate([part.reshape(-1, len(matrix)) for part in half])
-    return (*(np.ascontiguousarray([part[k] for part in parts]) for k in range(3)), middle)
+    middle = _filled(np.concatenate([part.reshape(-1, len(matrix)) for part in half]), LANES)
+    return (*(aligned(np.array([part[k] for part in parts])) for k in range(3)), aligned(middle))
+
+
+def _filled(values: FloatArray, multiple: int) -> FloatArray:
+    """Return values with zeros behind them, up to a multiple of so many."""
+    return np.concatenate([values, np.zeros((*values.shape[:-1], -values.shape[-1] % multiple))], axis=-1)
 
 
 def _forces(structure: Structure) -> FloatArray:
@@ -135,9 +144,8 @@ def _propagated(
     columns = []
     for k, end in enumerate(at_end):
         seen = np.stack([(part[k][..., None] * observed).sum(axis=-2) for part in at_nodes], axis=-1)
-        joined = np.concatenate([end, seen.reshape(*end.shape[:-1], observed.shape[1] * NODES)], axis=-1)
-        spare = -joined.shape[-1] % 4
-        columns.append(np.concatenate([joined, np.zeros((*joined.shape[:-1], spare))], axis=-1))
+        seen = _filled(seen, PLACES).reshape(*end.shape[:-1], observed.shape[1] * PLACES)
+        columns.append(np.concatenate([_filled(end, LANES), seen], axis=-1))
     return tuple(columns)
 
 
@@ -184,11 +192,11 @@ def _legendre(t: FloatArray, degree: int) -> FloatArray:
 
 def _extrapolation(nodes: FloatArray, weights: FloatArray, steps: FloatArray) -> FloatArray:
     """Return what continues the parabola through the values at the nodes of a step to those of the next one."""
-    result = np.zeros((LEVELS, LEVELS, NODES, NODES))
+    result = np.zeros((LEVELS, LEVELS, NODES, LANES))
     for before, last in enumerate(steps):
         for now, step in enumerate(steps):
             ahead = 1.0 + nodes * step / last
             for degree in range(3 if step <= last else 1):  # a longer step after short ones: their mean
                 part = _legendre(nodes, degree) * weights * (2.0 * degree + 1.0)
-                result[before, now] += part[:, None] * _legendre(ahead, degree)[None, :]
+                result[before, now, :, :NODES] += part[:, None] * _legendre(ahead, degree)[None, :]
     return result

@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
+from siggen.dynamics.mesh.lane_table import lane_table
 from siggen.dynamics.mesh.node_forces import (
     NODE_APPROACH,
     NODE_FRICTION,
@@ -30,12 +32,14 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_SLOPE,
     NODE_SLOPE_RATE,
     NODE_TILT,
+    NODE_TILT_RATE,
     write_node_forces,
 )
 from siggen.dynamics.mesh.pair_columns import PAIR, ROW
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.time.exponential_products import add_response, free_motion, write_middle
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
+from siggen.lanes import LANES, aligned, extract, load, scalar_at, select, shuffle, splat, store
 
 MOST_ITERATIONS = 6
 SMOOTH_CHANGE = 0.02
@@ -56,47 +60,49 @@ Work = tuple[FloatArray, ...]
 
 
 def fresh_memory() -> FloatArray:
-    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, NODES or more).
+    """Return what is carried from step to step beside the state, as it is at the start: (CHANNELS + 1, LANES).
 
     Excess forces at the nodes of the last step; then its level, which slots touched at its end (`write_springs`; -1:
     not known), and how many steps were tried and shortened.
     """
-    memory = np.zeros((CHANNELS + 1, max(NODES, SHORTENED + 1)))
+    memory = np.zeros((CHANNELS + 1, LANES))
     memory[CHANNELS, TOUCHING] = -1.0
     return memory
 
 
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+_rates = shuffle(4, 5, 6, 7, 4, 5, 6, 7)
+"""What stands in the second half of a vector: rates behind the approach, and the like."""
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _correct(
-    response: FloatArray, linear: FloatArray, level: int, size: int, node: FloatArray, excess: FloatArray
+    response: FloatArray, linear: FloatArray, level: int, first: int, node: FloatArray, excess: FloatArray
 ) -> float:
     """Take Newton's step on the excess forces; return the largest change of the approach at the nodes [m].
 
-    What belongs to a node stands in a number of its own: the compiler keeps them in registers.
+    The first lanes are the nodes; in `moved` the approach stands before its rate, as in the columns from `first` on.
     """
-    channels, rate = response.shape[1], size + NODES
-    x_0, x_1, x_2, v_0, v_1, v_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # what approach and rate change by at the nodes
+    channels, row = response.shape[1], response.shape[3]
+    at, moved = level * channels * NODES * row + first, splat(0.0)  # what approach and rate change by at the nodes
     for channel in range(1, channels):
-        for r in range(NODES):
-            change = node[NODE_FRICTION + channel - 1, r] - excess[channel, r]
-            x_0 += response[level, channel, r, size] * change
-            x_1 += response[level, channel, r, size + 1] * change
-            x_2 += response[level, channel, r, size + 2] * change
-            v_0 += response[level, channel, r, rate] * change
-            v_1 += response[level, channel, r, rate + 1] * change
-            v_2 += response[level, channel, r, rate + 2] * change
-    k_0, d_0, e_0 = _equation(linear, node, excess, 0, x_0, v_0)
-    k_1, d_1, e_1 = _equation(linear, node, excess, 1, x_1, v_1)
-    k_2, d_2, e_2 = _equation(linear, node, excess, 2, x_2, v_2)
-    a_00 = 1.0 + (-k_0 * response[level, 0, 0, size] - d_0 * response[level, 0, 0, rate])
-    a_01 = -k_0 * response[level, 0, 1, size] - d_0 * response[level, 0, 1, rate]
-    a_02 = -k_0 * response[level, 0, 2, size] - d_0 * response[level, 0, 2, rate]
-    a_10 = -k_1 * response[level, 0, 0, size + 1] - d_1 * response[level, 0, 0, rate + 1]
-    a_11 = 1.0 + (-k_1 * response[level, 0, 1, size + 1] - d_1 * response[level, 0, 1, rate + 1])
-    a_12 = -k_1 * response[level, 0, 2, size + 1] - d_1 * response[level, 0, 2, rate + 1]
-    a_20 = -k_2 * response[level, 0, 0, size + 2] - d_2 * response[level, 0, 0, rate + 2]
-    a_21 = -k_2 * response[level, 0, 1, size + 2] - d_2 * response[level, 0, 1, rate + 2]
-    a_22 = 1.0 + (-k_2 * response[level, 0, 2, size + 2] - d_2 * response[level, 0, 2, rate + 2])
+        change = load(node, (NODE_FRICTION + channel - 1) * LANES) - load(excess, channel * LANES)
+        here = at + channel * NODES * row
+        moved = moved + load(response, here) * extract(change, 0)
+        moved = moved + load(response, here + row) * extract(change, 1)
+        moved = moved + load(response, here + 2 * row) * extract(change, 2)
+    slope, slope_rate = load(node, NODE_SLOPE * LANES), load(node, NODE_SLOPE_RATE * LANES)
+    force = load(node, NODE_NORMAL * LANES)
+    k, d = slope - linear[STIFFNESS], slope_rate - linear[DAMPING]
+    missing = force - linear[FORCE] - linear[STIFFNESS] * (load(node, NODE_APPROACH * LANES) - linear[APPROACH])
+    missing = missing + (k * moved + d * _rates(moved) - linear[DAMPING] * load(node, NODE_RATE * LANES))
+    missing = missing - load(excess, 0)
+    to_0, to_1, to_2 = load(response, at), load(response, at + row), load(response, at + 2 * row)
+    k = k * -1.0
+    c_0, c_1, c_2 = k * to_0 - d * _rates(to_0), k * to_1 - d * _rates(to_1), k * to_2 - d * _rates(to_2)
+    e_0, e_1, e_2 = extract(missing, 0), extract(missing, 1), extract(missing, 2)
+    a_00, a_01, a_02 = 1.0 + extract(c_0, 0), extract(c_1, 0), extract(c_2, 0)
+    a_10, a_11, a_12 = extract(c_0, 1), 1.0 + extract(c_1, 1), extract(c_2, 1)
+    a_20, a_21, a_22 = extract(c_0, 2), extract(c_1, 2), 1.0 + extract(c_2, 2)
     # Diagonal dominant: no pivoting.
     inverse = 1.0 / a_00
     f_1, f_2 = a_10 * inverse, a_20 * inverse
@@ -109,43 +115,21 @@ def _correct(
     excess[0, 0] += e_0
     excess[0, 1] += e_1
     excess[0, 2] += e_2
-    for r, change in ((0, e_0), (1, e_1), (2, e_2)):
-        x_0 += response[level, 0, r, size] * change
-        x_1 += response[level, 0, r, size + 1] * change
-        x_2 += response[level, 0, r, size + 2] * change
-        v_0 += response[level, 0, r, rate] * change
-        v_1 += response[level, 0, r, rate + 1] * change
-        v_2 += response[level, 0, r, rate + 2] * change
-    _follow(node, excess, channels, 0, x_0, v_0)
-    _follow(node, excess, channels, 1, x_1, v_1)
-    _follow(node, excess, channels, 2, x_2, v_2)
-    return max(abs(x_0), abs(x_1), abs(x_2))
-
-
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
-def _equation(
-    linear: FloatArray, node: FloatArray, excess: FloatArray, q: int, moved: float, moved_rate: float
-) -> tuple[float, float, float]:
-    """Return the tangents of the excess force at a node to approach and rate, and what is missing of it."""
-    slope, slope_rate = node[NODE_SLOPE, q] - linear[STIFFNESS], node[NODE_SLOPE_RATE, q] - linear[DAMPING]
-    found = node[NODE_NORMAL, q] - linear[FORCE] - linear[STIFFNESS] * (node[NODE_APPROACH, q] - linear[APPROACH])
-    found += slope * moved + slope_rate * moved_rate - linear[DAMPING] * node[NODE_RATE, q]
-    return slope, slope_rate, found - excess[0, q]
-
-
-@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
-def _follow(node: FloatArray, excess: FloatArray, channels: int, q: int, moved: float, moved_rate: float) -> None:
-    """Let the force at a node follow its tangents, friction and moments in proportion."""
-    rise = node[NODE_SLOPE, q] * moved + node[NODE_SLOPE_RATE, q] * moved_rate
-    force = node[NODE_NORMAL, q]
-    grown = 1.0 + (rise / force if force != 0.0 else 0.0)
-    node[NODE_NORMAL, q] = force + rise
+    moved = moved + to_0 * e_0
+    moved = moved + to_1 * e_1
+    moved = moved + to_2 * e_2
+    # The force at a node follows its tangents, friction and moments in proportion.
+    rise = slope * moved + slope_rate * _rates(moved)
+    grown = select(force != 0.0, rise / force, 0.0) + 1.0
+    store(node, NODE_NORMAL * LANES, force + rise)
     for channel in range(1, channels):
-        excess[channel, q] = node[NODE_FRICTION + channel - 1, q] * grown
+        store(excess, channel * LANES, load(node, (NODE_FRICTION + channel - 1) * LANES) * grown)
+    largest: float = max(abs(extract(moved, 0)), abs(extract(moved, 1)), abs(extract(moved, 2)))
+    return largest
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
-def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _attempt(
     scheme: Scheme,
     law: PairLaw,
     level: int,
@@ -159,36 +143,40 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
 ) -> bool:
     """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
-    node, excess, seen, start, end, between = work
+    node, excess, seen, start, end, between, table = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
-    seers = 4 if channels == 3 else 6
+    tilts = channels > 3
+    first = size + -size % LANES
     free_motion(scheme.transition, scheme.input_response, level, start, between, end)
     last = int(memory[CHANNELS, LAST_LEVEL])
+    at = (last * LEVELS + level) * NODES * LANES
+    ahead_0, ahead_1, ahead_2 = (
+        load(extrapolation, at),
+        load(extrapolation, at + LANES),
+        load(extrapolation, at + 2 * LANES),
+    )
     for channel in range(channels):
-        for q in range(NODES):
-            excess[channel, q] = 0.0
-        for r in range(NODES):
-            force = memory[channel, r]
-            for q in range(NODES):
-                excess[channel, q] += extrapolation[last, level, r, q] * force
+        guess = splat(0.0) + ahead_0 * scalar_at(memory, channel * LANES)
+        guess = guess + ahead_1 * scalar_at(memory, channel * LANES + 1)
+        store(excess, channel * LANES, guess + ahead_2 * scalar_at(memory, channel * LANES + 2))
     settled, touching, before = False, 0, -1
     for iteration in range(MOST_ITERATIONS):
-        for c in range(size, columns):
-            seen[c] = end[c]
-        add_response(response, level, excess, size, columns, seen)
-        for s in range(seers):
-            for q in range(NODES):
-                node[s, q] = seen[size + s * NODES + q]
-        for q in range(NODES):
-            node[NODE_APPROACH, q] += linear[APPROACH]
-            node[NODE_SLIDING_0, q] += linear[ROLL_0] * speed_ratio
-            node[NODE_SLIDING_1, q] += linear[ROLL_1] * speed_ratio
-            if seers > 4:
-                node[NODE_TILT, q] += linear[TILT]
-        touching = write_node_forces(
-            law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
-        )
-        change = _correct(response, linear, level, size, node, excess)
+        add_response(response, level, excess, first, columns, end, seen)
+        approach, sliding = load(seen, first), load(seen, first + LANES)
+        store(node, NODE_APPROACH * LANES, approach + linear[APPROACH])
+        store(node, NODE_RATE * LANES, _rates(approach))
+        store(node, NODE_SLIDING_0 * LANES, sliding + linear[ROLL_0] * speed_ratio)
+        store(node, NODE_SLIDING_1 * LANES, _rates(sliding) + linear[ROLL_1] * speed_ratio)
+        if tilts:
+            tilt = load(seen, first + 2 * LANES)
+            store(node, NODE_TILT * LANES, tilt + linear[TILT])
+            store(node, NODE_TILT_RATE * LANES, _rates(tilt))
+        touching = write_lane_forces(law.scalars, law.numbers, law.places, pitches_0, pitches_1, pairs, table, node)
+        if touching == NOT_HERE:
+            touching = write_node_forces(
+                law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
+            )
+        change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
         if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(linear[APPROACH]):
@@ -202,10 +190,9 @@ def _attempt(  # noqa: PLR0912 - compiled, and cut up it would count references
         parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
         if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= tolerance_n:
             return False
-    add_response(response, level, excess, 0, min(size + -size % 4, columns), end)
+    add_response(response, level, excess, 0, first, end, end)
     for channel in range(channels):
-        for q in range(NODES):
-            memory[channel, q] = excess[channel, q]
+        store(memory, channel * LANES, load(excess, channel * LANES))
     memory[CHANNELS, LAST_LEVEL] = level
     memory[CHANNELS, TOUCHING] = touching if touching >= 0 else -1 - touching
     return True
@@ -232,13 +219,14 @@ def _has_event(
     return False
 
 
-def work_arrays(columns: int, inputs: int) -> Work:
-    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs.
+def work_arrays(scheme: Scheme, law: PairLaw) -> Work:
+    """Return working space for `advance`: node values, excess forces, what is seen, state, end, inputs, pairs in lanes.
 
     Allocated outside: compiled code that allocates nothing need not count references, which costs more than the forces.
     """
-    node, excess = np.zeros((NODE_ROWS, NODES)), np.zeros((CHANNELS, NODES))
-    return node, excess, np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros((2, inputs))
+    columns, inputs = scheme.transition.shape[2], scheme.input_response.shape[2]
+    shapes = ((NODE_ROWS, LANES), (CHANNELS, LANES), (columns,), (columns,), (columns,), (2, inputs))
+    return *(aligned(np.zeros(shape)) for shape in shapes), lane_table(law, scheme.nodes)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -297,7 +285,9 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
                 memory[CHANNELS, SHORTENED] += 1.0
                 continue
             if stride == 2 and level == 0:
-                write_middle(scheme.middle, state, memory, scheme.response.shape[1], between, trajectory[i + 1])
+                write_middle(scheme.middle, state, memory, scheme.response.shape[1], between, work[2])
+                for j in range(size):
+                    trajectory[i + 1, j] = work[2][j]
                 apart[i] = memory[CHANNELS, TOUCHING] == 0.0
             for j in range(size):
                 state[j] = end[j]

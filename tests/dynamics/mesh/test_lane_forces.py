@@ -1,0 +1,110 @@
+"""The pair law in lanes writes the bytes of the scalar one, and steps of both may follow each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.dynamics.friction.asperity_table import asperity_table
+from siggen.dynamics.friction.friction import composite_friction
+from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
+from siggen.dynamics.mesh.lane_table import APPLIES, lane_table
+from siggen.dynamics.mesh.node_forces import (
+    NODE_APPROACH,
+    NODE_NORMAL,
+    NODE_RATE,
+    NODE_ROWS,
+    NODE_SLIDING_0,
+    NODE_SLIDING_1,
+    NODE_TILT,
+    NODE_TILT_RATE,
+    write_node_forces,
+)  # fmt: skip
+from siggen.dynamics.mesh.pair_columns import NORMAL, PAIR, STIFFNESS
+from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
+from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.time.exponential_scheme import NODES
+from siggen.gears.contact.contact_table import contact_table
+from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.spall import Spall
+from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.stiffness.body_coupling import body_coupling
+from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.lanes import LANES
+from siggen.specimen.contact import whole_face
+from tests.dynamics.lubricated import RANGE, mesh
+from tests.dynamics.pair_runs import RELIEF, gear_pair, law
+
+TEETH, POINTS, STEPS = StiffnessOptions(), 513, 3000
+GAUSS = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
+WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(NODES)[1]
+
+
+def spalled(seed: int, *, tilts: bool, coupled: bool = True, film: SqueezeFilm | None = None) -> PairLaw:
+    """Return the law of a gear pair with a drawn spall on every third tooth, misaligned where gears tilt."""
+    rng, pair = np.random.default_rng(seed), gear_pair()
+    height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
+    damage = []
+    for tooth in range(0, 18, 3):
+        along = height + rng.uniform(-0.8e-3, 0.8e-3) + np.array([-1.0, 1.0]) * rng.uniform(2e-4, 6e-4)
+        outline = rectangle(tuple(along), (-1e-3, rng.uniform(5e-3, 25e-3)))
+        damage.append(Spall("pinion", tooth, outline, rng.uniform(2e-5, 3e-4), "flat"))
+    options = TableOptions(3000.0, tilts=tilts)
+    slices = face_slices(pair, options)
+    lead = 2e-6 * ((np.arange(slices) + 0.5) / slices - 0.5)
+    along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
+    return law(
+        missing_material(pair, RELIEF),
+        whole_face(pair, tuple(damage), TEETH, POINTS),
+        contact=contact_table(pair, tuple(damage), TEETH, options, POINTS, lead),
+        friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], 0.04, RANGE, 2e4)),
+        coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
+        film=film,
+    )
+
+
+def drawn_node(rng: np.random.Generator) -> np.ndarray:
+    """Return what the mesh sees at the nodes of a step: mostly loaded, now and then apart or on the back flank."""
+    node = np.zeros((NODE_ROWS, LANES))
+    at = np.linspace(-1.0, 1.0, NODES)
+    level = rng.choice([12e-6, 4e-6, 0.0, -100e-6], p=[0.7, 0.15, 0.1, 0.05])
+    for row, middle, spread in (
+        (NODE_APPROACH, level + rng.normal(0.0, 4e-6), 1e-6), (NODE_RATE, rng.normal(0.0, 0.02), 5e-3),
+        (NODE_SLIDING_0, rng.normal(0.0, 0.02), 1e-2), (NODE_SLIDING_1, rng.normal(0.0, 1.0), 1.0),
+        (NODE_TILT, rng.normal(0.0, 1e-4), 1e-5), (NODE_TILT_RATE, rng.normal(0.0, 0.1), 1e-2),
+    ):  # fmt: skip
+        node[row, :NODES] = middle + rng.normal(0.0, spread) * at
+    return node
+
+
+@pytest.mark.parametrize(("tilts", "coupled"), [(True, True), (False, True), (True, False)])
+def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, coupled: bool) -> None:
+    chosen, rng = spalled(3, tilts=tilts, coupled=coupled), np.random.default_rng(5)
+    assert chosen.slots == 2
+    reference, pairs = (np.concatenate([pair_table(chosen)] * NODES) for _ in range(2))
+    table, pitches, taken, alike = lane_table(chosen, GAUSS), 3.0, 0, set()
+    for _ in range(STEPS):
+        step = 0.015 * 0.5 ** rng.integers(0, 4)
+        expected = drawn_node(rng)
+        node = expected.copy()
+        said = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected)
+        found = write_lane_forces(*chosen, pitches, pitches + step, pairs, table, node)
+        taken += found != NOT_HERE
+        if found == NOT_HERE:
+            found = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node)
+        assert found == said
+        alike.add(said)
+        rows = slice(NODE_NORMAL, NODE_ROWS)
+        assert node[rows, :NODES].tobytes() == expected[rows, :NODES].tobytes()
+        kept = np.ix_(range(4, 6), (NORMAL, STIFFNESS, PAIR))
+        assert pairs[kept].tobytes() == reference[kept].tobytes()
+        pitches += step if rng.random() < 0.9 else 0.0  # a step that is taken again
+    assert 0.85 * STEPS < taken < STEPS  # the others met a back flank, or a pair that enters or leaves
+    assert {0, 1, 3, 4} < alike  # no pair, either one, both; and steps in which that changes
+    assert min(alike) < 0
+
+
+def test_lanes_leave_films_to_the_scalar_law() -> None:
+    chosen = spalled(3, tilts=False, film=SqueezeFilm(0.1, 20e-3, 1e-6))
+    assert lane_table(chosen, GAUSS)[APPLIES, 0] == 0.0

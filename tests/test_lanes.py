@@ -1,0 +1,125 @@
+"""Lanes have the bytes of the scalars that they stand for, whatever stands in them."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from siggen.compiled import njit
+from siggen.lanes import (
+    LANES,
+    aligned,
+    as_doubles,
+    bits,
+    extract,
+    gather,
+    gather_pairs,
+    insert,
+    larger,
+    load,
+    load_like,
+    magnitude,
+    scalar_at,
+    select,
+    shuffle,
+    smaller,
+    splat,
+    splat_of,
+    square_root,
+    store,
+    truncated,
+)  # fmt: skip
+
+_turned = shuffle(1, 0, 3, 2, 5, 4, 7, 6)
+_wide = splat_of(2 * LANES)
+ODD = (0.0, -0.0, np.nan, np.inf, -np.inf, 5e-324, -5e-324, 1e308, -1e308)
+RESULTS = 13
+
+
+@njit(_nrt=False, error_model="numpy")
+def _in_lanes(a, b, table, results):
+    for first in range(0, a.size, LANES):
+        x, y = load(a, first), load(b, first)
+        store(results, first, x + y)
+        store(results, a.size + first, x - y * 3.0)
+        store(results, 2 * a.size + first, x / y)
+        store(results, 3 * a.size + first, square_root(x))
+        store(results, 4 * a.size + first, smaller(x, y))
+        store(results, 5 * a.size + first, larger(0.5, y))
+        store(results, 6 * a.size + first, select((x < y) | (y >= 2.0), x, -1.0))
+        store(results, 7 * a.size + first, select((x == y) & (x != 0.0), magnitude(x), y))
+        store(results, 8 * a.size + first, _turned(x))
+        place = smaller(larger(truncated(larger(smaller(x, 50.0), 0.0)), 1), 40) + 2
+        low, high = gather_pairs(table, place)
+        store(results, 9 * a.size + first, low + gather(table, place + 3))
+        store(results, 10 * a.size + first, high + as_doubles(place))
+        store(results, 11 * a.size + first, insert(x * extract(y, 2), 5, scalar_at(a, first)))
+        store(results, 12 * a.size + first, splat(0.0) + float(bits(x > y)))
+
+
+@njit(_nrt=False, error_model="numpy")
+def _one_by_one(a, b, table, results):
+    n = a.size
+    for i in range(n):
+        x, y, first = a[i], b[i], i - i % LANES
+        results[i], results[n + i], results[2 * n + i] = x + y, x - y * 3.0, x / y
+        results[3 * n + i] = sqrt(x)
+        results[4 * n + i], results[5 * n + i] = min(x, y), max(0.5, y)
+        results[6 * n + i] = x if x < y or y >= 2.0 else -1.0
+        results[7 * n + i] = abs(x) if x == y and x != 0.0 else y
+        results[8 * n + i] = a[i + 1 if i % 2 == 0 else i - 1]
+        place = min(max(int(max(min(x, 50.0), 0.0)), 1), 40) + 2
+        results[9 * n + i] = table[place] + table[place + 3]
+        results[10 * n + i] = table[place + 1] + place
+        results[11 * n + i] = a[first] if i % LANES == 5 else x * b[first + 2]
+        chosen = 0
+        for lane in range(LANES):
+            chosen += 2**lane if a[first + lane] > b[first + lane] else 0
+        results[12 * n + i] = chosen
+
+
+@njit(_nrt=False, error_model="numpy")
+def _weighted(table, weights, results):
+    """Write weighted sums of the rows of a table over its 16 columns, in two registers."""
+    total = _wide(0.0)
+    for row in range(weights.size):
+        total = total + load_like(table, row * 2 * LANES, total) * scalar_at(weights, row)
+    store(results, 0, total)
+
+
+def _pair(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return numbers of all sizes, among them some that are none, the same at some places."""
+    rng = np.random.default_rng(seed)
+    a, b = (rng.normal(size=512) * 10.0 ** rng.integers(-12, 12, 512) for _ in range(2))
+    for values in (a, b):
+        values[rng.integers(0, 512, 90)] = rng.choice(ODD, 90)
+    b[::7] = a[::7]
+    return a, b
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_every_operation_has_the_bytes_of_scalars(seed: int) -> None:
+    a, b = _pair(seed)
+    table = np.random.default_rng(seed).normal(size=64)
+    found, expected = np.zeros((2, RESULTS, a.size))
+    with np.errstate(all="ignore"):
+        _in_lanes(a, b, table, found.reshape(-1))
+        _one_by_one(a, b, table, expected.reshape(-1))
+    for row in range(RESULTS):
+        # What is no number has a sign and a payload without meaning: which operand's it takes is the machine's choice.
+        nan = np.isnan(expected[row])
+        assert np.array_equal(nan, np.isnan(found[row])), row
+        assert found[row][~nan].tobytes() == expected[row][~nan].tobytes(), row
+
+
+def test_sums_over_rows_are_those_of_the_written_order() -> None:
+    rng = np.random.default_rng(1)
+    table, weights, found = aligned(rng.normal(size=(37, 2 * LANES))), rng.normal(size=37), np.zeros(2 * LANES)
+    _weighted(table, weights, found)
+    expected = np.zeros(2 * LANES)
+    for row, weight in zip(table, weights, strict=True):
+        expected = expected + row * weight  # a product rounded before it is added, nothing contracted
+    assert found.tobytes() == expected.tobytes()
+    assert table.ctypes.data % (8 * LANES) == 0
