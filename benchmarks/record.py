@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -17,8 +18,8 @@ from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.channels import measured_channels
-from siggen.record.labels import damage_labels
 from siggen.record.simulation import record_response, simulate_specimen, specimen_state
+from siggen.specimen.made_gears import MadeGears
 
 SERIES_RECORDS = 64
 
@@ -49,10 +50,9 @@ def _stages(config: Config, specimen_id: int) -> dict[str, float]:
     draw, _ = _timed(
         lambda: (draw_specimen(config, specimen_id), [draw_operating_point(config, specimen_id, p) for p in points])
     )
-    tables, states = _timed(lambda: [specimen_state(config, specimen, i) for i in range(len(config.states))])
-    labels, _ = _timed(
-        lambda: [damage_labels(config.states[i], s.pair, s.damage, s.options) for i, s in enumerate(states)]
-    )
+    _forget_teeth()
+    made = MadeGears(config, specimen)
+    tables, states = _timed(lambda: [specimen_state(config, specimen, i, made) for i in range(len(config.states))])
     response, responses = _timed(lambda: [record_response(config, specimen, states[p.state_id], p)[0] for p in planned])
     sensing, _ = _timed(
         lambda: [measured_channels(config, specimen, p, r) for p, r in zip(planned, responses, strict=True)]
@@ -62,13 +62,21 @@ def _stages(config: Config, specimen_id: int) -> dict[str, float]:
     costs = {
         "record": whole,
         "drawing": draw,
-        "damage and stiffness tables": tables - labels,
-        "labels of the damage": labels,
+        "damage, its labels and stiffness tables": tables,
         "response": response,
         "sensing": sensing,
         "checks and Arrow": arrow,
     }
     return {name: cost / len(ids) for name, cost in costs.items()}
+
+
+def _forget_teeth() -> None:
+    """Empty the caches of teeth and damage, which the whole record has filled."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith(("siggen.gears", "siggen.specimen")):
+            for value in list(vars(module).values()):
+                if callable(forget := getattr(value, "cache_clear", None)):
+                    forget()
 
 
 def _timed(function: Callable[[], T]) -> tuple[float, T]:
