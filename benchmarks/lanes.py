@@ -39,7 +39,14 @@ lanes.forces()
 """Compiles the forms in a process that hears what the vectoriser says."""
 
 
-@njit
+@njit(error_model="numpy", forceinline=True)
+def _at(table: FloatArray, place: int) -> float:
+    """Return one number; a place is never negative, which the compiler cannot know of a signed one."""
+    value: float = table[np.uint64(place)]
+    return value
+
+
+@njit(error_model="numpy")
 def _one_by_one(table: FloatArray, approach: FloatArray, column: FloatArray, force: FloatArray) -> None:
     """Write the forces (records,), one record after the other, with the branches of `contact_spring`."""
     unit = REACH_M / ((NODES - 1.0) * (NODES - 1.0))
@@ -57,10 +64,10 @@ def _one_by_one(table: FloatArray, approach: FloatArray, column: FloatArray, for
         share = column[i] - whole
         here = (whole * NODES + node) * VALUES
         there = here + NODES * VALUES
-        f_0 = table[here] * (1.0 - share) + table[there] * share
-        f_1 = table[here + VALUES] * (1.0 - share) + table[there + VALUES] * share
-        s_0 = table[here + 1] * (1.0 - share) + table[there + 1] * share
-        s_1 = table[here + VALUES + 1] * (1.0 - share) + table[there + VALUES + 1] * share
+        f_0 = _at(table, here) * (1.0 - share) + _at(table, there) * share
+        f_1 = _at(table, here + VALUES) * (1.0 - share) + _at(table, there + VALUES) * share
+        s_0 = _at(table, here + 1) * (1.0 - share) + _at(table, there + 1) * share
+        s_1 = _at(table, here + VALUES + 1) * (1.0 - share) + _at(table, there + VALUES + 1) * share
         if t > 1.0:
             force[i] = f_1 + s_1 * (over - span)
         else:
@@ -68,7 +75,7 @@ def _one_by_one(table: FloatArray, approach: FloatArray, column: FloatArray, for
             force[i] = f_0 + over * (s_0 + t * (3.0 * rise - 2.0 * s_0 - s_1 + t * (s_0 + s_1 - 2.0 * rise)))
 
 
-@njit
+@njit(error_model="numpy")
 def _together(table: FloatArray, approach: FloatArray, column: FloatArray, force: FloatArray) -> None:
     """Write the same with selections in place of branches, LANES records in one loop of constant length."""
     unit = REACH_M / ((NODES - 1.0) * (NODES - 1.0))
@@ -84,17 +91,17 @@ def _together(table: FloatArray, approach: FloatArray, column: FloatArray, force
             share = column[i] - whole
             here = (whole * NODES + node) * VALUES
             there = here + NODES * VALUES
-            f_0 = table[here] * (1.0 - share) + table[there] * share
-            f_1 = table[here + VALUES] * (1.0 - share) + table[there + VALUES] * share
-            s_0 = table[here + 1] * (1.0 - share) + table[there + 1] * share
-            s_1 = table[here + VALUES + 1] * (1.0 - share) + table[there + VALUES + 1] * share
+            f_0 = _at(table, here) * (1.0 - share) + _at(table, there) * share
+            f_1 = _at(table, here + VALUES) * (1.0 - share) + _at(table, there + VALUES) * share
+            s_0 = _at(table, here + 1) * (1.0 - share) + _at(table, there + 1) * share
+            s_1 = _at(table, here + VALUES + 1) * (1.0 - share) + _at(table, there + VALUES + 1) * share
             rise = (f_1 - f_0) / span
             inside = f_0 + over * (s_0 + t * (3.0 * rise - 2.0 * s_0 - s_1 + t * (s_0 + s_1 - 2.0 * rise)))
             found = f_1 + s_1 * (over - span) if t > 1.0 else inside
             force[i] = found if approach[i] > 0.0 else 0.0
 
 
-@njit
+@njit(error_model="numpy")
 def _apart(table: FloatArray, approach: FloatArray, column: FloatArray, force: FloatArray) -> None:
     """Write the same with the reads of the table in a loop of their own, before the arithmetic."""
     unit = REACH_M / ((NODES - 1.0) * (NODES - 1.0))
@@ -111,10 +118,10 @@ def _apart(table: FloatArray, approach: FloatArray, column: FloatArray, force: F
         for lane in range(LANES):
             here = places[lane]
             there = here + NODES * VALUES
-            read[0, lane], read[1, lane] = table[here], table[there]
-            read[2, lane], read[3, lane] = table[here + VALUES], table[there + VALUES]
-            read[4, lane], read[5, lane] = table[here + 1], table[there + 1]
-            read[6, lane], read[7, lane] = table[here + VALUES + 1], table[there + VALUES + 1]
+            read[0, lane], read[1, lane] = _at(table, here), _at(table, there)
+            read[2, lane], read[3, lane] = _at(table, here + VALUES), _at(table, there + VALUES)
+            read[4, lane], read[5, lane] = _at(table, here + 1), _at(table, there + 1)
+            read[6, lane], read[7, lane] = _at(table, here + VALUES + 1), _at(table, there + VALUES + 1)
         for lane in range(LANES):
             share, span, over = shares[lane], spans[lane], overs[lane]
             f_0 = read[0, lane] * (1.0 - share) + read[1, lane] * share
@@ -178,11 +185,11 @@ def rows(*, quick: bool) -> Iterator[Row]:
     results, costs = forces(), []
     for (name, kernel), force in zip(FORMS.items(), results, strict=True):
         costs.append(_cost_s(lambda k=kernel, f=force: k(table, approach, column, f), 3 if quick else 9))  # type: ignore[misc]
-        gain = costs[0] / costs[-1]
+        gain, asked_for = costs[0] / costs[-1], kernel is _explicit
         yield Row(
             f"pair law from the table, {name}", f"{1e9 * costs[-1]:.1f} ns per record; {_packed(kernel)}",
-            ratio=gain,
-            goal=f"gain >= {GOAL_GAIN}", met=gain >= GOAL_GAIN,
+            "one record after the other", gain,
+            f"gain >= {GOAL_GAIN}" if asked_for else "", gain >= GOAL_GAIN if asked_for else None,
         )  # fmt: skip
     asked = subprocess.run([sys.executable, "-c", ASKED], capture_output=True, text=True, check=True)
     said = dict.fromkeys(

@@ -1,8 +1,9 @@
-"""Newmark's method of average acceleration (β = 1/4, γ = 1/2) in numpy, as it is usually written for gears.
+"""Newmark's method of average acceleration (β = 1/4, γ = 1/2) in numpy.
 
 The matrix of a step is inverted once, at the mean mesh stiffness; the forces of the mesh come from a function. With
 `mesh_stiffness` the matrix follows the stiffness of each step by a correction of rank one, which solves a linear law
-in one iteration. Without, the force is iterated. Source: Newmark (1959), here in terms of the acceleration at the end.
+in one iteration. Without, the force is iterated with the mean stiffness, not with the tangent. Source: Newmark (1959),
+here in terms of the acceleration at the end.
 """
 
 from __future__ import annotations

@@ -72,8 +72,10 @@ def _gain_row(law: str, own: Point, others: Sequence[Point]) -> Row:
     """Return the row of the steps of the rule beside another method at the same error."""
     method = others[0].method
     cost, reached = equal_cost_s(others, own.error)
-    nearest = min(point.error for point in others)
-    where = f"at its error of {own.error:.1e}" if reached else f"gets no nearer than {nearest:.1e}"
+    errors = [point.error for point in others if np.isfinite(point.error)]
+    where = f"at its error of {own.error:.1e}" if reached else f"gets no nearer than {min(errors):.1e}"
+    if max(errors) < own.error:
+        where = f"never as coarse, {max(errors):.1e} at its loosest"
     wanted = (LINEAR_GAINS if law == LINEAR else GAINS).get(method)
     return Row(
         f"{law}: {own.method}, {own.setting} as {'the file says' if law == LINEAR else 'the rule asks'}",

@@ -3,6 +3,10 @@
 A function that C code could call by its address costs a wrapper, 13 % of all compilation; nothing here does that. Where
 neither the package's folder nor the user's can be written to, numba refuses to cache: then a private folder of the
 temporary ones is taken. `NUMBA_CACHE_DIR` goes before all of them.
+
+numba takes a function from its cache as long as the file of that function is the same, whatever became of those that it
+calls. Then a machine that has run an older version would go on with parts of it. So what is cached is of use for the
+same sources of all compiled code alone.
 """
 
 from __future__ import annotations
@@ -11,34 +15,71 @@ import os
 import stat
 import tempfile
 from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+WITH_COMPILED_CODE = ("*.py", "dynamics/**/*.py", "gears/**/*.py", "record/**/*.py", "sensing/**/*.py")
 
 
 def njit(**options: Any) -> Callable[[Function], Function]:
     """Return the decorator that compiles a function on its first call; options as of `numba.njit`.
 
     But inline="always" is done by LLVM. numba itself would copy the untyped tree into each caller, with all that was
-    copied into it before: of the loop's compilation that is a third, and code of the same bytes takes more cycles.
+    copied into it before: of the loop's compilation that is a third, and code of the same bytes takes more cycles. So a
+    function keeps its own error_model and fastmath where it is inlined; a caller's do not reach into it.
     """
     if options.pop("inline", "") == "always":
         options["forceinline"] = True
 
+    def compiled(function: Function, **other: Any) -> Function:
+        made: Function = numba.njit(no_cfunc_wrapper=True, **{**options, **other})(function)
+        return _of_these_sources(made)
+
     def decorated(function: Function) -> Function:
         try:
-            return numba.njit(no_cfunc_wrapper=True, **options)(function)
+            return compiled(function)
         except RuntimeError:  # no folder for the cache
             folder = private_folder(Path(tempfile.gettempdir()))
             if folder is None:
-                return numba.njit(no_cfunc_wrapper=True, **{**options, "cache": False})(function)
+                return compiled(function, cache=False)
             numba.config.CACHE_DIR = str(folder)
-            return numba.njit(no_cfunc_wrapper=True, **options)(function)
+            return compiled(function)
 
     return decorated
+
+
+def is_cached(function: Any) -> bool:
+    """Return whether the cache holds a compiled function, made of these sources."""
+    file = _cache_file(function)
+    return file is not None and bool(file._load_index())
+
+
+def _of_these_sources(function: Function) -> Function:
+    """Let the cache of a compiled function know the sources of all: an index of another version is not even read."""
+    file = _cache_file(function)
+    if file is not None:
+        file._version = f"{file._version}, sources {_sources()}"
+    return function
+
+
+def _cache_file(function: Any) -> Any:
+    """Return numba's file of a function's cache; None for one that is not cached."""
+    return getattr(getattr(function, "_cache", None), "_cache_file", None)
+
+
+@cache
+def _sources() -> str:
+    """Return the digest of all files that compiled code may come from, constants included."""
+    package, digest = Path(__file__).resolve().parent, sha256()
+    for pattern in WITH_COMPILED_CODE:
+        for path in sorted(package.glob(pattern)):
+            digest.update(f"{path.relative_to(package).as_posix()} ".encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def private_folder(parent: Path) -> Path | None:

@@ -28,11 +28,9 @@ from siggen.arrays import FloatArray
 LANES = 8
 _DOUBLE, _INT64, _INT32 = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
 Lanes = Any
-"""Eight doubles; checkers see nothing of it, since no such object exists outside compiled code."""
 Whole = Any
-"""Eight integers."""
 Choice = Any
-"""Eight truths."""
+"""Eight doubles, integers and truths; checkers see nothing of them: no such object exists outside compiled code."""
 
 
 class _LanesType(types.Type):
@@ -165,6 +163,8 @@ def _lowered(names: str, kinds: Callable[..., Any]) -> Callable[[Callable[[_Call
 
     def decorated(emit: Callable[[_Call], Any]) -> Any:
         def definition(_: Any, *given: Any) -> Any:
+            if any(isinstance(one, types.Array) and (one.dtype, one.layout) != (types.float64, "C") for one in given):
+                return None  # numba names function and types
             return kinds(*given), lower
 
         def lower(*call: Any) -> Any:

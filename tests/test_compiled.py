@@ -1,4 +1,4 @@
-"""The cache of compiled functions lies somewhere that can be written to, and that nobody else can write to."""
+"""Compiled functions are cached where that can be done, where nobody else can write, and never from older sources."""
 
 from __future__ import annotations
 
@@ -55,3 +55,34 @@ def test_a_folder_that_others_can_write_to_or_that_leads_elsewhere_is_not_taken(
     folder.symlink_to(tmp_path / "elsewhere")
     assert private_folder(tmp_path) is None
     assert private_folder(tmp_path / "nowhere") is None
+
+
+CALLED = "from siggen.compiled import njit\n\n@njit(cache=True)\ndef called(x):\n    return x + {added}\n"
+CALLER = """
+from siggen.compiled import is_cached, njit
+from siggen.dynamics.called import called
+
+@njit(cache=True)
+def calling(x):
+    return 2.0 * called(x)
+
+print(is_cached(calling), calling(1.0))
+"""
+
+
+def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) -> None:
+    package = tmp_path / "siggen"
+    (package / "dynamics").mkdir(parents=True)
+    for empty in (package / "__init__.py", package / "dynamics" / "__init__.py"):
+        empty.touch()
+    (package / "compiled.py").write_bytes(Path("siggen/compiled.py").read_bytes())
+    (tmp_path / "caller.py").write_text(CALLER, encoding="utf-8")
+
+    def said(added: float) -> str:
+        (package / "dynamics" / "called.py").write_text(CALLED.format(added=added), encoding="utf-8")
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+        command = [sys.executable, "-c", "import caller"]
+        done = subprocess.run(command, env=environment, cwd=tmp_path, check=True, capture_output=True, text=True)
+        return done.stdout.strip()
+
+    assert [said(1.0), said(1.0), said(100.0)] == ["False 4.0", "True 4.0", "False 202.0"]

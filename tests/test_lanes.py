@@ -6,6 +6,7 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from numba.core.errors import TypingError
 
 from siggen.compiled import njit
 from siggen.lanes import (
@@ -123,3 +124,14 @@ def test_sums_over_rows_are_those_of_the_written_order() -> None:
         expected = expected + row * weight  # a product rounded before it is added, nothing contracted
     assert found.tobytes() == expected.tobytes()
     assert table.ctypes.data % (8 * LANES) == 0
+
+
+@njit()
+def _first(values: np.ndarray) -> float:
+    return extract(load(values, 0), 0)
+
+
+@pytest.mark.parametrize("values", [np.zeros(16, np.float32), np.zeros(16, np.int64), np.zeros((16, 2))[:, 0]])
+def test_arrays_of_other_numbers_or_with_gaps_are_refused(values: np.ndarray) -> None:
+    with pytest.raises(TypingError):
+        _first(values)

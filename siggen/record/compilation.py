@@ -10,7 +10,6 @@ import contextlib
 import gc
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -40,10 +39,8 @@ def to_compile(config: Config) -> tuple[CompilationPart, ...]:
 
 
 def is_compiled(config: Config) -> bool:
-    """Return whether numba's cache holds the time loop of a configuration, which is compiled after its teeth.
-
-    Derived: numba keeps an index beside the code, or where NUMBA_CACHE_DIR says. It is there after the first record.
-    """
+    """Return whether numba's cache holds the time loop of a configuration, which is compiled after its teeth."""
+    from siggen.compiled import is_cached
     from siggen.dynamics.time import exponential_step, pair_motion, product_integration
 
     loops: dict[str, Any] = {
@@ -51,9 +48,7 @@ def is_compiled(config: Config) -> bool:
         "runge_kutta": pair_motion._advance,
         "product": product_integration._advance,
     }
-    loop = loops[config.dynamics.method]
-    module = loop.py_func.__module__.rpartition(".")[2]
-    return any(Path(loop.stats.cache_path).glob(f"{module}.{loop.py_func.__name__}-*.nbi"))
+    return is_cached(loops[config.dynamics.method])
 
 
 def run_part(part: CompilationPart) -> None:

@@ -9,7 +9,7 @@ from siggen.record.compilation import is_compiled
 if TYPE_CHECKING:
     from siggen.config import Config
 
-COMPILED_S = 45
+COMPILED_S = 50
 """CPU time of compiling what a first record of `quickstart` needs, check included (`python -m benchmarks cold`)."""
 LARGER_SHARE = 0.6
 """Of the larger part, with which two processes are done."""

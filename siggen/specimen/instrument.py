@@ -123,7 +123,7 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     housing = specimen_housing(config, specimen.specimen_id)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     grid = frequencies(length, config.fs_hz)
-    paths = _paths(specimen, housing, grid)
+    paths = _paths(specimen, housing, grid, kept=blocks is not None)
     channels = []
     for sensor in specimen.sensors:
         gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
@@ -190,16 +190,18 @@ class _Draw:
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing and what its modes do (modes, k) at the frequencies (k,) of a grid, which all paths share."""
+    """A housing and a grid of frequencies (k,); what the modes do there (modes, k), if all paths share it."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
     shares: ComplexArray | None
 
 
-def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray) -> _Paths:
+def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray, *, kept: bool) -> _Paths:
+    """Return housing and grid; what the modes do is kept for all paths where the grid does not grow with the record."""
     modal = housing is not None and any(isinstance(sensor.path, ModalPath) for sensor in specimen.sensors)
-    return _Paths(housing, grid, modal_shares(housing.modes, grid) if modal and housing is not None else None)
+    shared = kept and modal and housing is not None
+    return _Paths(housing, grid, modal_shares(housing.modes, grid) if shared and housing is not None else None)
 
 
 def _channel(sensor: Sensor, axis: str, gain: float, draw: _Draw, paths: _Paths) -> ChannelInstrument:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.sensing.modal_path import HousingModes, housing_modes, modal_accelerance, mode_shape
+from siggen.sensing.modal_path import HousingModes, housing_modes, modal_accelerance, modal_shares, mode_shape
 
 MODES = housing_modes(np.array([400.0, 900.0, 2500.0]), np.array([0.01, 0.02, 0.03]), lowest_mass_kg=20.0, exponent=2.0)
 
@@ -83,3 +83,11 @@ def test_mode_shapes_have_mean_square_one_and_no_node() -> None:
 def test_modes_that_cannot_be_are_refused(frequency: list, ratio: list, mass: float, named: str) -> None:
     with pytest.raises(ValueError, match=named):
         housing_modes(np.array(frequency), np.array(ratio), lowest_mass_kg=mass, exponent=2.0)
+
+
+def test_what_modes_do_may_be_at_hand_and_changes_no_bit() -> None:
+    rng = np.random.default_rng(5)
+    at_input, at_output, grid = rng.normal(size=(4, 3)), rng.normal(size=3), np.linspace(0.0, 12800.0, 997)
+    alone = modal_accelerance(MODES, at_input, at_output, grid)
+    shared = modal_accelerance(MODES, at_input, at_output, grid, modal_shares(MODES, grid))
+    assert alone.tobytes() == shared.tobytes()

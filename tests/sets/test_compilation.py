@@ -50,17 +50,13 @@ def test_a_configuration_is_checked_without_what_looks_for_lost_contacts(monkeyp
     siggen.load_config("configs/quickstart.yaml")
 
 
-def test_an_empty_cache_is_told_and_a_filled_one_is_not(
-    short: Config, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
     run_part(CompilationPart(short, compilation.MOTION))
     assert is_compiled(short)
     assert (compilation_text(short, 2), to_compile(short)) == ("", ())
-    empty = SimpleNamespace(
-        stats=SimpleNamespace(cache_path=str(tmp_path / "nothing")), py_func=exponential_step.advance.py_func
-    )
-    monkeypatch.setattr(exponential_step, "advance", empty)
-    assert "compiling the simulation once, for all workers: about 27 s" in compilation_text(short, 2)
+    older = SimpleNamespace(_cache=SimpleNamespace(_cache_file=SimpleNamespace(_load_index=dict)))
+    monkeypatch.setattr(exponential_step, "advance", older)
+    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short, 2)
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 

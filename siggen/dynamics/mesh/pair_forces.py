@@ -43,7 +43,7 @@ LEAST_CARRYING = 1e-3
 """Of the face, less than a slice: what a force is divided by where a motion that diverges leaves the table."""
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
     """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
     place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
@@ -56,7 +56,7 @@ def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: f
     return force_n
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def lubricated(
     scalars: FloatArray,
     numbers: FloatArray,

@@ -38,7 +38,7 @@ MOST_STEPS = 50
 """Beyond half of these, pairs are solved one at a time; Newton's method was never seen to need more than 5."""
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:
@@ -81,7 +81,7 @@ def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) 
     return sink
 
 
-@njit(cache=True, _nrt=False, inline="always")
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def spring_of_flank(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
 ) -> tuple[float, float, float]:

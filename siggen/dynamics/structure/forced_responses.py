@@ -1,6 +1,6 @@
 """Responses of a linear structure to harmonic forces: elimination with pivoting at many frequencies side by side.
 
-(K + iω C - ω² M) q = d at every ω (derived). `LANES` frequencies are eliminated together, real and imaginary parts
+(K + iω C - ω² M) q = d at every ω (derived). `TOGETHER` frequencies are eliminated together, real and imaginary parts
 apart, so that the compiler works on several of them at once. Each is pivoted by itself and gets the operations, in
 their order, that it would get alone. What is 0 at all of them is left out.
 """
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.compiled import njit
 
-LANES = 104
+TOGETHER = 104
 """Frequencies side by side: no power of two, so that columns do not fall on the same places of a cache; 1 MB in all."""
 DOUBTFUL = 1e-12
 """Relative difference of two squared sizes below which the sizes themselves say which pivot is larger."""
@@ -41,9 +41,9 @@ def forced_responses(
     """
     n, inputs = mass.shape[0], directions.shape[0]
     result = np.zeros((rows.shape[0], inputs, omega_rad_s.size), dtype=np.complex128)
-    matrices, omega = np.empty((n, n + inputs, 2, LANES)), np.empty(LANES)
-    for first in range(0, omega_rad_s.size, LANES):
-        for lane in range(LANES):
+    matrices, omega = np.empty((n, n + inputs, 2, TOGETHER)), np.empty(TOGETHER)
+    for first in range(0, omega_rad_s.size, TOGETHER):
+        for lane in range(TOGETHER):
             omega[lane] = omega_rad_s[min(first + lane, omega_rad_s.size - 1)]
             if omega[lane] == 0.0:
                 omega[lane] = 1.0  # of no use to anybody: the matrix may be singular at 0
@@ -53,14 +53,14 @@ def forced_responses(
             for j in range(inputs):
                 matrices[i, n + j, 0], matrices[i, n + j, 1] = directions[j, i], 0.0
         _eliminate(matrices, n)
-        _write(rows, omega, matrices, omega_rad_s[first : first + LANES], result[:, :, first : first + LANES])
+        _write(rows, omega, matrices, omega_rad_s[first : first + TOGETHER], result[:, :, first : first + TOGETHER])
     return result
 
 
 @njit(cache=True)
 def _dynamic(stiffness: float, damping: float, mass: float, omega: FloatArray, value: FloatArray) -> None:
     """Write K + iω C - ω² M (2, lanes)."""
-    for lane in range(LANES):
+    for lane in range(TOGETHER):
         value[0, lane] = stiffness - omega[lane] * omega[lane] * mass
         value[1, lane] = omega[lane] * damping
 
@@ -68,12 +68,12 @@ def _dynamic(stiffness: float, damping: float, mass: float, omega: FloatArray, v
 @njit(cache=True)
 def _eliminate(matrices: FloatArray, n: int) -> None:
     """Solve in place: columns from n on of the matrices (n, n + m, 2, lanes) become the solutions of the first n."""
-    pivot, live = np.empty(LANES, dtype=np.int64), np.empty(matrices.shape[1], dtype=np.int64)
-    inverse, factor = np.empty((n, 2, LANES)), np.empty((2, LANES))
+    pivot, live = np.empty(TOGETHER, dtype=np.int64), np.empty(matrices.shape[1], dtype=np.int64)
+    inverse, factor = np.empty((n, 2, TOGETHER)), np.empty((2, TOGETHER))
     for column in range(n):
         _find_pivots(matrices, column, n, pivot)
         _swap(matrices, column, pivot)
-        for lane in range(LANES):
+        for lane in range(TOGETHER):
             one = 1.0 / complex(matrices[column, column, 0, lane], matrices[column, column, 1, lane])
             inverse[column, 0, lane], inverse[column, 1, lane] = one.real, one.imag
         count = _live(matrices[column], column + 1, live)
@@ -93,7 +93,7 @@ def _eliminate(matrices: FloatArray, n: int) -> None:
 @njit(cache=True)
 def _find_pivots(matrices: FloatArray, column: int, n: int, pivot: NDArray[np.int64]) -> None:
     """Write the first row of largest size from `column` on, for each lane."""
-    for lane in range(LANES):
+    for lane in range(TOGETHER):
         best, largest = column, _square(matrices[column, column, 0, lane], matrices[column, column, 1, lane])
         for i in range(column + 1, n):
             size = _square(matrices[i, column, 0, lane], matrices[i, column, 1, lane])
@@ -114,7 +114,7 @@ def _square(real: float, imaginary: float) -> float:
 
 @njit(cache=True)
 def _swap(matrices: FloatArray, column: int, pivot: NDArray[np.int64]) -> None:
-    for lane in range(LANES):
+    for lane in range(TOGETHER):
         row = pivot[lane]
         if row != column:
             for j in range(column, matrices.shape[1]):
@@ -138,7 +138,7 @@ def _live(row: FloatArray, first: int, live: NDArray[np.int64]) -> int:
 @njit(cache=True)
 def _is_zero(value: FloatArray) -> bool:
     found = 0
-    for lane in range(LANES):
+    for lane in range(TOGETHER):
         found += (value[0, lane] != 0.0) + (value[1, lane] != 0.0)
     return found == 0
 
@@ -146,7 +146,7 @@ def _is_zero(value: FloatArray) -> bool:
 @njit(cache=True)
 def _multiply(left: FloatArray, right: FloatArray, product: FloatArray) -> None:
     """Write the product of two values (2, lanes), lane by lane."""
-    for lane in range(LANES):
+    for lane in range(TOGETHER):
         a, b, c, d = left[0, lane], left[1, lane], right[0, lane], right[1, lane]
         product[0, lane], product[1, lane] = a * c - b * d, a * d + b * c
 
@@ -156,7 +156,7 @@ def _subtract(factor: FloatArray, row: FloatArray, live: NDArray[np.int64], othe
     """Subtract a factor (2, lanes) times a row (columns, 2, lanes) from another one at the columns `live`."""
     for k in range(live.size):
         j = live[k]
-        for lane in range(LANES):
+        for lane in range(TOGETHER):
             a, b, c, d = factor[0, lane], factor[1, lane], row[j, 0, lane], row[j, 1, lane]
             other[j, 0, lane] -= a * c - b * d
             other[j, 1, lane] -= a * d + b * c
@@ -167,8 +167,8 @@ def _write(
     rows: FloatArray, omega: FloatArray, solved: FloatArray, omega_rad_s: FloatArray, result: ComplexArray
 ) -> None:
     """Write the outputs (outputs, inputs, k) of solved matrices at frequencies (k,)."""
-    n, weight, columns = rows.shape[2], np.empty((2, LANES)), solved.shape[1]
-    total = np.empty((columns, 2, LANES))
+    n, weight, columns = rows.shape[2], np.empty((2, TOGETHER)), solved.shape[1]
+    total = np.empty((columns, 2, TOGETHER))
     for o in range(rows.shape[0]):
         total[:] = 0.0
         for i in range(n):
@@ -185,7 +185,7 @@ def _write(
 def _add(factor: FloatArray, row: FloatArray, first: int, other: FloatArray) -> None:
     """Add a factor (2, lanes) times a row (columns, 2, lanes) to another one from column `first` on."""
     for j in range(first, row.shape[0]):
-        for lane in range(LANES):
+        for lane in range(TOGETHER):
             a, b, c, d = factor[0, lane], factor[1, lane], row[j, 0, lane], row[j, 1, lane]
             other[j, 0, lane] += a * c - b * d
             other[j, 1, lane] += a * d + b * c

@@ -9,7 +9,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import njit
 
 
-# Inlined, since kernels that take a compiled function as an argument cannot be cached; those that name it are.
+# Put into the kernels that name it, each with its own rate function.
 @njit(inline="always")
 def runge_kutta_step(
     rate_function: Callable[..., None],

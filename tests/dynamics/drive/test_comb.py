@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from siggen.dynamics.drive.comb import Comb, turns_of
+from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
 
 ANGLE = np.linspace(-40.0, 200.0, 3001)
 
@@ -26,3 +27,16 @@ def test_harmonics_beyond_the_band_are_left_out() -> None:
     kept = Comb(5.0, np.array([1.0, 1.0]), np.zeros(2), 0.1, 1.0).force_n(turns, beside)
     np.testing.assert_array_equal(comb.force_n(turns, beside, 16.0), kept)  # the third's sideband is at 16
     assert comb.force_n(turns, beside, 1.0).any() == np.False_
+
+
+@pytest.mark.parametrize("count", range(1, 10))
+def test_sums_found_side_by_side_are_those_of_the_plain_rule(count: int) -> None:
+    rng = np.random.default_rng(count)
+    turns, phasors = turns_of(rng.normal(size=count), 1.0), rng.normal(size=5) + 1j * rng.normal(size=5)
+    expected = []
+    for turn in turns.tolist():
+        total = 0j
+        for phasor in phasors[::-1].tolist():
+            total = (total + phasor) * turn
+        expected.append(total.real)
+    assert harmonic_sum(turns, phasors).tobytes() == np.array(expected).tobytes()

@@ -10,7 +10,7 @@ from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.external_forces import Harmonic, HarmonicForce, bearing_direction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
-from siggen.dynamics.structure.forced_responses import LANES
+from siggen.dynamics.structure.forced_responses import TOGETHER
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.response import response_of
@@ -68,10 +68,10 @@ def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
 
 def test_a_frequency_gets_the_same_response_among_many_as_alone() -> None:
     structure, mesh = locked_load(make_structure()), MeanMesh(3e8, 800.0)
-    frequencies = np.concatenate([[0.0], np.geomspace(1.0, 12000.0, 2 * LANES + 5)])
+    frequencies = np.concatenate([[0.0], np.geomspace(1.0, 12000.0, 2 * TOGETHER + 5)])
     directions = np.random.default_rng(4).standard_normal((3, len(structure.coordinates)))
     together = forced_motion(structure, mesh, directions, MOTIONS, frequencies)
-    for k in (0, 1, LANES - 1, LANES, 2 * LANES + 5):
+    for k in (0, 1, TOGETHER - 1, TOGETHER, 2 * TOGETHER + 5):
         alone = forced_motion(structure, mesh, directions, MOTIONS, frequencies[k : k + 1])
         for name in MOTIONS:
             np.testing.assert_array_equal(together.acceleration[name][:, k], alone.acceleration[name][:, 0])

@@ -75,3 +75,19 @@ def test_an_acceleration_that_jumps_hardly_aliases() -> None:
     below = np.fft.rfftfreq(samples) < 0.44
     # Power of the aliases in the pass band: measured -74 dB of the signal's.
     assert spectrum[below].sum() < 10.0**-7.0 * whole.sum()
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 4])
+def test_a_sample_is_the_plain_sum_of_projected_states_in_the_order_of_the_taps(steps: int) -> None:
+    rng = np.random.default_rng(steps)
+    states, rows, taps = rng.standard_normal((19 * steps + 5, 6)), rng.standard_normal((3, 6)), rng.standard_normal(19)
+    rows[:, [1, 4]], rows[2, 0] = 0.0, 0.0
+    found = Decimator(rows, taps, steps).take(states)
+    expected = np.zeros_like(found)
+    for channel, row in enumerate(rows):
+        projected = [sum(float(w * x) for w, x in zip(row, state, strict=True) if w != 0.0) for state in states]
+        for sample in range(found.shape[1]):
+            for tap, value in zip(taps, projected[sample * steps :], strict=False):
+                expected[channel, sample] += tap * value
+    assert found.shape[1] > 0
+    assert found.tobytes() == expected.tobytes()
