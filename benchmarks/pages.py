@@ -5,7 +5,7 @@ The sets are of the quickest model, with short records: what grows with a set is
 
 from __future__ import annotations
 
-import os
+import json
 import subprocess
 import sys
 import tempfile
@@ -20,6 +20,14 @@ DURATION_S = 0.5
 RECORDS_PER_GEARBOX = 8
 GEARBOXES = (13, 125)
 LARGEST = 10_000
+WATCHED = """
+import json, resource, subprocess, sys
+ended = subprocess.run(sys.argv[1:], stdout=sys.stderr).returncode
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(json.dumps([used.ru_utime + used.ru_stime, used.ru_maxrss]))
+sys.exit(ended)
+"""
+"""Runs a command from a small process: what a process is said to have held at most begins with its parent's size."""
 COMMANDS = {
     "report without networks": ("report", "--no-cnn"),
     "the same again, indicators at hand": ("report", "--no-cnn"),
@@ -63,11 +71,9 @@ def _run(*command: str) -> tuple[float, float, float]:
         If it fails; holds what it said.
     """
     program, begin = str(Path(sys.executable).with_name(command[0])), time.perf_counter()
-    with tempfile.TemporaryFile("w+") as said:
-        process = subprocess.Popen([program, *command[1:]], stdout=said, stderr=said)
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode:
-            said.seek(0)
-            raise RuntimeError(f"{' '.join(command[:2])} ended with {process.returncode}: {said.read()[-500:]}")
-    return used.ru_utime + used.ru_stime, time.perf_counter() - begin, used.ru_maxrss * 1024.0
+    watched = [sys.executable, "-c", WATCHED, program, *command[1:]]
+    done = subprocess.run(watched, check=False, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command[:2])} ended with {done.returncode}: {done.stderr[-500:]}")
+    cpu_s, resident_kb = json.loads(done.stdout.splitlines()[-1])
+    return cpu_s, time.perf_counter() - begin, 1024.0 * resident_kb
