@@ -56,13 +56,13 @@ def njit(**options: Any) -> Callable[[Function], Function]:
 def is_cached(function: Any) -> bool:
     """Return whether the cache holds a compiled function, made of these sources."""
     file = _cache_file(function)
-    return file is not None and bool(file._load_index())
+    return bool(getattr(file, "_load_index", dict)())
 
 
 def _of_these_sources(function: Function) -> Function:
     """Let the cache of a compiled function know the sources of all: an index of another version is not even read."""
     file = _cache_file(function)
-    if file is not None:
+    if hasattr(file, "_version"):  # numba's own; where a later numba has it no more, it caches as it does by itself
         file._version = f"{file._version}, sources {_sources()}"
     return function
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from siggen.compiled import private_folder
+from siggen.compiled import WITH_COMPILED_CODE, private_folder
 
 WITHOUT_A_FOLDER = """
 import numba.core.caching as caching
@@ -86,3 +86,9 @@ def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) ->
         return done.stdout.strip()
 
     assert [said(1.0), said(1.0), said(100.0)] == ["False 4.0", "True 4.0", "False 202.0"]
+
+
+def test_the_sources_of_the_cache_hold_every_file_that_compiles() -> None:
+    package = Path("siggen")
+    compiling = {path for path in package.rglob("*.py") if "njit" in path.read_text(encoding="utf-8")}
+    assert compiling <= {path for pattern in WITH_COMPILED_CODE for path in package.glob(pattern)}

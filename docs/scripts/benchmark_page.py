@@ -88,6 +88,8 @@ def _is_point(row: Mapping[str, Any]) -> bool:
 def main(*arguments: str) -> None:
     """Print the tables, or write them into the page."""
     files = [Path(argument) for argument in arguments if argument != "--write"]
+    if missing := [str(file) for file in files if not file.is_file()]:
+        sys.exit(f"no file {', '.join(missing)}; allowed: what `python -m benchmarks --json FILE` wrote")
     tables = printed([json.loads(file.read_text(encoding="utf-8")) for file in files])
     if "--write" in arguments:
         PAGE.write_text(with_tables(PAGE.read_text(encoding="utf-8"), tables), encoding="utf-8")

@@ -65,6 +65,8 @@ def _panel(axes: Axes, points: Sequence[Mapping[str, Any]]) -> None:
 def main(file: str, png: str = str(FIGURE)) -> None:
     """Write the figure."""
     topics = json.loads(Path(file).read_text(encoding="utf-8"))["topics"]
+    if "precision" not in topics:
+        sys.exit(f"{file}: received the topics {', '.join(topics)}; allowed: a file with `precision`")
     rows = [row["numbers"] for row in topics["precision"]["rows"] if row["numbers"] and "error" in row["numbers"]]
     with mpl.rc_context(figure_style()):
         figure(rows).savefig(png, dpi=110)

@@ -62,9 +62,8 @@ def accelerations(
     )
     path = np.empty((times.size, 2 * len(motion.structure.coordinates)))
     motion.start(pitches[0])
-    path[0] = reference.start(
-        pitches[0]
-    )  # the same for both: without the friction that the exponential one starts with
+    # the same start for both: without the friction that the exponential one starts with
+    path[0] = reference.start(pitches[0])
     motion.advance(pitches, inputs, path)
     motions = np.array(list(motion.structure.motions.values()))
     moved = path[::steps, : motions.shape[1]] @ motions.T
