@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.spalls import axial_heights_m
 from tests.specimen.test_damage import config_with, damage_of
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}
@@ -53,6 +55,15 @@ def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one(
         assert one.depth_m == pytest.approx(stage * full.depth_m, rel=1e-12)
         assert full.hides(one)
     assert config_with({**shape, "stages": 1.0}).identity == config_with(shape).identity
+
+
+def test_a_flank_goes_on_below_the_base_circle_along_its_tangent() -> None:
+    """The involute leaves the base circle radially, so heights above and below grow by the cosine of its half angle."""
+    gear = gear_pair(draw_specimen(config_with(BOX), 0).gears).pinion
+    step = 1e-11  # the involute turns by 3e-5 on the way
+    above, below = axial_heights_m(gear, np.array([step, -step]), "arc") / np.array([step, -step])
+    assert below == pytest.approx(above, rel=1e-4)
+    assert below == pytest.approx(math.cos(gear.base_half_angle_rad), rel=1e-9)
 
 
 def test_axial_lengths_are_heights() -> None:

@@ -4,7 +4,8 @@ Derived: seen from the gear, either end of the shaft is a cantilever that carrie
 bending and shear give way by R (a³/(3 E I) + a/(κ G A)) (Timoshenko; κ = 6 (1 + ν)/(7 + 6 ν) of a round section,
 Cowper 1966). The shaft and its bearings are therefore two springs in parallel, each of them the bearing in series with
 its cantilever, at the distances -a and +b from the middle of the gear. Nothing is condensed away but the shaft's mass,
-which belongs to the gear's. A stiff shaft with the gear in its middle leaves gear and bearings as without shafts.
+which belongs to the gear's. The bearing's damper sees the bearing's own share of the motion alone, k_e/k of it with the
+stiffness k_e of both in series, so it dissipates (k_e/k)² as much (exact for slow motion). A stiff shaft with the gear in its middle leaves gear and bearings as without shafts.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ def tilting_ends(bearing: Element, shaft: Shaft, index: str) -> dict[str, Elemen
         half = 0.5 * bearing.stiffness
         softened = 1.0 / (1.0 / half + cantilever_compliance_m_per_n(shaft, abs(lever_m)))
         direction = dict(bearing.direction) | tilts(bearing.direction, lever_m, index)
-        ends[end] = Element(direction, softened, 0.5 * bearing.damping * softened / half)
+        ends[end] = Element(direction, softened, 0.5 * bearing.damping * (softened / half) ** 2)
     return ends
 
 

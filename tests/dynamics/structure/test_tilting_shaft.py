@@ -87,6 +87,26 @@ def test_a_stiff_shaft_with_its_gear_in_the_middle_leaves_the_bearings_as_they_w
     assert tilting.size == 15
 
 
+def test_a_bending_shaft_takes_motion_from_the_bearings_damper() -> None:
+    """The damper against the complex stiffness of bearing and cantilever in series, at a slow frequency.
+
+    At 10 rad/s the damper's force is 1e-4 of the spring's, so terms of second order are 1e-8.
+    """
+    bearing, slow_rad_s = Element({"x_1": 0.0, "y_1": 1.0}, 2e8, 1000.0), 10.0
+    for element, lever in zip(ends(SHAFT, bearing), SHAFT.levers_m.values(), strict=True):
+        gives_way = 1.0 / beam_stiffness_of_end(abs(lever))
+        half = 0.5 * (bearing.stiffness + 1j * slow_rad_s * bearing.damping)
+        series = 1.0 / (1.0 / half + gives_way)
+        assert element.stiffness == pytest.approx(series.real, rel=1e-6)
+        assert element.damping == pytest.approx(series.imag / slow_rad_s, rel=1e-6)
+
+
+def beam_stiffness_of_end(length: float) -> float:
+    """Stiffness at the free end of a clamped beam, from one element."""
+    free = timoshenko_element(length, SHAFT.diameter_m)[2:, 2:]
+    return float(1.0 / np.linalg.inv(free)[0, 0])
+
+
 def test_a_gear_in_the_middle_does_not_tilt_under_the_mesh_force_and_one_beside_it_does() -> None:
     for share, tilted in ((0.5, False), (0.35, True)):
         structure = tilting_structure(replace(SHAFT, gear_share=share))

@@ -30,6 +30,19 @@ def test_printed_tolerances(gear: tuple[float, int], classes: tuple[tuple[float,
         assert 1e6 * found.profile_m == pytest.approx(printed[2], abs=0.051)
 
 
+def test_helix_and_runout_of_class_5_by_hand() -> None:
+    """By hand from the formulas of the 2013 edition, at d = 100 mm, b = 25 mm, m = 5 mm, where all roots are whole."""
+    found = flank_tolerances(spur_gear(20, 5e-3, 10e-3), 25e-3, 5)
+    by_hand = {
+        "helix_slope_m": 0.5 + 1.75 + 4.0,
+        "helix_form_m": 0.7 + 2.25 + 4.0,
+        "profile_slope_m": 2.0 + 0.1 + 4.0,
+        "profile_form_m": 2.75 + 5.0,
+        "runout_m": 0.9 * (0.2 + 5.5 + 3.5 + 12.0),
+    }
+    assert {name: 1e6 * getattr(found, name) for name in by_hand} == pytest.approx(by_hand, rel=1e-12)
+
+
 def edition_1995(module_mm: float, diameter_mm: float, width_mm: float) -> dict[str, float]:
     """Return class 5 of the first edition [µm], by formulas of its own with the geometric means of its ranges."""
 
