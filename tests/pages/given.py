@@ -22,9 +22,8 @@ SMALLER = {
     "runs/bench": ("configs/bench.yaml", "specimens=4", "duration_s=0.5"),
 }
 """Set -> its configuration and what is smaller."""
-MODULE_MM = {"18/47": 3.0, "25/56": 2.0}
-"""Recorded pairs."""
-SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 1.5, "face_share": 1.0}
+PAIRS = {"18/47": (4242, 3.0, 34.0, True), "25/56": (4245, 2.0, 22.0, False)}
+"""Recorded pair -> seed, module [mm], speed [Hz], and whether there is a tacho."""
 FACTS = "publication.yaml"
 STORE = "an object store"
 """An empty bucket `sets`, to which the environment leads."""
@@ -52,7 +51,6 @@ class Given:
             shutil.copytree(made, folder / name)
         elif name.startswith("recordings "):
             if not made.exists():
-                made.mkdir()
                 record(name.removeprefix("recordings "), made)
             shutil.copytree(made, folder, dirs_exist_ok=True)
         elif name == FACTS:
@@ -69,24 +67,27 @@ class Given:
 
 def record(pair: str, folder: Path) -> None:
     """Write four healthy recordings of a machine with a pair, and one with a spalled tooth."""
+    seed, module_mm, speed_hz, tacho = PAIRS[pair]
     pinion, gear = (int(teeth) for teeth in pair.split("/"))
     raw = {
         "extends": "quickstart",
         "name": "hidden",
-        "seed": 4242,
+        "seed": seed,
         "specimens": 1,
         "repeats": 4,
-        "gears": {"module_mm": MODULE_MM[pair], "pinion": {"teeth": pinion}, "gear": {"teeth": gear}},
+        "gears": {"module_mm": module_mm, "pinion": {"teeth": pinion}, "gear": {"teeth": gear}},
         "states": [{"name": "healthy"}],
-        "operating_points": [{"speed_hz": 34.0 if pair == "18/47" else 22.0, "torque_nm": 40.0}],
+        "operating_points": [{"speed_hz": speed_hz, "torque_nm": 40.0}],
     }
-    damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": SPALL}]}
+    spall = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 0.5 * module_mm, "face_share": 1.0}
+    damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": spall}]}
     records = [
         *siggen.simulate(siggen.load_config(raw), range(4)),
         siggen.simulate(siggen.load_config(damaged), [1])[0],
     ]
+    folder.mkdir()
     for month, found in zip(MONTHS, records, strict=True):
-        write_recording(found, folder / f"{month}.csv")
+        write_recording(found, folder / f"{month}.csv", tacho=tacho)
     signals = {f"ch{k + 1}": signal for k, signal in enumerate(records[3].channels.values())}
     facts = {"wf_increment": 1.0 / FS_HZ, "unit_string": "m/s^2"}
     with TdmsWriter(folder / "august.tdms") as file:

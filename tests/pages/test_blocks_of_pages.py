@@ -16,7 +16,22 @@ from tests.pages.running import failing, reader_environment, reader_folder
 
 Followed = Callable[[Path, bool], str]
 
-NOT_RUN: dict[str, list[str]] = {}
+INSTALLS = "not run: installs from the package index"
+NOT_RUN = {
+    "README.md": ["not run: installs from the package index, and runs these tests"],
+    "docs/notebooks/README.md": ["not run: installs; the tests of notebooks and of the site run all of them"],
+    "docs/start/cluster.md": [
+        "not run: the keys are those of your store",
+        "needs: distributed",
+        "not run: needs a cluster",
+        "needs: ray",
+        "not run: needs a cluster",
+    ],
+    "docs/start/demo.md": [INSTALLS],
+    "docs/start/install.md": [INSTALLS, INSTALLS, INSTALLS, "not run: needs a container tool"],
+    "docs/start/load_a_set.md": ["needs: lightning", "needs: transformers", "needs: accelerate"],
+    "docs/start/publish.md": ["not run: installs isatools; tests/publication/test_isa_phm.py does the same"],
+}
 """Page -> what no test runs of it, and why. Nothing is added here that a smaller set or a local server could run."""
 
 
@@ -30,7 +45,7 @@ def named(page: Path) -> str:
 
 def pages(*, slow: bool) -> list[Path]:
     """Return the pages with a block to run; those with a slow one are followed a second time, as a whole."""
-    return [page for page in PAGES if any(block.is_run and block.is_slow == slow for block in blocks(page))]
+    return [page for page in PAGES if any(b.is_run and b.title is None and b.is_slow == slow for b in blocks(page))]
 
 
 @pytest.fixture(scope="module")
