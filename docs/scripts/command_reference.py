@@ -37,6 +37,7 @@ def helped(program: str, app: str) -> str:
     text = re.sub(r"^\* `--(install-completion|show-completion|help)`.*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"\*\*Commands\*\*:\n\n(\* .*\n)+", "", text)  # cut off in the middle of their sentences
     text = re.sub(r"\*\*Options\*\*:\n\n(?!\*)", "", text)
+    text = text.replace("```console\n$ ", "```text\n")  # how a command is called, not a command
     return re.sub(r"^#", "##", text, flags=re.MULTILINE).strip()
 
 

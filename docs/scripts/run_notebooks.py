@@ -1,6 +1,7 @@
 """Execute the notebooks: `python docs/scripts/run_notebooks.py [NAME ...]`; copies with outputs go to runs/notebooks.
 
-The commands `siggen` and `siggen-diagnostics` of the cells are those beside the Python that runs this script.
+The commands `siggen` and `siggen-diagnostics` of the cells are those beside the Python that runs this script. The
+copies are kept for the same notebook and the same code of both packages; the site's build takes them from there.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -16,19 +18,44 @@ from nbclient import NotebookClient
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "notebooks"
+KEPT = ROOT / "runs" / "notebooks"
+PACKAGES = ("siggen", "diagnostics", "configs")
 NAMES = ("first_set", "own_gearbox", "own_indicator", "train_in_torch", "calibrate")
-LIMIT_S = 600
+LIMIT_S = 1200
 """Of a cell: the first one that simulates may have to compile, on a busy machine."""
 
 
 def executed(path: Path) -> Any:
-    """Return a notebook with its outputs.
+    """Return a notebook with its outputs, from the copy that is kept of this notebook and this code, if there is one.
 
     Raises
     ------
     nbclient.exceptions.CellExecutionError
         If a cell failed.
     """
+    made_of = _digest(path)
+    copy = KEPT / path.name
+    if copy.exists():
+        notebook = nbformat.read(copy, as_version=4)
+        if notebook.metadata.get("made_of") == made_of:
+            return notebook
+    notebook = _executed_now(path)
+    notebook.metadata["made_of"] = made_of
+    KEPT.mkdir(parents=True, exist_ok=True)
+    nbformat.write(notebook, copy)
+    return notebook
+
+
+def main(names: tuple[str, ...]) -> None:
+    """Execute notebooks, keep copies, print the CPU time of each with its processes."""
+    for name in names:
+        (KEPT / f"{name}.ipynb").unlink(missing_ok=True)
+        before, started_s = _cpu_s(), time.perf_counter()
+        executed(FOLDER / f"{name}.ipynb")
+        print(f"{name}: {_cpu_s() - before:.0f} s of CPU, {time.perf_counter() - started_s:.0f} s")
+
+
+def _executed_now(path: Path) -> Any:
     beside = str(Path(sys.executable).parent)
     os.environ["PATH"] = os.pathsep.join((beside, os.environ.get("PATH", "")))
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
@@ -37,15 +64,12 @@ def executed(path: Path) -> Any:
     return notebook
 
 
-def main(names: tuple[str, ...]) -> None:
-    """Execute notebooks, keep copies, print the CPU time of each with its processes."""
-    out = ROOT / "runs" / "notebooks"
-    out.mkdir(parents=True, exist_ok=True)
-    for name in names:
-        before = _cpu_s()
-        started_s = time.perf_counter()
-        nbformat.write(executed(FOLDER / f"{name}.ipynb"), out / f"{name}.ipynb")
-        print(f"{name}: {_cpu_s() - before:.0f} s of CPU, {time.perf_counter() - started_s:.0f} s")
+def _digest(path: Path) -> str:
+    digest = sha256(path.read_bytes())
+    for package in PACKAGES:
+        for file in sorted((*(ROOT / package).rglob("*.py"), *(ROOT / package).rglob("*.yaml"))):
+            digest.update(file.read_bytes())
+    return digest.hexdigest()
 
 
 def _cpu_s() -> float:

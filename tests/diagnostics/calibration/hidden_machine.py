@@ -30,11 +30,12 @@ def tacho_waveform(time_s: np.ndarray, pulses_s: np.ndarray) -> np.ndarray:
     return np.asarray(5.0 * np.clip(0.5 + since * FS_HZ / 4.0, 0.0, 1.0) * (since < 0.003))
 
 
-def write_recording(record: Any, file: Path) -> Path:
-    """Write channels and a tacho's waveform as text."""
+def write_recording(record: Any, file: Path, *, tacho: bool = True) -> Path:
+    """Write channels as text, a tacho's waveform beside them if there is one."""
     signals = {f"ch{k + 1}": signal for k, signal in enumerate(record.channels.values())}
-    time_s = np.arange(next(iter(signals.values())).size) / FS_HZ
-    signals["tacho"] = tacho_waveform(time_s, record.tacho_s)
+    if tacho:
+        time_s = np.arange(next(iter(signals.values())).size) / FS_HZ
+        signals["tacho"] = tacho_waveform(time_s, record.tacho_s)
     np.savetxt(
         file, np.stack(list(signals.values()), axis=1), delimiter=",", header=",".join(signals), comments="", fmt="%.7g"
     )

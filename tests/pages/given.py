@@ -1,0 +1,94 @@
+"""What lies in a reader's folder before a page begins: sets smaller than those of their names, recordings of a machine.
+
+They are made once, by the installed commands, and copied.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+from nptdms import ChannelObject, TdmsWriter
+
+import siggen
+from tests.diagnostics.calibration.hidden_machine import FS_HZ, write_recording
+from tests.publication.conftest import facts_file
+
+SPLITS = ("--set", "splits={train: 10, validation: 5, test: 5}")
+SMALLER = {
+    "runs/quickstart": ("configs/quickstart.yaml", "specimens=10", "duration_s=0.5"),
+    "runs/bench": ("configs/bench.yaml", "specimens=4", "duration_s=0.5"),
+}
+"""Set -> its configuration and what is smaller."""
+PAIRS = {"18/47": (4242, 3.0, 34.0, True), "25/56": (4245, 2.0, 22.0, False)}
+"""Recorded pair -> seed, module [mm], speed [Hz], and whether there is a tacho."""
+FACTS = "publication.yaml"
+STORE = "an object store"
+"""An empty bucket `sets`, to which the environment leads."""
+MONTHS = ("may", "june", "july", "august", "september")
+
+
+class Given:
+    """Makes what pages begin with, each thing once."""
+
+    def __init__(self, cache: Path, environment: Mapping[str, str]) -> None:
+        self._cache, self._environment = cache, environment
+
+    def put(self, name: str, folder: Path) -> None:
+        """Copy a thing of this name into a folder.
+
+        Raises
+        ------
+        ValueError
+            If nothing of this name is known.
+        """
+        made = self._cache / name.replace("/", "_").replace(" ", "_")
+        if name in SMALLER:
+            if not made.exists():
+                self._generate(name, made)
+            shutil.copytree(made, folder / name)
+        elif name.startswith("recordings "):
+            if not made.exists():
+                record(name.removeprefix("recordings "), made)
+            shutil.copytree(made, folder, dirs_exist_ok=True)
+        elif name == FACTS:
+            facts_file(folder)
+        elif name != STORE:
+            raise ValueError(f"nothing is known of the given {name!r}")
+
+    def _generate(self, name: str, out: Path) -> None:
+        config, *changes = SMALLER[name]
+        command = ["siggen", "generate", str(Path(__file__).parents[2] / config), "--out", str(out), "--workers", "1"]
+        command += [word for change in changes for word in ("--set", change)]
+        subprocess.run([*command, *SPLITS], check=True, env=dict(self._environment), capture_output=True)
+
+
+def record(pair: str, folder: Path) -> None:
+    """Write four healthy recordings of a machine with a pair, and one with a spalled tooth."""
+    seed, module_mm, speed_hz, tacho = PAIRS[pair]
+    pinion, gear = (int(teeth) for teeth in pair.split("/"))
+    raw = {
+        "extends": "quickstart",
+        "name": "hidden",
+        "seed": seed,
+        "specimens": 1,
+        "repeats": 4,
+        "gears": {"module_mm": module_mm, "pinion": {"teeth": pinion}, "gear": {"teeth": gear}},
+        "states": [{"name": "healthy"}],
+        "operating_points": [{"speed_hz": speed_hz, "torque_nm": 40.0}],
+    }
+    spall = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 0.5 * module_mm, "face_share": 1.0}
+    damaged = {**raw, "states": [{"name": "spalled", "severity": "severe", "damage": spall}]}
+    records = [
+        *siggen.simulate(siggen.load_config(raw), range(4)),
+        siggen.simulate(siggen.load_config(damaged), [1])[0],
+    ]
+    folder.mkdir()
+    for month, found in zip(MONTHS, records, strict=True):
+        write_recording(found, folder / f"{month}.csv", tacho=tacho)
+    signals = {f"ch{k + 1}": signal for k, signal in enumerate(records[3].channels.values())}
+    facts = {"wf_increment": 1.0 / FS_HZ, "unit_string": "m/s^2"}
+    with TdmsWriter(folder / "august.tdms") as file:
+        file.write_segment([ChannelObject("recorder", *item, properties=facts) for item in signals.items()])
