@@ -1,1 +1,27 @@
-"""Fault classifiers and sideband indicators, trained and judged on sets that siggen wrote."""
+"""Fault classifiers and sideband indicators, trained and judged on sets that siggen wrote.
+
+The names below are loaded when they are first used, so that importing diagnostics costs nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from diagnostics.indicators.labelled_matrix import table
+    from diagnostics.scoring.score import score
+
+__all__ = ["score", "table"]
+
+_HOMES = {
+    "score": "diagnostics.scoring.score",
+    "table": "diagnostics.indicators.labelled_matrix",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name from the module that defines it."""
+    if name not in _HOMES:
+        raise AttributeError(f"diagnostics has no {name!r}; it has {', '.join(__all__)}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -17,6 +17,7 @@ from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
+from diagnostics.cli.score import score
 from diagnostics.cli.train import train
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenError
 
@@ -36,6 +37,7 @@ app.command()(features)
 app.command()(indicators)
 app.command()(train)
 app.command()(report)
+app.command()(score)
 app.command()(explore)
 app.command()(audit)
 app.command()(predict)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.records.label_roles import LABEL_ROLES, MEASURED
+from diagnostics.records.state_classes import class_members
+
 
 @dataclass(frozen=True, slots=True)
 class FeatureMatrix:
@@ -25,6 +28,25 @@ class FeatureMatrix:
     values: np.ndarray
     names: tuple[str, ...]
     labels: dict[str, np.ndarray]
+
+    @property
+    def groups(self) -> np.ndarray:
+        """(records,) int: the gearbox of each record; one gearbox belongs to one side of any split or fold."""
+        return self.labels["specimen_id"]
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """The classes in the order of the configuration; `class_id` of a loader is the place in it."""
+        return tuple(class_members(self.labels))
+
+    @property
+    def roles(self) -> dict[str, str]:
+        """Role of every column: `measured` of indicators; `key`, `condition`, `consequence`, `target` of labels."""
+        return {**dict.fromkeys(self.names, MEASURED), **{name: LABEL_ROLES[name] for name in self.labels}}
+
+    def split(self, name: str) -> FeatureMatrix:
+        """Return the records of a split: train, validation or test."""
+        return self.rows(self.labels["split"] == name)
 
     def rows(self, mask: np.ndarray) -> FeatureMatrix:
         """Return the chosen records."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import table_settings
@@ -11,7 +12,9 @@ from diagnostics.release.model_card import model_card
 from diagnostics.release.model_seal import FACTS_FILE, MODEL_FILES
 from diagnostics.release.release import release, save_release
 from diagnostics.release.release_card import release_card
+from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
 from diagnostics.training.classifier_file import save_classifier
+from diagnostics.training.splits import TEST, VALIDATION
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
@@ -53,12 +56,25 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
             export_circular_onnx(training.circular, folder / "circular.onnx")
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export of the circular network failed: {error}")
+    write_predictions(_predicted(training, table), identity, folder)
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []
     card = f"{model_card(training, dataset)}\n{release_card(released)}"
     (folder / "model_card.md").write_text(card, encoding="utf-8")
     save_release(training, released, table, folder)
     return notes
+
+
+def _predicted(training: Training, table: pa.Table) -> list[PredictedRecords]:
+    """Return what every classifier says of the validation and test records of the table."""
+    record_id, split = np.asarray(table.column("record_id").to_pylist()), training.split
+    parts = [(VALIDATION, split.validation, "validation"), (TEST, split.test, "predictions")]
+    return [
+        PredictedRecords(judged.name, name, record_id[mask], found)
+        for judged in training.judged
+        for name, mask, attribute in parts
+        if (found := getattr(judged, attribute)) is not None
+    ]
 
 
 def set_identity(dataset: Dataset) -> str:

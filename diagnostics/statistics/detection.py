@@ -34,6 +34,11 @@ def damage_score(found: Predictions, healthy: str) -> np.ndarray:
     return np.asarray(1.0 - found.probability[:, found.classes.index(healthy)])
 
 
+def fewest_gearboxes(positive: np.ndarray, specimen: np.ndarray) -> int:
+    """Return the gearboxes on the side, (n,) bool, that has fewer: as many the limits of an AUC count."""
+    return min(int(np.unique(specimen[positive == side]).size) for side in (True, False))
+
+
 def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESAMPLES) -> Detection | None:
     """Judge predictions as an alarm for damage.
 
@@ -61,8 +66,7 @@ def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESA
 
     def judged(chosen: np.ndarray) -> Interval:
         areas = weighted_auc(score[chosen], positive[chosen], weights[:, chosen], found.specimen[chosen])
-        smaller = min(np.unique(found.specimen[chosen & (positive == side)]).size for side in (True, False))
-        return area_interval(areas, smaller)
+        return area_interval(areas, fewest_gearboxes(positive[chosen], found.specimen[chosen]))
 
     present = [k for k in range(len(found.classes)) if k != own and (found.truth == k).any()]
     return Detection(

@@ -49,6 +49,8 @@ class Judged:
         Calibrated, of the test records in their order.
     detection : Detection or None
         Damaged or not, by 1 - p(healthy); None where the classes have no healthy one or the test has one side only.
+    validation : Predictions or None
+        Calibrated, of the validation records in their order; None where they were not asked for.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Judged:
     calibration: Calibration
     predictions: Predictions
     detection: Detection | None = None
+    validation: Predictions | None = None
 
 
 def judged(

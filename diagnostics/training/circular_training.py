@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.statistics.calibration import fitted_temperature
+from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.judgement import Judged, judged, validation_score
 from diagnostics.training.baselines import permuted_target, state_index
@@ -55,20 +55,20 @@ def judge_circular(
     settings = plain if options.augment else replace(plain, gain_db=0.0)
     truth = state_index(matrix, split.classes)
     trained = _trained(name.replace("_", " "), records, truth, split, seed, settings, stage)
-    temperature = fitted_temperature(_votes(trained, records, matrix, split.validation))
+    validation = _votes(trained, records, matrix, split.validation)
+    temperature = fitted_temperature(validation)
     details = {
         "best_epoch": trained.best_epoch,
         "epochs": trained.epochs,
         "augmented": options.augment,
         "device": options.device,
         "note": trained.note,
-        **validation_score(_votes(trained, records, matrix, split.validation)),
+        **validation_score(validation),
     }
     found = _votes(trained, records, matrix, split.test)
     control = _control(name, records, matrix, split, seed, settings, stage)
-    return replace(trained, temperature=temperature), judged(
-        name, found, temperature, control, details, seed, split.healthy
-    )
+    result = judged(name, found, temperature, control, details, seed, split.healthy)
+    return replace(trained, temperature=temperature), replace(result, validation=calibrated(validation, temperature))
 
 
 def _trained(

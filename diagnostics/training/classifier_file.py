@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
@@ -72,18 +71,12 @@ def load_classifier(folder: Path, prefix: str = "") -> FeatureClassifier:
 
 
 def _skops_io() -> ModuleType:
-    """Import skops.io without torch, where nothing has imported that yet.
+    """Return skops.io, imported when it is needed.
 
-    skops walks through all packages of scikit-learn. One of them is a wrapper of torch, a second of CPU time, and what
-    cannot be imported is passed over.
+    Where torch is installed its import comes along, seconds of it: skops lists all estimators of scikit-learn, and one
+    package on that way wraps torch. Hiding torch for so long is no way out: scipy keeps asking for it by name.
     """
-    if "torch" in sys.modules:
-        return import_module("skops.io")
-    sys.modules["torch"] = None  # type: ignore[assignment]
-    try:
-        return import_module("skops.io")
-    finally:
-        del sys.modules["torch"]
+    return import_module("skops.io")
 
 
 def _classifier(path: Path, pipeline: Any, facts: dict[str, Any]) -> FeatureClassifier:

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.statistics.calibration import fitted_temperature
+from diagnostics.statistics.calibration import calibrated, fitted_temperature
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, Judged, judged, validation_score
 from diagnostics.training.baselines import permuted_target, state_index
@@ -125,9 +125,8 @@ def _judge(
         "note": trained.note,
         **validation_score(validation),
     }
-    return replace(trained, temperature=temperature), judged(
-        name, found, temperature, np.empty(0), details, seed, split.healthy
-    )
+    result = judged(name, found, temperature, np.empty(0), details, seed, split.healthy)
+    return replace(trained, temperature=temperature), replace(result, validation=calibrated(validation, temperature))
 
 
 def _votes(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -207,10 +207,12 @@ def _judge(
 ) -> Judged:
     found = classifier_predictions(model, matrix.rows(split.test))
     details = {"features": len(model.features), "strength": model.strength, "note": model.note}
-    if split.validation.any():
-        details |= validation_score(model.predict(matrix.rows(split.validation)))
+    validation = model.predict(matrix.rows(split.validation)) if split.validation.any() else None
+    if validation:
+        details |= validation_score(validation)
     permuted = control if name == INDICATORS else np.empty(0)
-    return judged(name, found, model.temperature, permuted, details, seed, split.healthy)
+    result = judged(name, found, model.temperature, permuted, details, seed, split.healthy)
+    return replace(result, validation=validation)
 
 
 def _judge_other(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -157,6 +159,16 @@ def test_classifier_survives_its_file(matrix: FeatureMatrix, split: SpecimenSpli
     test = matrix.rows(split.test)
     np.testing.assert_array_equal(again.predict(test).probability, model.predict(test).probability)
     assert json.loads((tmp_path / "feature_names.json").read_text())["features"] == list(matrix.names)
+
+
+def test_a_process_that_has_imported_nothing_else_reads_a_classifier(
+    matrix: FeatureMatrix, split: SpecimenSplit, tmp_path: Path
+) -> None:
+    save_classifier(train_classifier(matrix, split), IndicatorSettings(), "identity", tmp_path)
+    code = "import sys; from pathlib import Path; from diagnostics.training.classifier_file import load_classifier\n"
+    code += "print(load_classifier(Path(sys.argv[1])).classes)"
+    found = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False)
+    assert found.stdout.strip() == str(split.classes), found.stderr
 
 
 def test_a_classifier_that_was_saved_before_logarithms_predicts_as_it_did(
