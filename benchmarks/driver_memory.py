@@ -16,12 +16,12 @@ import pyarrow as pa
 from siggen.columns.record import label_schema
 from siggen.dataset import label_tables
 from siggen.dataset.checked_file import BLOCK_BYTES, DIGITS
-from siggen.dataset.chunk import ChunkResult
+from siggen.dataset.chunk import Chunk, ChunkResult
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.sidecar import data_name
 from siggen.planning.plan import ShardPlan, estimated_bytes
-from siggen.sets import set_run
-from siggen.sets.set_run import SetRun
+from siggen.sets import set_run, shard_making
+from siggen.sets.shard_making import ShardMaking
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -75,14 +75,17 @@ def _made_up(config: Config) -> Iterator[None]:
     records = config.specimens * config.records_per_specimen
     blocks = estimated_bytes(config) // records // BLOCK_BYTES + 1
     labels = partial(_labels, label_schema(config))
-    empty = ChunkResult(b"", ())
     nothing = pa.record_batch({"state": pa.array([], pa.string())})
     with ExitStack() as stack:
         stack.enter_context(patch.object(ChunkResult, "batch", lambda _: nothing))
-        stack.enter_context(patch.object(set_run, "ChunkSimulation", lambda *_: lambda _: empty))
-        stack.enter_context(patch.object(SetRun, "_data", lambda _, shard: _Unwritten(shard, blocks)))
+        stack.enter_context(patch.object(shard_making, "PartSimulation", lambda *_: _nothing))
+        stack.enter_context(patch.object(ShardMaking, "_data", lambda _, shard: _Unwritten(shard, blocks)))
         stack.enter_context(patch.object(label_tables, "_label_batches", labels))
         yield
+
+
+def _nothing(chunk: Chunk) -> ChunkResult:
+    return ChunkResult(chunk, b"", ())
 
 
 class _Unwritten:

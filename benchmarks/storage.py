@@ -96,7 +96,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
 def _simulated(config: Config, specimens: int) -> pa.Table:
     batches = []
     for specimen in range(specimens):
-        results = simulate_specimen(config, record_ids_of(config, specimen))
+        results = list(simulate_specimen(config, record_ids_of(config, specimen)))
         batches.append(record_batch(config, [result for result in results if isinstance(result, Record)]))
     return pa.Table.from_batches(batches)
 

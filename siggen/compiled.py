@@ -63,7 +63,7 @@ def _of_these_sources(function: Function) -> Function:
     """Let the cache of a compiled function know the sources of all: an index of another version is not even read."""
     file = _cache_file(function)
     if hasattr(file, "_version"):  # numba's own; where a later numba has it no more, it caches as it does by itself
-        file._version = f"{file._version}, sources {_sources()}"
+        file._version = f"{file._version}, sources {compiled_sources()}"
     return function
 
 
@@ -73,7 +73,7 @@ def _cache_file(function: Any) -> Any:
 
 
 @cache
-def _sources() -> str:
+def compiled_sources() -> str:
     """Return the digest of all files that compiled code may come from, constants included."""
     package, digest = Path(__file__).resolve().parent, sha256()
     for pattern in WITH_COMPILED_CODE:

@@ -54,6 +54,8 @@ class RunDisplay:
         """Note an event; a log that cannot be written any more is given up in words, the run goes on."""
         if event["event"] == "record_failed":
             self.failures += 1
+        if event["event"] == "said" and not self._quiet:
+            typer.echo(event["sentence"], err=True)
         if self._log is None:
             return
         try:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import math
+import os
+import platform
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
@@ -17,8 +21,11 @@ from siggen.stage_times import collected, stage
 if TYPE_CHECKING:
     from siggen.config import Config
 
-Simulate = Callable[["Config", Sequence[int]], Sequence[Record | RecordFailure]]
+Simulate = Callable[["Config", Sequence[int]], Iterable[Record | RecordFailure]]
 """(config, ids of one specimen's records) -> results in the same order, as `simulate_specimen` of siggen.record."""
+
+_PAUSED: dict[Any, Iterator[Record | RecordFailure]] = {}
+"""The simulation of this process whose rest is to come, with the tables of its specimen; one at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +35,10 @@ class Chunk:
     shard: str
     records: range
 
+    def rest(self, done: Chunk) -> Chunk | None:
+        """Return what a part from the first record on leaves; None where it is the whole."""
+        return Chunk(self.shard, range(done.records.stop, self.records.stop)) if done != self else None
+
     def __str__(self) -> str:
         return f"records {self.records[0]} to {self.records[-1]} of shard {self.shard}"
 
@@ -36,13 +47,22 @@ class Chunk:
 class ChunkResult:
     """Rows as an Arrow IPC stream, the records that failed, and the internal quantities of a set that stores some.
 
-    `cpu_s` is the CPU time that the chunk took, by stage.
+    Attributes
+    ----------
+    chunk
+        The records that were simulated.
+    cpu_s
+        CPU time that they took, by stage.
+    worker
+        The process that made them, as host and number.
     """
 
+    chunk: Chunk
     rows: bytes
     failures: tuple[RecordFailure, ...]
     internals: bytes | None = None
     cpu_s: Mapping[str, float] = field(default_factory=dict, compare=False)
+    worker: str = field(default="", compare=False)
 
     def batch(self) -> pa.RecordBatch:
         """Return the rows without copying them; there may be none."""
@@ -73,50 +93,76 @@ class ChunkSimulation:
     quantities: tuple[Column, ...] = ()
 
     def __call__(self, chunk: Chunk) -> ChunkResult:
-        """Simulate a chunk.
+        """Simulate a chunk; `part` without a limit."""
+        return self.part(chunk, math.inf)
+
+    def part(self, chunk: Chunk, limit_s: float) -> ChunkResult:
+        """Simulate a chunk from its first record on, until a time has passed; at least one record.
 
         Raises
         ------
         EngineError
             If the simulation raises anything but MemoryError; names the record. A failure of the solver is a result.
         """
+        until_s = time.monotonic() + limit_s
         with collected("other") as times:
-            rows, failures, internals = self._made(chunk)
-        return ChunkResult(rows, failures, internals, times.seconds)
+            done, records, failures = self._simulated(chunk, until_s)
+            with stage("rows"):
+                rows = _stream(record_batch(self.config, records))
+                internals = _stream(internals_batch(self.config, self.quantities, records)) if self.quantities else None
+        return ChunkResult(done, rows, tuple(failures), internals, times.seconds, f"{platform.node()} {os.getpid()}")
 
-    def _made(self, chunk: Chunk) -> tuple[bytes, tuple[RecordFailure, ...], bytes | None]:
+    def _simulated(self, chunk: Chunk, until_s: float) -> tuple[Chunk, list[Record], list[RecordFailure]]:
         records: list[Record] = []
         failures: list[RecordFailure] = []
-        for result in self._simulated(chunk.records):
+        results = self._begun(chunk)
+        for record_id in chunk.records:
+            result = self._next(results, range(record_id, chunk.records.stop))
             if isinstance(result, RecordFailure):
                 failures.append(result)
             elif reason := non_finite(result):
-                failures.append(RecordFailure(result.planned.record_id, "not_finite", reason))
+                failures.append(RecordFailure(record_id, "not_finite", reason))
             else:
                 records.append(result)
-        with stage("rows"):
-            rows = _stream(record_batch(self.config, records))
-            if not self.quantities:
-                return rows, tuple(failures), None
-            return rows, tuple(failures), _stream(internals_batch(self.config, self.quantities, records))
+            if time.monotonic() >= until_s:
+                break
+        done = Chunk(chunk.shard, range(chunk.records.start, record_id + 1))
+        if rest := chunk.rest(done):
+            _PAUSED[self._key(rest)] = results
+        return done, records, failures
 
-    def _simulated(self, ids: range) -> Sequence[Record | RecordFailure]:
+    def _begun(self, chunk: Chunk) -> Iterator[Record | RecordFailure]:
+        """Go on with a simulation that was paused here, or begin one."""
+        paused = _PAUSED.pop(self._key(chunk), None)
+        _PAUSED.clear()
+        return self._results(chunk.records) if paused is None else paused
+
+    def _key(self, chunk: Chunk) -> tuple[object, ...]:
+        return self.config.identity, self.simulate, chunk.records
+
+    def _results(self, ids: range) -> Iterator[Record | RecordFailure]:
+        yield from self.simulate(self.config, ids)
+
+    def _next(self, results: Iterator[Record | RecordFailure], ids: range) -> Record | RecordFailure:
+        """Return the result of the first of the records that are left."""
         try:
-            results = self.simulate(self.config, ids)
+            result = next(results, None)
         except MemoryError:
             raise
         except Exception as error:
             raise EngineError(f"{self._culprit(ids)} raised {error!r}, which is a fault of the program") from error
-        received = [r.record_id if isinstance(r, RecordFailure) else r.planned.record_id for r in results]
-        if received != list(ids):
-            raise EngineError(f"the simulation of records {list(ids)} returned records {received}")
-        return results
+        if result is None:
+            raise EngineError(f"the simulation of record {ids[0]} returned nothing")
+        received = result.record_id if isinstance(result, RecordFailure) else result.planned.record_id
+        if received != ids[0]:
+            raise EngineError(f"the simulation of record {ids[0]} returned record {received}")
+        return result
 
     def _culprit(self, ids: range) -> str:
         """Return the first record that raises when simulated alone."""
         for record_id in ids:
             try:
-                self.simulate(self.config, [record_id])
+                list(self.simulate(self.config, [record_id]))
             except Exception:
                 return f"record {record_id}"
         return f"one of the records {ids[0]} to {ids[-1]} (none of them alone)"

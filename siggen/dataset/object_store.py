@@ -125,6 +125,11 @@ class ObjectStore:
         """Return the sorted names of all objects below a folder, without leftovers."""
         return list(self.sizes(folder))
 
+    def delete(self, name: str) -> None:
+        """Delete the object, if it is there."""
+        with self._writing(name):
+            self._client.delete_object(**self._place(name))
+
     def delete_leftovers(self) -> list[str]:
         """Delete what a killed process of this machine left of this set among the temporary files.
 

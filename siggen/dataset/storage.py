@@ -57,6 +57,9 @@ class Storage(Protocol):
     def names(self, folder: str = "") -> list[str]:
         """Return the sorted names of all objects below a folder, without leftovers."""
 
+    def delete(self, name: str) -> None:
+        """Delete an object, if it is there."""
+
     def delete_leftovers(self) -> list[str]:
         """Delete files that a killed process left half written, and return their names."""
 
@@ -150,6 +153,17 @@ class LocalFolder:
         # not followed: a link that leads nowhere is a stranger, too
         found = {path.relative_to(self.path).as_posix(): path.stat().st_size if path.exists() else 0 for path in files}
         return {name: found[name] for name in sorted(found)}
+
+    def delete(self, name: str) -> None:
+        """Delete the file if it is there, and its folders that are empty then."""
+        file = self._file(name)
+        if not file.parent.resolve().is_relative_to(self.path.resolve()):
+            raise DatasetError(f"{file} leads out of {self.path} by a link; nothing was deleted")
+        file.unlink(missing_ok=True)
+        for folder in file.parents:
+            if folder == self.path or not folder.is_dir() or any(folder.iterdir()):
+                return
+            folder.rmdir()
 
     def delete_leftovers(self) -> list[str]:
         """Delete half-written files; call it only while holding `writing()`."""

@@ -3,6 +3,9 @@
 S3 has no lock that dies with its process. So a writer renews its lock every `RENEW_S`; one that nobody has renewed for
 `STALE_S` of the server's own clock may be taken over, at once where its process is known to be dead. Making, renewing
 and taking over are conditional writes (If-None-Match, If-Match): of two writers at a time the server refuses one.
+
+An answer may be lost on its way. The client then repeats a write that was done, and the server refuses the repetition:
+so a refusal counts only where the lock is another writer's, by its token.
 """
 
 from __future__ import annotations
@@ -81,27 +84,38 @@ class WriterLock:
             return
 
     def _put(self, **condition: str) -> str:
-        """Write the lock on a condition and return its tag, or an empty text where the condition does not hold."""
+        """Write the lock on a condition and return its tag, or an empty text where another writer has it."""
         from botocore.exceptions import ClientError
 
         try:
             answer = self._client.put_object(Body=json.dumps(self._facts).encode(), **self._place, **condition)
         except ClientError as error:
             if error_code(error) in REFUSED | ABSENT:
-                return ""
+                return self._own_tag()
             raise
         return str(answer["ETag"])
 
-    def _take_over(self) -> str:
-        """Return the tag of the lock if a dead writer had it."""
+    def _own_tag(self) -> str:
+        """Return the tag of a lock that this writer made without hearing of it, or an empty text."""
+        found = self._found()
+        return str(found["ETag"]) if found and _facts(found["Body"].read()) == self._facts else ""
+
+    def _found(self) -> dict[str, Any]:
+        """Return the server's answer to a read of the lock; empty where there is none."""
         from botocore.exceptions import ClientError
 
         try:
-            found = self._client.get_object(**self._place)
+            return dict(self._client.get_object(**self._place))
         except ClientError as error:
-            if error_code(error) in ABSENT:  # released a moment ago
-                return self._put(IfNoneMatch="*") or self._refuse({})
+            if error_code(error) in ABSENT:
+                return {}
             raise
+
+    def _take_over(self) -> str:
+        """Return the tag of the lock if a dead writer had it."""
+        found = self._found()
+        if not found:  # released a moment ago
+            return self._put(IfNoneMatch="*") or self._refuse({})
         holder = _facts(found["Body"].read())
         now = parsedate_to_datetime(found["ResponseMetadata"]["HTTPHeaders"]["date"])
         silent_s = (now - _aware(found["LastModified"])).total_seconds()
@@ -110,7 +124,8 @@ class WriterLock:
         return self._put(IfMatch=found["ETag"]) or self._refuse(holder)
 
     def _holder(self) -> dict[str, Any]:
-        return _facts(self._client.get_object(**self._place)["Body"].read())
+        found = self._found()
+        return _facts(found["Body"].read()) if found else {}
 
     def _refuse(self, holder: dict[str, Any]) -> str:
         raise self._busy(holder)

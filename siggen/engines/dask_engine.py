@@ -45,6 +45,11 @@ class DaskEngine:
             raise UsageError(f"received {workers} workers; at least 1 is needed")
         self.workers = workers
         self.address = address or os.environ.get(ADDRESS_VARIABLE)
+        self._draining = False
+
+    def drain(self) -> None:
+        """Hand in no further task, nor the rest of one; see `DrainingEngine`."""
+        self._draining = True
 
     def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
         """Yield (position, result) as tasks complete; see `Engine.map`.
@@ -56,6 +61,7 @@ class DaskEngine:
         """
         from distributed import wait
 
+        self._draining = False
         call = answer if self.address is not None else partial(_child_answer, os.getpid())
         with self._client() as client:
             yield from windowed(
@@ -64,6 +70,7 @@ class DaskEngine:
                 submit=lambda task: client.submit(call, function, task, pure=False),
                 finished=lambda opened: wait(opened, return_when="FIRST_COMPLETED").done,
                 value=_value,
+                drained=lambda: self._draining,
             )
 
     @contextmanager

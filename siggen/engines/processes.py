@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any
 
-from siggen.engines.protocol import Result, Results, Task
+from siggen.engines.protocol import Result, Results, Task, Unfinished
 from siggen.engines.task_failure import task_error
 from siggen.engines.window import WINDOW_PER_WORKER
 from siggen.engines.worker import DONE, OUT_OF_MEMORY, RAISED, READY, Worker
@@ -35,6 +36,12 @@ class ProcessEngine:
         if workers < 1:
             raise UsageError(f"received {workers} workers; at least 1 is needed")
         self.workers = workers
+        self._pool: _Pool | None = None
+
+    def drain(self) -> None:
+        """Hand out no further task, nor the rest of one; see `DrainingEngine`."""
+        if self._pool is not None:
+            self._pool.draining = True
 
     def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
         """Yield (position, result) as tasks complete; see `Engine.map`.
@@ -44,10 +51,11 @@ class ProcessEngine:
         EngineError
             If a task raised, if its worker died `TASK_ATTEMPTS` times, or if workers do not start.
         """
-        pool = _Pool(function, self.workers, iter(tasks))
+        pool = self._pool = _Pool(function, self.workers, iter(tasks))
         try:
             yield from pool.run()
         finally:
+            self._pool = None
             pool.close()
 
 
@@ -63,6 +71,7 @@ class _Pool:
         self.taken = 0
         self.failed_starts = 0
         self.exhausted = False
+        self.draining = False
 
     def run(self) -> Iterator[tuple[int, Any]]:
         while True:
@@ -71,6 +80,8 @@ class _Pool:
                 return
             self._start_workers()
             self._hand_out()
+            if self.draining and all(worker.task is None for worker in self.workers):
+                return
             results = [result for worker in self._talking() for result in self._hear(worker)]
             # whoever just finished gets its next task before the caller spends time on the results
             self._take()
@@ -87,7 +98,7 @@ class _Pool:
 
     def _take(self) -> None:
         """Take tasks from the iterable while the window has room."""
-        while not self.exhausted and self.taken < self._oldest() + WINDOW_PER_WORKER * self.limit:
+        while not self.exhausted and not self.draining and self.taken < self._oldest() + WINDOW_PER_WORKER * self.limit:
             try:
                 task = next(self.tasks)
             except StopIteration:
@@ -106,13 +117,14 @@ class _Pool:
 
     def _hand_out(self) -> None:
         for worker in self.workers:
-            if worker.ready and worker.task is None and self.waiting:
-                worker.task = self.waiting.popleft()
-                try:
-                    worker.connection.send(self.unfinished[worker.task])
-                except OSError:
-                    # it died while idle; reading from it will show that, and brings the task back
-                    continue
+            if worker.ready and worker.task is None and self.waiting and not self.draining:
+                self._give(worker, self.waiting.popleft())
+
+    def _give(self, worker: Worker, index: int) -> None:
+        worker.task = index
+        # one that died while idle: reading from it will show that, and brings the task back
+        with contextlib.suppress(OSError):
+            worker.connection.send(self.unfinished[index])
 
     def _talking(self) -> list[Worker]:
         ready = set(wait([worker.connection for worker in self.workers]))
@@ -133,7 +145,16 @@ class _Pool:
         if kind == RAISED:
             raise task_error(task, content)
         assert kind == DONE
+        if isinstance(content, Unfinished):
+            self._go_on(worker, index, content.rest)
         yield index, content
+
+    def _go_on(self, worker: Worker, index: int, rest: Any) -> None:
+        """Give a worker the rest of its task, for which it still has what it made for the first part."""
+        self.unfinished[index] = rest
+        self.losses.pop(index, None)
+        if not self.draining:
+            self._give(worker, index)
 
     def _bury(self, worker: Worker) -> None:
         """Remove a dead worker and queue its task again."""

@@ -65,6 +65,11 @@ class RayEngine:
             raise UsageError(f"received {workers} workers; at least 1 is needed")
         self.workers = workers
         self.address = address or os.environ.get(ADDRESS_VARIABLE)
+        self._draining = False
+
+    def drain(self) -> None:
+        """Hand in no further task, nor the rest of one; see `DrainingEngine`."""
+        self._draining = True
 
     def map(self, function: Callable[[Task], Result], tasks: Iterable[Task]) -> Results[Result]:
         """Yield (position, result) as tasks complete; see `Engine.map`.
@@ -74,6 +79,7 @@ class RayEngine:
         EngineError
             If a task raised, its workers died too often, or the cluster cannot be reached.
         """
+        self._draining = False
         call = answer if self.address is not None else _child_answer
         with self._cluster() as ray:
             run = ray.remote(num_cpus=1, max_retries=TASK_ATTEMPTS - 1)(call)
@@ -84,6 +90,7 @@ class RayEngine:
                 submit=lambda task: run.remote(everywhere, task),
                 finished=lambda opened: ray.wait(opened, num_returns=1)[0],
                 value=partial(_value, ray),
+                drained=lambda: self._draining,
             )
 
     @contextmanager

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any
 
-from siggen.engines.protocol import Result, Results, Task
+from siggen.engines.protocol import Result, Results, Task, Unfinished
 
 WINDOW_PER_WORKER = 4
 """Tasks that may be ahead of the oldest unfinished one, per worker: enough for uneven tasks, and bounded memory."""
@@ -18,6 +18,7 @@ def windowed(
     submit: Callable[[Task], Any],
     finished: Callable[[Sequence[Any]], Iterable[Any]],
     value: Callable[[Any, Task], Result],
+    drained: Callable[[], bool] = lambda: False,
 ) -> Results[Result]:
     """Yield (position, result) as tasks complete; see `Engine.map`.
 
@@ -33,17 +34,23 @@ def windowed(
         Open ones -> those that are finished, at least one; waits for it.
     value : callable
         (finished one, its task) -> its result, or what went wrong is raised.
+    drained : callable
+        Whether nothing more shall be begun; see `DrainingEngine`.
     """
     source: Iterator[tuple[int, Task]] = enumerate(tasks)
     opened: dict[Any, tuple[int, Task]] = {}
     taken = 0
     while True:
         oldest = min((index for index, _ in opened.values()), default=taken)
-        for index, task in islice(source, max(0, oldest + WINDOW_PER_WORKER * workers - taken)):
+        room = 0 if drained() else max(0, oldest + WINDOW_PER_WORKER * workers - taken)
+        for index, task in islice(source, room):
             opened[submit(task)] = (index, task)
             taken = index + 1
         if not opened:
             return
         for one in finished(list(opened)):
             index, task = opened.pop(one)
-            yield index, value(one, task)
+            result = value(one, task)
+            if isinstance(result, Unfinished) and not drained():
+                opened[submit(result.rest)] = (index, result.rest)
+            yield index, result

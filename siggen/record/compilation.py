@@ -103,7 +103,7 @@ def _run_motion(config: Config) -> None:
     dynamics = config.dynamics.model_copy(update={"mesh": mesh, "shafts": None})
     states = tuple(state.model_copy(update={"damage": None}) for state in config.states[:1])
     short = config.model_copy(update={"dynamics": dynamics, "states": states, "duration_s": SHORT_S})
-    simulate_specimen(short, record_ids_of(short, 0)[:1])
+    list(simulate_specimen(short, record_ids_of(short, 0)[:1]))
     # what a label of damaged teeth needs besides
     static = specimen_state(gearbox_config(short, 0), draw_specimen(short, 0), 0).static
     static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))

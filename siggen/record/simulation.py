@@ -283,8 +283,8 @@ def _staged_state(config: Config, specimen: Specimen, state_id: int, gears: Made
         return specimen_state(config, specimen, state_id, gears)
 
 
-def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
-    """Simulate records of one specimen; stiffness tables are built once per state.
+def simulate_specimen(config: Config, record_ids: Sequence[int]) -> Iterator[Record | RecordFailure]:
+    """Simulate records of one specimen, each when it is asked for; stiffness tables are built once per state.
 
     Parameters
     ----------
@@ -293,12 +293,12 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record 
 
     Returns
     -------
-    list of Record or RecordFailure, in the order of `record_ids`
+    iterator of Record or RecordFailure, in the order of `record_ids`
 
     Raises
     ------
     ValueError
-        If the records belong to more than one specimen.
+        At once if the records belong to more than one specimen.
     """
     with stage("plan"):
         records = [planned_record(config, i) for i in record_ids]
@@ -306,7 +306,7 @@ def simulate_specimen(config: Config, record_ids: Sequence[int]) -> list[Record 
         raise ValueError(
             f"records of one specimen expected, received specimens {sorted({r.specimen_id for r in records})}"
         )
-    return list(_results(config, records))
+    return _results(config, records)
 
 
 def simulate(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:

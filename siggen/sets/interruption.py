@@ -1,9 +1,11 @@
-"""Ctrl-C and SIGTERM as one exception that reaches the main thread once."""
+"""Ctrl-C and SIGTERM as one exception that reaches the main thread once, or as a request to come to an end."""
 
 from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType, TracebackType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -14,10 +16,19 @@ class Interruption:
 
     Cleaning up is thereby never interrupted itself. Outside of the main thread signals cannot be caught, and are left
     to whoever catches them.
+
+    Attributes
+    ----------
+    requested
+        A signal has raised KeyboardInterrupt.
+    draining
+        A signal came where too much would have been lost; the block comes to an end by itself, and the next one raises.
     """
 
     def __init__(self) -> None:
         self.requested = False
+        self.draining = False
+        self._drain: Callable[[], bool] = _at_once
         self._before: dict[signal.Signals, object] = {}
 
     def __enter__(self) -> Interruption:
@@ -36,7 +47,24 @@ class Interruption:
         if self.requested:
             raise KeyboardInterrupt
 
+    @contextmanager
+    def drained_by(self, drain: Callable[[], bool]) -> Iterator[None]:
+        """Inside the block, ask on the first signal: True where the work comes to an end by itself, soon."""
+        self._drain = drain
+        try:
+            yield
+        finally:
+            self._drain = _at_once
+
     def _stop(self, _number: int, _frame: FrameType | None) -> None:
-        if not self.requested:
-            self.requested = True
-            raise KeyboardInterrupt
+        if self.requested:
+            return
+        if not self.draining and self._drain():
+            self.draining = True
+            return
+        self.requested = True
+        raise KeyboardInterrupt
+
+
+def _at_once() -> bool:
+    return False

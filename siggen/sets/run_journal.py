@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -98,6 +99,12 @@ class RunJournal:
         facts: dict[str, object] = {"outcome": outcome, "message": message, "records_made": made}
         facts |= {"shards_taken_over": taken_over, "failures": self.failures, "seconds": round(self.seconds, 3)}
         self._tell("run_ended", {**facts, "stages": self.stages()})
+
+    def say(self, sentence: str) -> None:
+        """Say something that cannot wait for the end of the run; on stderr where nobody takes events."""
+        if self.events is None:
+            sys.stderr.write(f"{sentence}\n")
+        self._tell("said", {"sentence": sentence})
 
     def _tell(self, event: str, facts: Mapping[str, object]) -> None:
         if self.events is None:

@@ -43,5 +43,5 @@ def test_an_exception_names_the_record_that_raises_it() -> None:
 
 
 def test_results_for_other_records_than_asked_for_are_refused() -> None:
-    with pytest.raises(EngineError, match="returned records"):
+    with pytest.raises(EngineError, match="record 0 returned record 5"):
         ChunkSimulation(CONFIG, lambda config, ids: simulate(config, ids)[::-1])(Chunk("train-00000", range(6)))

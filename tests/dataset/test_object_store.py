@@ -21,6 +21,7 @@ from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError
 from tests.dataset.s3_server import BUCKET, s3_server
+from tests.dataset.swallowed_answers import swallowing
 
 PLACE = f"s3://{BUCKET}/some/set"
 
@@ -202,6 +203,54 @@ def test_a_living_writer_renews_its_lock_and_stops_where_another_took_it_over(
     with pytest.raises(DatasetError, match="could not renew its lock"):
         write_on()
     assert store.exists(LOCK)  # it is the other one's now
+
+
+@pytest.fixture
+def lossy(store: ObjectStore, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[ObjectStore, list[str]]]:
+    """The store by a way that loses the first answers to writing and deleting its lock."""
+    with swallowing(os.environ["AWS_ENDPOINT_URL"], LOCK, {"PUT", "DELETE"}) as (address, swallowed):
+        monkeypatch.setenv("AWS_ENDPOINT_URL", address)
+        found = storage_at(PLACE)
+        assert isinstance(found, ObjectStore)
+        yield found, swallowed
+
+
+def test_a_writer_whose_lock_was_made_without_an_answer_goes_on(lossy: tuple[ObjectStore, list[str]]) -> None:
+    store, swallowed = lossy
+    with store.writing():
+        assert swallowed == ["PUT"]
+        store.put("a", b"1")
+        with pytest.raises(DatasetError, match="by another siggen process"), storage_at(PLACE).writing():
+            pass
+    assert swallowed == ["PUT", "DELETE"]
+    assert not store.exists(LOCK)
+
+
+def test_a_stale_lock_is_taken_over_although_the_answer_is_lost(lossy: tuple[ObjectStore, list[str]]) -> None:
+    store, swallowed = lossy
+    put_lock_of_elsewhere(store)
+    swallowed.clear()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(writer_lock, "STALE_S", -1.0)
+        with store.writing():
+            assert swallowed == ["PUT"]
+            store.put("a", b"1")
+
+
+def test_a_renewal_without_an_answer_is_none_of_another_writer(
+    lossy: tuple[ObjectStore, list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Servers that encrypt give every write another tag, whatever was written: the repetition then has the old one."""
+    monkeypatch.setattr(writer_lock, "RENEW_S", 0.05)
+    store, swallowed = lossy
+    with store.writing():
+        # the tag of the body is the same at every renewal; one that is not is refused as by such a server
+        store._lock._tag = '"of-an-earlier-write"'
+        swallowed.clear()
+        deadline = time.monotonic() + 20
+        while store._lock._tag == '"of-an-earlier-write"' and time.monotonic() < deadline:
+            time.sleep(0.02)
+        store.put("a", b"1")
 
 
 def test_a_store_that_is_gone_or_refuses_is_named_with_how_to_go_on(monkeypatch: pytest.MonkeyPatch) -> None:

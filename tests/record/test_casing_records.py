@@ -23,7 +23,7 @@ def config() -> Config:
 
 @pytest.fixture(scope="module")
 def records(config: Config) -> list[Record]:
-    results = simulate_specimen(config, [0, 9])
+    results = list(simulate_specimen(config, [0, 9]))
     assert all(isinstance(r, Record) for r in results), results
     return results  # type: ignore[return-value]
 

@@ -104,7 +104,7 @@ def test_an_instrument_without_a_path_leaves_plain_channels_as_they_were() -> No
 
 def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
     config = loaded(MODAL, housing={"force_noise": {"share_per_sqrt_hz": 1e-5}})
-    together = simulate_specimen(config, [2, 3])
+    together = list(simulate_specimen(config, [2, 3]))
     for record_id, found in zip([2, 3], together, strict=True):
         assert isinstance(found, Record)
         for name, signal in record(config, record_id).channels.items():

@@ -25,7 +25,7 @@ def config() -> Config:
 
 @pytest.fixture(scope="module")
 def specimen(config: Config) -> list[Record]:
-    results = simulate_specimen(config, range(config.records_per_specimen))
+    results = list(simulate_specimen(config, range(config.records_per_specimen)))
     assert all(isinstance(r, Record) for r in results)
     return results  # type: ignore[return-value]
 
@@ -37,7 +37,7 @@ def same(a: Record, b: Record) -> bool:
 
 def test_a_record_is_a_function_of_configuration_and_index_alone(config: Config, specimen: list[Record]) -> None:
     for index in (5, 0, 3):
-        alone = simulate_specimen(config, [index])[0]
+        alone = next(simulate_specimen(config, [index]))
         assert isinstance(alone, Record)
         assert same(alone, specimen[index])
 
@@ -97,7 +97,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
         "configs/linear_pits.yaml",
         [*SMALL, "states.3.damage.semi_axis_face_mm=6.0"],
     )
-    results = simulate_specimen(config, range(config.records_per_specimen))
+    results = list(simulate_specimen(config, range(config.records_per_specimen)))
     assert [type(r) for r in results[:6]] == [Record] * 6
     for failure in results[6:]:
         assert isinstance(failure, RecordFailure)
@@ -107,7 +107,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
 
 def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
     law = ["dynamics.mesh.law=pairs", "operating_points.torque_nm=2.0e+4"]
-    results = simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *law]), [0, 2])
+    results = list(simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
     assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))
 
@@ -126,7 +126,7 @@ def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkey
 
     monkeypatch.setattr("siggen.record.simulation.measured_channels", broken)
     with pytest.raises(ValueError, match="broadcast"):
-        simulate_specimen(config, [0])
+        list(simulate_specimen(config, [0]))
 
 
 PAIRS = (

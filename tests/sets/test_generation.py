@@ -10,9 +10,10 @@ import pytest
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
+from siggen.engines.protocol import Unfinished
 from siggen.errors import DatasetError, EngineError
 from siggen.sets.generation import generate
-from siggen.sets.set_run import in_order
+from siggen.sets.shard_making import in_order
 from tests.dataset.fake_set import (
     FAKE_FILES,
     fake_config,
@@ -149,8 +150,9 @@ def test_run_json_holds_the_speed_and_carries_its_own_digest(tmp_path: Path) -> 
     assert run["environment"] == json.loads((tmp_path / "shards/test-00000.json").read_text())["environment"]
 
 
-def test_results_are_put_back_in_order() -> None:
-    assert list(in_order(iter([(2, "c"), (0, "a"), (3, "d"), (1, "b")]))) == ["a", "b", "c", "d"]  # type: ignore[arg-type]
+def test_results_are_put_back_in_order_also_those_of_parts() -> None:
+    answers = [(2, "c"), (0, Unfinished("a", None)), (1, Unfinished("b", None)), (3, "d"), (0, "A"), (1, "B")]
+    assert list(in_order(iter(answers))) == ["a", "A", "b", "B", "c", "d"]  # type: ignore[arg-type]
 
 
 def test_a_set_does_not_depend_on_the_engine(tmp_path: Path) -> None:

@@ -204,5 +204,5 @@ def test_a_simulated_record_charges_the_stages_of_the_physics() -> None:
 
     config = load_config(ROOT / "tests/sets/schema_2/config.yaml")
     with collected("other") as times:
-        simulate_specimen(config, [0])
+        list(simulate_specimen(config, [0]))
     assert set(times.seconds) == set(WORKERS) - {"rows"}

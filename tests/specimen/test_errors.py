@@ -139,7 +139,7 @@ def test_no_share_of_the_tolerance_gives_the_bytes_of_perfect_gears() -> None:
 
 
 def test_a_record_does_not_depend_on_its_company() -> None:
-    together = simulate_specimen(CLASS_6, [0, 1])
+    together = list(simulate_specimen(CLASS_6, [0, 1]))
     alone = records(CLASS_6, [1])[0]
     assert isinstance(together[1], Record)
     for name, signal in alone.channels.items():
