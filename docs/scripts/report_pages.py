@@ -4,8 +4,8 @@ Without names all pages are made (`make pages`): those of quickstart, bench, ind
 own. Sets are looked for in runs/ and generated where they are missing; every command is printed before it runs. With
 `--sets DIR` a set is taken from DIR/NAME, where it is. A set of another configuration, or of another number of
 gearboxes, is refused, and so is a page that names a place on this machine. Sets, JSON files, tables and models stay in
-runs/. `docs/reports/answers.md` is written anew from all pages, and so are the figures of quickstart that other pages
-of the documentation cite (`cited_figures.py`).
+runs/. Two pages are kept in the repository (`KEPT`). The figures of quickstart that other pages of the documentation
+cite are drawn anew (`cited_figures.py`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ import shutil
 import socket
 import subprocess
 import sys
-from html import unescape
 from pathlib import Path
 
 RUNS, PAGES = Path("runs"), Path("docs/reports")
@@ -57,15 +56,8 @@ REPORTS = {
 REPORTS["bench"]["bench_ladder"] = ("indicators.html", f"indicators runs/bench --leave-out {LADDER}")
 """By set: the name of a page, what the program calls it, and the command that writes it."""
 
-MISSING: tuple[str, ...] = ()
-"""Pages that are not in docs/reports yet. Take a name out with the commit of its page."""
-
-ANSWERS = PAGES / "answers.md"
-ANSWERS_HEAD = """# What the pages answer
-
-Printed by `python docs/scripts/report_pages.py` from the [pages](README.md): the first sentences of every report.
-All records are simulated.
-"""
+KEPT = ("quickstart_audit", "quickstart_report")
+"""Pages that the repository keeps as examples; git ignores the others."""
 
 
 def run(command: str) -> None:
@@ -148,34 +140,6 @@ def check_set(name: str) -> None:
         )
 
 
-def answers() -> str:
-    """Return the answers of all reports in docs/reports, as a page."""
-    parts = [ANSWERS_HEAD]
-    for name in SETS:
-        page = PAGES / f"{name}_report.html"
-        if not page.exists():
-            continue
-        text = page.read_text(encoding="utf-8").replace("<wbr>", "")
-        opening = text.split('<section class="answer"')[1].split("</section>")[0]
-        said = [_plain(part) for part in re.findall(r"<p>(.*?)</p>", opening, re.DOTALL)]
-        count = re.search(r"identity (\w{12})\w*: (\d+)", _plain(text.rsplit("Made by", 1)[1]))
-        made = f"{count[2]} records, identity `{count[1]}`" if count else ""
-        bold = [f"**{question}.** {answer}" for question, _, answer in (one.partition(". ") for one in said)]
-        listed = "\n".join(f"* {_folded(sentence)}" for sentence in bold)
-        parts.append(f"## {name}\n\n[Report]({page.name}), {made}.\n\n{listed}\n")
-    return "\n".join(parts)
-
-
-def _plain(text: str) -> str:
-    return re.sub(r"[ \n\t]+", " ", unescape(re.sub(r"<[^>]*>", "", text))).strip()
-
-
-def _folded(sentence: str) -> str:
-    import textwrap
-
-    return "\n  ".join(textwrap.wrap(sentence, 120, break_long_words=False, break_on_hyphens=False))
-
-
 def main() -> None:
     """Write the pages of the named sets, or of all."""
     parser = argparse.ArgumentParser()
@@ -188,7 +152,6 @@ def main() -> None:
         fetch_set(name, asked.sets)
         for page, (file, command) in REPORTS[name].items():
             write_page(page, file, command)
-    ANSWERS.write_text(answers(), encoding="utf-8")
     subprocess.run([sys.executable, str(Path(__file__).with_name("cited_figures.py"))], check=True)
 
 

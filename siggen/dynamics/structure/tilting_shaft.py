@@ -5,7 +5,8 @@ bending and shear give way by R (a³/(3 E I) + a/(κ G A)) (Timoshenko; κ = 6 (
 Cowper 1966). The shaft and its bearings are therefore two springs in parallel, each of them the bearing in series with
 its cantilever, at the distances -a and +b from the middle of the gear. Nothing is condensed away but the shaft's mass,
 which belongs to the gear's. The bearing's damper sees the bearing's own share of the motion alone, k_e/k of it with the
-stiffness k_e of both in series, so it dissipates (k_e/k)² as much (exact for slow motion). A stiff shaft with the gear in its middle leaves gear and bearings as without shafts.
+stiffness k_e of both in series, so it dissipates (k_e/k)² as much (exact for slow motion). A stiff shaft with the gear
+in its middle leaves gear and bearings as without shafts.
 """
 
 from __future__ import annotations
