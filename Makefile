@@ -51,6 +51,7 @@ reference: $(STAMP)
 		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
 	done
 
+# Executes the notebooks, four minutes of CPU time, unless copies of this code are kept in runs/notebooks.
 # NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
 docs: $(VENV)/.documented
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
