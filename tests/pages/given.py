@@ -18,7 +18,7 @@ from tests.publication.conftest import facts_file
 
 SPLITS = ("--set", "splits={train: 10, validation: 5, test: 5}")
 SMALLER = {
-    "runs/quickstart": ("configs/quickstart.yaml", "specimens=10", "duration_s=0.5"),
+    "runs/quickstart": ("configs/quickstart.yaml", "specimens=10"),
     "runs/bench": ("configs/bench.yaml", "specimens=4", "duration_s=0.5"),
 }
 """Set -> its configuration and what is smaller."""
