@@ -18,7 +18,7 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.statistics.calibration import calibrated
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.training.average_rows import AveragedRecords, average_rows, moved
-from diagnostics.training.cnn import one_thread, seeded_devices
+from diagnostics.training.cnn import one_thread, seeded_devices, training_note
 from diagnostics.training.splits import SpecimenSplit
 
 LAYERS = ((32, 31, 2), (48, 7, 1), (64, 5, 1), (64, 3, 1))
@@ -179,7 +179,9 @@ def _fit(
             break
     network.load_state_dict(best_weights)
     network.to("cpu").eval()
-    note = "" if validation.size else f"no validation specimens: trained for {epoch} epochs without stopping"
+    note = training_note(
+        "circular network", losses, epoch, target[train], target[validation] if validation.size else None
+    )
     return TrainedCircular(network, split.classes, best_epoch, epoch, tuple(losses), note)
 
 

@@ -10,9 +10,10 @@ layer as numbers of their own.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from math import isfinite
 
 import numpy as np
 import torch
@@ -52,9 +53,6 @@ class TrainingSettings:
         Random paths and noise on training windows; None shows them as they are.
     device : str
         `cpu` or `cuda`.
-    mixed_precision : bool or None
-        Whether convolutions of training run in bfloat16; None: wherever it is fast, so not on the CPU. Weights,
-        loss and judging stay float32.
     """
 
     most_epochs: int = 100
@@ -65,7 +63,6 @@ class TrainingSettings:
     weight_decay: float = 0.1
     augmentation: Augmentation | None = field(default_factory=Augmentation)
     device: str = "cpu"
-    mixed_precision: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +117,7 @@ class WideKernelNetwork(nn.Module):  # type: ignore[misc]  # the type checker do
         varying = (periods - periods.mean(dim=2, keepdim=True)).flatten(2)
         both = torch.cat([scaled, varying], dim=1)
         level = torch.sqrt((both * both).mean(dim=2, keepdim=True) + SMALLEST_VARIANCE)
-        mapped = self.body(both / level).float()  # a spread near zero is lost in the eight bits of bfloat16
+        mapped = self.body(both / level)
         mean = mapped.mean(dim=2, keepdim=True)
         spread = torch.sqrt(((mapped - mean) ** 2).mean(dim=2) + SMALLEST_VARIANCE)
         pooled = self.dropout(torch.cat([mean.squeeze(2), spread], dim=1))
@@ -218,12 +215,37 @@ def _fit(
             break
     network.load_state_dict(best_weights)
     network.to("cpu").eval()  # judged and saved there, whatever it was trained on
-    note = (
-        ""
-        if validation.size
-        else f"no validation specimens: trained for {settings.most_epochs} epochs without stopping"
-    )
+    note = training_note("1-D network", losses, epoch, target[train], judged[1].numpy() if judged else None)
     return TrainedNetwork(network, split.classes, best_epoch, epoch, tuple(losses), note)
+
+
+def training_note(
+    name: str, losses: Sequence[float], epochs: int, train: np.ndarray, validation: np.ndarray | None
+) -> str:
+    """Return what was not as it should be, or nothing: no specimens to stop by, or a network that has not learned.
+
+    Parameters
+    ----------
+    name : str
+        Of the network.
+    losses : sequence of float
+        Cross entropy on validation specimens by epoch.
+    epochs : int
+        Epochs run.
+    train, validation : (k,) int
+        Classes of what was trained on and of what `losses` are means over; None without validation specimens.
+    """
+    if validation is None:
+        return f"no validation specimens: trained for {epochs} epochs without stopping"
+    shares = np.bincount(train, minlength=int(validation.max()) + 1) / train.size
+    guess = -float(np.log(np.maximum(shares, np.finfo(float).tiny))[validation].mean())
+    best = min(losses, key=lambda loss: (not isfinite(loss), loss))
+    if best < guess:
+        return ""
+    return (
+        f"the {name} has not learned: its best validation loss is {best:.3g}, and guessing by how often each class "
+        f"occurs gives {guess:.3g}; its scores mean nothing"
+    )
 
 
 def _run_epoch(
@@ -247,18 +269,10 @@ def _run_epoch(
         if batch.size < 2 and labels.size > 1:  # batch normalisation is undefined on a single window
             continue
         optimiser.zero_grad()
-        with _precision(settings):
-            logits = network(torch.from_numpy(windows[batch]).to(settings.device))
+        logits = network(torch.from_numpy(windows[batch]).to(settings.device))
         truth = torch.from_numpy(labels[batch]).to(settings.device)
-        nn.functional.cross_entropy(logits.float(), truth).backward()
+        nn.functional.cross_entropy(logits, truth).backward()
         optimiser.step()
-
-
-def _precision(settings: TrainingSettings) -> AbstractContextManager[None]:
-    """Return bfloat16 where it is wanted; its range is that of float32, so that gradients need no scaling."""
-    kind = torch.device(settings.device).type
-    wanted = kind != "cpu" if settings.mixed_precision is None else settings.mixed_precision
-    return torch.autocast(kind, dtype=torch.bfloat16) if wanted else nullcontext()
 
 
 def _weights(network: WideKernelNetwork) -> dict[str, torch.Tensor]:
@@ -281,7 +295,7 @@ def _logits(network: WideKernelNetwork, windows: torch.Tensor) -> torch.Tensor:
     network.eval()
     with torch.no_grad():
         device = network.mean.device
-        return torch.cat([network(part.to(device)).float().cpu() for part in windows.split(JUDGING_BATCH)])
+        return torch.cat([network(part.to(device)).cpu() for part in windows.split(JUDGING_BATCH)])
 
 
 def network_predictions(

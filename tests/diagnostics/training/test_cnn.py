@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -89,50 +88,46 @@ def test_same_seed_same_network_and_files_keep_it(
         np.testing.assert_allclose(found, expected[:count], atol=1e-4)
 
 
-def test_mixed_precision_learns_and_leaves_float32_weights_that_are_judged_in_float32(
-    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_the_network_learns_within_few_epochs_and_computes_in_float32_alone(
+    records: OrderRecords, target: np.ndarray, split: SpecimenSplit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import torch
 
     from diagnostics.training import cnn
-    from diagnostics.training.cnn_files import describe_network, load_network, save_network
 
-    kinds: dict[bool, set[torch.dtype]] = {True: set(), False: set()}
+    kinds: set[torch.dtype] = set()
 
-    class Watched(cnn.WideKernelNetwork):
-        def forward(self, windows: torch.Tensor) -> torch.Tensor:
-            logits = super().forward(windows)
-            kinds[self.training].add(logits.dtype)
-            return logits
+    class Watched(torch.nn.Conv1d):
+        def forward(self, signal: torch.Tensor) -> torch.Tensor:
+            mapped = super().forward(signal)
+            kinds.update((signal.dtype, mapped.dtype))
+            return mapped
 
-    monkeypatch.setattr(cnn, "WideKernelNetwork", Watched)
-    few = cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144, mixed_precision=True)
-    trained = cnn.train_network(records, target, split, 7, few)
-    # the same code that runs on a CUDA device: the last layer answers in bfloat16 while training, never while judging
-    assert kinds == {True: {torch.bfloat16}, False: {torch.float32}}
-    assert min(trained.validation_loss) < np.log(3) - 0.05  # below that of guessing three states, which it begins with
-    assert min(trained.validation_loss) < trained.validation_loss[0]
-    for name, value in trained.network.state_dict().items():
-        assert value.device.type == "cpu", name
-        assert value.dtype in (torch.float32, torch.int64), name  # counts of batches are integers
-        assert torch.isfinite(value).all(), name
-    facts = describe_network(trained, records.channels, records.settings, "identity")
-    save_network(trained.network, facts, tmp_path / "cnn.safetensors")
-    network, _ = load_network(tmp_path / "cnn.safetensors")
-    windows = torch.from_numpy(record_windows(records, 0))
-    assert torch.equal(network(windows), trained.network(windows))
+    monkeypatch.setattr(cnn.nn, "Conv1d", Watched)
+    trained = cnn.train_network(records, target, split, 7, cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144))
+    # processors with matrix units answer wrongly in bfloat16 (oneDNN 3.12): nothing learns there
+    assert kinds == {torch.float32}
+    assert min(trained.validation_loss) < np.log(3) - 0.2  # guessing three states, which it begins with
+    assert trained.note == ""
 
 
-def test_the_cpu_trains_in_float32_unless_told_otherwise(
+def test_a_network_that_has_not_learned_says_so(
     records: OrderRecords, target: np.ndarray, split: SpecimenSplit
 ) -> None:
-    from diagnostics.training.cnn import TrainingSettings, train_network
+    from diagnostics.training.cnn import TrainingSettings, train_network, training_note
 
-    short = TrainingSettings(most_epochs=1, windows_per_epoch=64)
-    plain, stated = (
-        train_network(records, target, split, 7, replace(short, mixed_precision=chosen)) for chosen in (None, False)
+    useless = TrainingSettings(most_epochs=2, windows_per_epoch=64, learning_rate=3.0)
+    trained = train_network(records, target, split, 7, useless)
+    assert min(trained.validation_loss) > np.log(3)
+    assert trained.note.startswith("the 1-D network has not learned: its best validation loss is ")
+    assert "guessing by how often each class occurs gives 1.1;" in trained.note
+    # three of four are of class 0: guessing costs -(0.75 ln 0.75 + 0.25 ln 0.25) = 0.562, not ln 2
+    train, validation = np.array([0, 0, 0, 1]), np.array([0, 1, 0, 0])
+    assert training_note("network", [0.6, 0.55], 2, train, validation) == ""
+    assert "0.57, and guessing by how often each class occurs gives 0.562" in training_note(
+        "network", [float("nan"), 0.57], 2, train, validation
     )
-    assert plain.validation_loss == stated.validation_loss
+    assert "loss is nan" in training_note("network", [float("nan")], 1, train, validation)
 
 
 def test_a_foreign_file_is_not_read(tmp_path: Path) -> None:
