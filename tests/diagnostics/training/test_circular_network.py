@@ -113,7 +113,7 @@ def area(found: Predictions) -> float:
     return float(macro_auroc(found, np.ones((1, found.truth.size)))[0])
 
 
-def test_a_burst_without_more_energy_is_found_on_other_gearboxes_and_chance_without_labels(tmp_path: Path) -> None:
+def test_a_burst_without_more_energy_is_found_on_other_gearboxes_by_the_labels_alone(tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     records, damaged, specimen = planted(90, rng)
     split = planted_split(specimen, 40, 10)
@@ -123,11 +123,11 @@ def test_a_burst_without_more_energy_is_found_on_other_gearboxes_and_chance_with
     first = train_circular(records, damaged, split, 7, settings)
     assert torch.equal(state, torch.random.get_rng_state())  # the caller's generator is left alone
     assert area(circular_predictions(first, records, test, damaged, specimen)) > 0.9
-    permuted = damaged.copy()
-    permuted[~split.test] = rng.permutation(damaged[~split.test])
-    blind = train_circular(records, permuted, split, 7, settings)
-    # three standard errors of an AUC of 40 against 40 records: 3 sqrt(81/(12 * 1600))
-    assert abs(area(circular_predictions(blind, records, test, damaged, specimen)) - 0.5) < 0.2
+    # Labels the other way round where it learns: whoever sees those alone names every test record the other way round.
+    # Permuted labels would leave a chance correlation with the burst, whose sign hangs on last bits.
+    turned = np.where(split.test, damaged, 1 - damaged)
+    blind = train_circular(records, turned, split, 7, settings)
+    assert area(circular_predictions(blind, records, test, damaged, specimen)) < 0.1
 
     kept = TrainedCircularFile(replace(first, temperature=0.8), records.channels, "identity")
     save_circular(kept, tmp_path / "circular.safetensors")

@@ -105,7 +105,7 @@ def test_the_network_learns_within_few_epochs_and_computes_in_float32_alone(
 
     monkeypatch.setattr(cnn.nn, "Conv1d", Watched)
     trained = cnn.train_network(records, target, split, 7, cnn.TrainingSettings(most_epochs=6, windows_per_epoch=144))
-    # processors with matrix units answer wrongly in bfloat16 (oneDNN 3.12): nothing learns there
+    # bfloat16 did not learn on a processor with matrix units, whose convolutions oneDNN 3.12 is reported to get wrong
     assert kinds == {torch.float32}
     assert min(trained.validation_loss) < np.log(3) - 0.2  # guessing three states, which it begins with
     assert trained.note == ""
