@@ -42,7 +42,7 @@ def tried(wheel: Path, place: Path) -> None:
         [siggen, "plan", "quickstart"],
         [siggen, "generate", "quickstart", "--out", "set", "--workers", "1", *SMALL],
         [siggen, "verify", "set", "--sample", "1"],
-        [siggen, "run-report", "set"],
+        [siggen, "inspect", "run", "set"],
     ):
         run(command, place)
 

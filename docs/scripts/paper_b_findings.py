@@ -131,7 +131,7 @@ def order_amplitudes(signal, angle_rad, orders):
 
 
 def modes():
-    """Return frequencies and names of the modes by what moves most, as `siggen modes` lists them."""
+    """Return frequencies and names of the modes by what moves most, as `siggen inspect modes` lists them."""
     config = load_config(CONFIG, CONSTANTS)
     found = specimen_modes(config)
     shares = kinetic_shares(found)

@@ -31,10 +31,10 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (
-    *(init, plan, generate, merge, extend, verify, run_report, publish, show, simulate, export_model),
-    *(tvms, flank, pressure, errors, modes, path, schema),
-)
+COMMANDS = (init, plan, generate, merge, extend, verify, publish, show, simulate, export_model, schema)
+INSPECTED = {"tvms": tvms, "flank": flank, "pressure": pressure, "errors": errors, "modes": modes, "path": path}
+INSPECTED |= {"run": run_report}
+"""What `siggen inspect` shows of one gearbox, or of a run."""
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -46,6 +46,16 @@ app = typer.Typer(
 )
 for command in COMMANDS:
     app.command()(command)
+
+inspect = typer.Typer(
+    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path; or at a run.",
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    epilog="Begin with: siggen inspect tvms quickstart --open",
+)
+for name, command in INSPECTED.items():
+    inspect.command(name)(command)
+app.add_typer(inspect, name="inspect")
 
 
 def _print_version(wanted: bool) -> None:

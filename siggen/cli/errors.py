@@ -1,4 +1,4 @@
-"""`siggen errors`: the manufacturing errors of one specimen, tooth by tooth, as a table and a picture."""
+"""`siggen inspect errors`: the manufacturing errors of one specimen, tooth by tooth, as a table and a picture."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def errors(
 ) -> None:
     """Write pitch and profile deviations of every tooth, as a machine would measure them about the shaft's axis.
 
-    Deviations are positive where material is missing. Example: siggen errors set.yaml --out e.csv --png e.png
+    Deviations are positive where material is missing. Example: siggen inspect errors set.yaml --out e.csv --png e.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file

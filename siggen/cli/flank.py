@@ -1,4 +1,4 @@
-"""`siggen flank`: the damage on the flanks of one specimen, as a table and drawn to scale."""
+"""`siggen inspect flank`: the damage on the flanks of one specimen, as a table and drawn to scale."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def flank(
 ) -> None:
     """Write the damage of one specimen, and draw its damaged flanks to scale with the zones of contact.
 
-    Example: siggen flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
+    Example: siggen inspect flank configs/paper_a.yaml --state severe --out flank.csv --png flank.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file

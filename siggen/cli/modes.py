@@ -1,4 +1,4 @@
-"""`siggen modes`: natural frequencies of one specimen and what they consist of, as a table and a picture."""
+"""`siggen inspect modes`: natural frequencies of one specimen and what they consist of, as a table and a picture."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def modes(
 ) -> None:
     """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation.
 
-    Example: siggen modes configs/paper_b.yaml --out modes.csv --png modes.png
+    Example: siggen inspect modes configs/paper_b.yaml --out modes.csv --png modes.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file

@@ -1,4 +1,4 @@
-"""`siggen path`: what lies between the bearings and each channel of one gearbox, as a table and a picture."""
+"""`siggen inspect path`: what lies between the bearings and each channel of one gearbox, as a table and a picture."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def path(
     The table of --out has one row per frequency and two columns per channel and bearing force, in the form that a
     sensor's path of kind measured reads.
 
-    Example: siggen path configs/transfer_path.yaml --png path.png
+    Example: siggen inspect path configs/transfer_path.yaml --png path.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file

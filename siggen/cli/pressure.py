@@ -1,4 +1,4 @@
-"""`siggen pressure`: load and pressure over one flank while its tooth goes through mesh in a record."""
+"""`siggen inspect pressure`: load and pressure over one flank while its tooth goes through mesh in a record."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def pressure(
     Force and tilt are those of the motion. How they spread is solved across the face, with damage, crowning, helix and
     misalignment, and with the elastic pressure at the edges of damage as round as they were drawn.
 
-    Example: siggen pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
+    Example: siggen inspect pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
     """
     from siggen.cli.record_choice import chosen_config
     from siggen.dataset.table_file import write_table_file

@@ -1,4 +1,4 @@
-"""`siggen run-report`: where the time of the run that finished a set went."""
+"""`siggen inspect run`: where the time of the run that finished a set went."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def run_report(
 
     Exit codes: 0 done, 2 no run.json.
 
-    Example: siggen run-report sets/quickstart
+    Example: siggen inspect run sets/quickstart
     """
     import json
 

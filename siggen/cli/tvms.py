@@ -1,4 +1,4 @@
-"""`siggen tvms`: the time-varying mesh stiffness of one specimen in all its states, as a table and a picture."""
+"""`siggen inspect tvms`: the time-varying mesh stiffness of one specimen in all its states, as table and picture."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def tvms(
     The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.damage: geometry or all)
     the stiffness is force over approach at rest, at a torque; then with sink and land of the damaged pair.
 
-    Example: siggen tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
+    Example: siggen inspect tvms configs/paper_a.yaml --out tvms.csv --png tvms.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file

@@ -177,7 +177,7 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
 
 
 def _own(columns: dict[str, FloatArray], sensor: str) -> dict[str, FloatArray]:
-    """Return the columns of one sensor of a file that names sensors, as `siggen path --out` writes it; else all."""
+    """Return the columns of one sensor of a file that names sensors, as `siggen inspect path` writes it; else all."""
     own = {name.removeprefix(f"{sensor}_"): v for name, v in columns.items() if COLUMN.match(name) is None}
     own = {name: values for name, values in own.items() if COLUMN.match(name) is not None}
     return {FREQUENCY: columns[FREQUENCY], **own} if own and FREQUENCY in columns else columns

@@ -1,4 +1,4 @@
-"""The picture of `siggen errors`: cumulative pitch and profiles of both gears within their tolerances."""
+"""The picture of `siggen inspect errors`: cumulative pitch and profiles of both gears within their tolerances."""
 
 from __future__ import annotations
 

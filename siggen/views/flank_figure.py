@@ -1,4 +1,4 @@
-"""The picture of `siggen flank`: damaged flanks to scale, with pitch line, ends of the active profile and zones."""
+"""The picture of `siggen inspect flank`: damaged flanks to scale, pitch line, ends of the active profile, zones."""
 
 from __future__ import annotations
 

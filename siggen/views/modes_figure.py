@@ -1,4 +1,4 @@
-"""The picture of `siggen modes`: who moves in each mode, beside its frequency and the share of the mesh."""
+"""The picture of `siggen inspect modes`: who moves in each mode, beside its frequency and the share of the mesh."""
 
 from __future__ import annotations
 

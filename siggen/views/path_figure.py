@@ -1,4 +1,4 @@
-"""The picture of `siggen path`: accelerance of every channel over frequency, mesh harmonics marked."""
+"""The picture of `siggen inspect path`: accelerance of every channel over frequency, mesh harmonics marked."""
 
 from __future__ import annotations
 

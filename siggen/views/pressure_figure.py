@@ -1,4 +1,4 @@
-"""The picture of `siggen pressure`: pressure over a flank with its damage, and load per length across the face."""
+"""The picture of `siggen inspect pressure`: pressure over a flank with its damage, load per length across the face."""
 
 from __future__ import annotations
 

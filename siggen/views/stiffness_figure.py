@@ -1,4 +1,4 @@
-"""The picture of `siggen tvms`: mesh stiffness of all states, its loss against healthy, and the parts of one pair."""
+"""The picture of `siggen inspect tvms`: mesh stiffness of all states, its loss, and the parts of one pair."""
 
 from __future__ import annotations
 

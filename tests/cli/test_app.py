@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import siggen.cli.app
-from siggen.cli.app import COMMANDS, app, main
+from siggen.cli.app import COMMANDS, INSPECTED, app, main
 from siggen.errors import UsageError, VerificationError
 
 SLOW = ("numpy", "scipy", "numba", "pyarrow", "pydantic", "yaml", "matplotlib")
@@ -45,10 +45,10 @@ def siggen_command(*arguments: str, **environment: str) -> subprocess.CompletedP
 NAMES = [command.__name__.replace("_", "-") for command in COMMANDS]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, *(f"inspect {name}" for name in INSPECTED)])
 def test_every_command_shows_an_example(name):
     for flag in ("--help", "-h"):
-        result = CliRunner().invoke(app, [name, flag])
+        result = CliRunner().invoke(app, [*name.split(), flag])
         assert result.exit_code == 0
         assert "Example" in result.output
         assert f"siggen {name}" in result.output

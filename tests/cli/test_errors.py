@@ -1,4 +1,4 @@
-"""`siggen errors` as a user calls it."""
+"""`siggen inspect errors` as a user calls it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ runner = CliRunner()
 
 
 def run(*arguments: object) -> None:
-    result = runner.invoke(app, ["errors", "tests/configs/casing.yaml", *map(str, arguments)], catch_exceptions=True)
+    result = runner.invoke(
+        app, ["inspect", "errors", "tests/configs/casing.yaml", *map(str, arguments)], catch_exceptions=True
+    )
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output

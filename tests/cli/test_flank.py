@@ -1,4 +1,4 @@
-"""`siggen flank` as a user calls it."""
+"""`siggen inspect flank` as a user calls it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ runner = CliRunner()
 
 
 def run(*arguments: object) -> None:
-    result = runner.invoke(app, ["flank", *map(str, arguments)], catch_exceptions=True)
+    result = runner.invoke(app, ["inspect", "flank", *map(str, arguments)], catch_exceptions=True)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output

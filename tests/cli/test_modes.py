@@ -1,4 +1,4 @@
-"""`siggen modes` as a user calls it."""
+"""`siggen inspect modes` as a user calls it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def test_every_model_has_exactly_one_mode_of_free_rotation(tmp_path: Path, model
     result = runner.invoke(
         app,
         [
-            "modes", "configs/paper_a.yaml", "--out", str(tmp_path / "modes.csv"), "--png", str(tmp_path / "modes.png"),
+            "inspect", "modes", "configs/paper_a.yaml",
+            "--out", str(tmp_path / "modes.csv"), "--png", str(tmp_path / "modes.png"),
             "--set", f"dynamics.model={model}", "--set", f"sensors.0.place={place}", "--set", f"sensors.0.axes={axes}",
         ],
         catch_exceptions=False,

@@ -1,4 +1,4 @@
-"""`siggen path` as a user calls it."""
+"""`siggen inspect path` as a user calls it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,17 @@ runner = CliRunner()
 
 def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> None:
     out, png = tmp_path / "path.parquet", tmp_path / "path.png"
-    arguments = ["path", "configs/transfer_path.yaml", "--out", str(out), "--png", str(png), "--specimen", "3"]
+    arguments = [
+        "inspect",
+        "path",
+        "configs/transfer_path.yaml",
+        "--out",
+        str(out),
+        "--png",
+        str(png),
+        "--specimen",
+        "3",
+    ]
     result = runner.invoke(app, arguments, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     assert "lid_axial" in result.output
@@ -33,6 +43,6 @@ def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> N
 
 
 def test_a_set_without_paths_says_how_to_add_one() -> None:
-    result = runner.invoke(app, ["path", "configs/linear_pits.yaml"])
+    result = runner.invoke(app, ["inspect", "path", "configs/linear_pits.yaml"])
     assert isinstance(result.exception, UsageError)
     assert "path: {kind: modal}" in str(result.exception)

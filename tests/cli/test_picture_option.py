@@ -32,7 +32,7 @@ def run(*arguments: object) -> str:
 
 @pytest.mark.parametrize("command", ["errors", "modes", "tvms"])
 def test_open_draws_without_a_place_and_shows_what_it_drew(command: str, shown: list[str]) -> None:
-    said = run(command, "configs/paper_b.yaml", "--open")
+    said = run("inspect", command, "configs/paper_b.yaml", "--open")
     (address,) = shown
     picture = Path(unquote(urlsplit(address).path))
     assert picture.name == f"{command}.png"
@@ -41,15 +41,15 @@ def test_open_draws_without_a_place_and_shows_what_it_drew(command: str, shown: 
 
 
 def test_open_with_a_place_shows_that_file_and_without_open_nothing_is_shown(tmp_path: Path, shown: list[str]) -> None:
-    run("modes", "configs/paper_b.yaml", "--png", tmp_path / "modes.png")
+    run("inspect", "modes", "configs/paper_b.yaml", "--png", tmp_path / "modes.png")
     assert shown == []
-    run("modes", "configs/paper_b.yaml", "--png", tmp_path / "modes.png", "--open")
+    run("inspect", "modes", "configs/paper_b.yaml", "--png", tmp_path / "modes.png", "--open")
     assert shown == [(tmp_path / "modes.png").as_uri()]
 
 
 def test_a_command_with_nothing_to_write_says_what_it_can_write() -> None:
     with pytest.raises(UsageError, match=r"nothing to write; give --out tvms.csv"):
-        runner.invoke(app, ["tvms", "configs/paper_b.yaml"], catch_exceptions=False)
+        runner.invoke(app, ["inspect", "tvms", "configs/paper_b.yaml"], catch_exceptions=False)
 
 
 def test_every_picture_has_the_one_palette_and_other_figures_keep_theirs(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`siggen tvms` as a user calls it."""
+"""`siggen inspect tvms` as a user calls it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ runner = CliRunner()
 
 
 def run(*arguments: object) -> str:
-    result = runner.invoke(app, ["tvms", *map(str, arguments)], catch_exceptions=True)
+    result = runner.invoke(app, ["inspect", "tvms", *map(str, arguments)], catch_exceptions=True)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output
@@ -102,7 +102,7 @@ def test_pitches_say_how_much_is_computed(tmp_path: Path) -> None:
 def test_limits_of_the_models_are_told_beside_the_table(tmp_path: Path) -> None:
     out = str(tmp_path / "tvms.csv")
     result = runner.invoke(
-        app, ["tvms", "configs/linear_pits.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
+        app, ["inspect", "tvms", "configs/linear_pits.yaml", "--out", out, "--set", "gears.gear.bore_radius_mm=8"]
     )
     assert result.exit_code == 0
     assert "gear (47 teeth): calibration: h_f" in result.stderr

@@ -173,10 +173,10 @@ def test_stages_of_the_driver_add_up_to_the_run(tmp_path: Path) -> None:
 
 def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path: Path) -> None:
     write_fake_set(tmp_path / "set")
-    result = CliRunner().invoke(app, ["run-report", str(tmp_path / "set")])
+    result = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set")])
     assert "30 records, 0 failed in " in result.stdout
     assert all(f"\n{name} " in result.stdout for name in ("planning", "writing", "closing", "rows", "sum"))
-    assert CliRunner().invoke(app, ["run-report", str(tmp_path / "set"), "--json"]).stdout.startswith('{\n "')
+    assert CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set"), "--json"]).stdout.startswith('{\n "')
     with pytest.raises(DatasetError, match=r"has no run\.json"):
         read_run(tmp_path)
 

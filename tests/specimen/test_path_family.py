@@ -94,7 +94,9 @@ def test_the_table_of_siggen_path_is_read_again_at_a_long_settling_time(tmp_path
     table = tmp_path / "path.parquet"
     settings = ["housing.settle_s=0.9", "duration_s=1.5", "background=null"]
     options = [part for said in settings for part in ("--set", said)]
-    result = CliRunner().invoke(app, ["path", "quickstart", "--out", str(table), *options], catch_exceptions=False)
+    result = CliRunner().invoke(
+        app, ["inspect", "path", "quickstart", "--out", str(table), *options], catch_exceptions=False
+    )
     assert result.exit_code == 0, result.output
     assert not out.exists()
     modal = load_config("quickstart", [*settings, "specimens=1"])

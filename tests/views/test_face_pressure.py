@@ -1,4 +1,4 @@
-"""`siggen pressure`: the force of a pair in a record, spread over its flank and drawn."""
+"""`siggen inspect pressure`: the force of a pair in a record, spread over its flank and drawn."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_healthy_tooth_of_the_gear_has_no_edges() -> None:
 
 def run(*arguments: object) -> tuple[int, str]:
     options = [part for override in OVERRIDES for part in ("--set", override)]
-    result = CliRunner().invoke(app, ["pressure", CONFIG, *map(str, arguments), *options])
+    result = CliRunner().invoke(app, ["inspect", "pressure", CONFIG, *map(str, arguments), *options])
     if isinstance(result.exception, UsageError):
         raise result.exception
     return result.exit_code, result.output
@@ -107,7 +107,17 @@ def test_the_command_writes_table_and_picture_and_says_the_largest_pressures(tmp
 )
 def test_what_cannot_be_drawn_is_refused_in_words(tmp_path: Path, arguments: tuple[object, ...], said: str) -> None:
     options = [part for override in OVERRIDES for part in ("--set", override)]
-    whole = ["pressure", CONFIG, *options, "--record", "1", "--out", str(tmp_path / "p.csv"), *map(str, arguments)]
+    whole = [
+        "inspect",
+        "pressure",
+        CONFIG,
+        *options,
+        "--record",
+        "1",
+        "--out",
+        str(tmp_path / "p.csv"),
+        *map(str, arguments),
+    ]
     result = CliRunner().invoke(app, whole)
     assert isinstance(result.exception, UsageError)
     with pytest.raises(UsageError, match=said):
