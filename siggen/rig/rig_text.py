@@ -15,6 +15,7 @@ PLACES_MM = (
 BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
 SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
+CLASSES_RULE = "the whole face carries at full load (ISO 6336-1: K_Hbeta up to 2)"
 SECOND_STAGE_TEETH = range(17, 29)
 """Of a pinion on the gear's shaft: from the least without undercut at 20 degrees (assumed; a measured one had 21)."""
 
@@ -31,7 +32,7 @@ def rig_text(rig: Rig, name: str, base: str) -> str:
         Preset that it extends.
     """
     numbers = rig_numbers(rig)
-    parts = (_head(rig, name, base, numbers), _gears(rig, numbers), _dynamics(rig, numbers), _states(rig))
+    parts = (_head(rig, name, base, numbers), _gears(rig, numbers), _manufacture(rig), _dynamics(rig, numbers), _states(rig))
     return "\n".join((*parts, _background(rig, numbers), _sensors(rig, numbers.scale)))
 
 
@@ -56,7 +57,7 @@ operating_points:
 
 
 def _gears(rig: Rig, numbers: RigNumbers) -> str:
-    bores = [f"{0.5 * rotor.bore_mm:.4g}" for rotor in numbers.rotors]
+    bores = [f"{0.5 * rotor.shaft.bore_mm:.4g}" for rotor in numbers.rotors]
     why = "as given" if rig.bores_mm else "shafts for the torque"
     return f"""\
 gears:
@@ -68,6 +69,16 @@ gears:
 """
 
 
+def _manufacture(rig: Rig) -> str:
+    share = rig.face_width_mm / BENCH_FACE_MM
+    return f"""\
+manufacture:
+  accuracy_class: {{kind: choice, values: {list(rig.accuracy_classes)}}}     # of ISO 1328-1; {CLASSES_RULE}
+  crowning_um: {_range((0.0, 4.0 * share))}     # in proportion to the face width, as in the preset
+  lead_misalignment_um: {_range((0.0, 2.0 * share))}
+"""
+
+
 def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
     scale = numbers.scale
     bolts = ", ".join(f"[{sign * 90.0 * scale:.3g}, 0]" for sign in (1, 1, -1, -1))
@@ -76,7 +87,7 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
         *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
         "  shafts:                     # the gear between its bearings as in the preset",
         *(
-            f"    {name}: {{bearing_span_mm: {rotor.span_mm:.3g}, diameter_mm: {rotor.bore_mm:.3g}}}"
+            f"    {name}: {{bearing_span_mm: {rotor.shaft.span_mm:.3g}, diameter_mm: {rotor.shaft.diameter_mm:.3g}}}"
             for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)
         ),
         f"  # From here on {ASSUMED}.",
@@ -106,9 +117,9 @@ def _rotor(name: str, rotor: RotorNumbers) -> str:
     damping = tuple(2.0 * ratio * (rotor.bearing_n_per_m * rotor.mass_kg) ** 0.5 for ratio in (0.02, 0.04))
     return f"""\
   {name}:
-    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.span_mm:.3g} mm
+    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.shaft.span_mm:.3g} mm
     inertia_kg_m2: {rotor.inertia_kg_m2:.3g}
-    bearing_stiffness_x_n_per_m: {stiffness}     # two ball bearings of {rotor.bore_mm:.3g} mm bore
+    bearing_stiffness_x_n_per_m: {stiffness}     # two {rotor.shaft.bearing.kind} bearings of {rotor.shaft.bearing.bore_mm:.3g} mm bore
     bearing_stiffness_y_n_per_m: {stiffness}
     bearing_damping_x_n_s_per_m: {_range(damping, "loguniform")}    # 2 to 4 % of critical
     bearing_damping_y_n_s_per_m: {_range(damping, "loguniform")}"""
