@@ -68,11 +68,10 @@ def bearing_from(least_bore_mm: float) -> Bearing:
     return Bearing(bore_mm, outer_mm - bore_mm, width_mm)
 
 
-def lasting(bearing: Bearing, force_n: float, speed_hz: float) -> Bearing:
-    """Return a ball bearing, or one with rollers where balls would not last LEAST_LIFE_H at a force and speed."""
+def life_h(bearing: Bearing, force_n: float, speed_hz: float) -> float:
+    """Return the basic rating life of a ball bearing at a radial force and speed [h]."""
     rating_n = 1.3 * 59.0 * BALLS ** (2.0 / 3.0) * (0.3 * bearing.height_mm) ** 1.8
-    life_h = 1e6 * (rating_n / force_n) ** 3 / (3600.0 * speed_hz)
-    return bearing._replace(rollers=life_h < LEAST_LIFE_H)
+    return float(1e6 * (rating_n / force_n) ** 3 / (3600.0 * speed_hz))
 
 
 def step_above_mm(bore_mm: float) -> float:

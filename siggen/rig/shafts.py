@@ -2,8 +2,8 @@
 
 Sized for what the gears bear (`rating`), or the torque that is asked for where that is more. The shaft end bears it at
 20 N/mm² in torsion. Each bearing's seat is one step of the catalogue thicker than the end, and the seat of the gear,
-which is the piece between the bearings, one more: a bearing rests on a shoulder. Where balls would not last, it has
-rollers. Thinner are they where only then
+which is the piece between the bearings, one more: a bearing rests on a shoulder. Where balls would not last in all
+of them, all have rollers. Thinner are they where only then
 the bearings stand side by side, and where a pinion is cut from its shaft, 0.9 of its root circle.
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 from math import cos, pi, radians
 from typing import NamedTuple
 
-from siggen.rig.bearings import BORES_MM, Bearing, bearing_from, bearing_like, lasting, step_above_mm
+from siggen.rig.bearings import BORES_MM, LEAST_LIFE_H, Bearing, bearing_from, bearing_like, life_h, step_above_mm
 from siggen.rig.rating import rated_torque_nm
 from siggen.rig.rig import Rig
 
@@ -73,12 +73,14 @@ def _sizes(rig: Rig, steps: int) -> tuple[tuple[float, Bearing], tuple[float, Be
     rated = rated_torque_nm(rig.teeth, rig.module_mm, rig.face_width_mm, rig.pressure_angle_deg)
     torque_nm = max(rig.torque_nm[1], rated)
     force_n = 2e3 * torque_nm / (rig.module_mm * rig.teeth[0] * cos(radians(rig.pressure_angle_deg)))
-    found = []
-    for i, teeth in enumerate(rig.teeth):
-        ratio = teeth / rig.teeth[0]
-        thick_mm, bearing = _size(torque_nm * ratio, root_diameter_mm(rig, i), steps)
-        found.append((thick_mm, lasting(bearing, 0.5 * force_n, rig.speed_hz[1] / ratio)))
-    return found[0], found[1]
+    ratios = [teeth / rig.teeth[0] for teeth in rig.teeth]
+    sizes = [_size(torque_nm * ratio, root_diameter_mm(rig, i), steps) for i, ratio in enumerate(ratios)]
+    balls_last = all(
+        life_h(bearing, 0.5 * force_n, rig.speed_hz[1] / ratio) >= LEAST_LIFE_H
+        for (_, bearing), ratio in zip(sizes, ratios, strict=True)
+    )
+    first, second = ((thick_mm, bearing._replace(rollers=not balls_last)) for thick_mm, bearing in sizes)
+    return first, second
 
 
 def _size(torque_nm: float, root_mm: float, steps: int) -> tuple[float, Bearing]:

@@ -26,6 +26,7 @@ from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.planning.plan import ShardPlan, shards
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
+from siggen.sets.loss_limit import LossLimit
 from siggen.sets.manifest_facts import manifest_facts
 from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
@@ -79,15 +80,16 @@ def set_run(
     interruption: Interruption,
     earlier: Sequence[int] = (),
     events: Events | None = None,
+    limit: LossLimit | None = None,
 ) -> SetRun:
     """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
-    journal = RunJournal(events)
+    journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()
         quantities = physics.stored(config)
         planned = planned_shards(config, earlier)
     run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned, journal)
-    run.total = sum(shard.record_count for shard in planned)
+    run.expect(planned)
     journal.start(config, str(storage.location), engine, run.total, len(planned))
     return run
 
@@ -172,13 +174,19 @@ class SetRun:
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
-        self.total = sum(shard.record_count for shard in wanted)
+        self.expect(wanted)
         self._advance(0)
         with self.journal.driver.during("taking over"):
             self.take_over(wanted)
         taken_over = len(self.sidecars)
         self.making.make([shard for shard in wanted if shard.key not in self.sidecars], self._committed)
         return taken_over
+
+    def expect(self, wanted: Sequence[ShardPlan]) -> None:
+        """Count the records that this run shall have at its end."""
+        self.total = sum(shard.record_count for shard in wanted)
+        if self.journal.limit is not None:
+            self.journal.limit.records = self.total
 
     def conclude(self, taken_over: int) -> Generation:
         """Write tables, card and manifest over all shards, which are there."""
