@@ -64,4 +64,4 @@ def main(pairs: int, gearboxes: int, turns: float) -> None:
 
 if __name__ == "__main__":
     given = [float(number) for number in sys.argv[1:]]
-    main(*(int(number) for number in (given + [30, 10][len(given):])[:2]), given[2] if len(given) > 2 else trial.TURNS)
+    main(*(int(number) for number in (given + [30, 10][len(given) :])[:2]), given[2] if len(given) > 2 else trial.TURNS)

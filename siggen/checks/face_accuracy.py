@@ -25,13 +25,13 @@ PARALLEL_UM_PER_MM = 0.1
 def covering_classes(rig: Rig) -> tuple[int, ...]:
     """Return up to three neighbouring classes, of which the coarsest is the last that covers the face, or the finest.
 
-    Raises
-    ------
-    ValueError
-        If a gear lies outside the range of ISO 1328-1.
+    Those of the preset where there are no such gears, or none within ISO 1328-1: whoever loads the file says why.
     """
-    allowed_um = _allowed_um(rig) - PARALLEL_UM_PER_MM * rig.face_width_mm
-    fitting = [grade for grade in range(FINEST, COARSEST + 1) if _slopes_um(rig, grade) <= allowed_um]
+    try:
+        allowed_um = _allowed_um(rig) - PARALLEL_UM_PER_MM * rig.face_width_mm
+        fitting = [grade for grade in range(FINEST, COARSEST + 1) if _slopes_um(rig, grade) <= allowed_um]
+    except ValueError:
+        return rig.accuracy_classes
     coarsest = max(fitting, default=FINEST)
     return tuple(range(max(FINEST, coarsest - CHOICES + 1), coarsest + 1))
 

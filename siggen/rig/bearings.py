@@ -3,7 +3,7 @@
 Sizes are those of dimension series 02 of ISO 15 (ball bearings 623 to 629 and 6200 to 6244, roller bearings NU 2).
 Deflection by Palmgren, as catalogues give it, without clearance (mm, N):
 
-    ball      delta = 4.4e-4 Q^(2/3) D^(-1/3)     Q = 4.37 F/Z     D = 0.3 of the height between bore and outer ring, Z = 9
+    ball      delta = 4.4e-4 Q^(2/3) D^(-1/3)     Q = 4.37 F/Z     D = 0.3 of the height (bore to outer ring), Z = 9
     roller    delta = 7.7e-5 Q^0.9 l^(-0.8)       Q = 4.08 F/Z     l = D = 0.27 of it, in 0.78 of the circle
 
 Load rating of ball bearings by ISO 281, C = 1.3 f_c Z^(2/3) D^1.8 with f_c = 59; life (C/F)^3 million turns.

@@ -60,6 +60,10 @@ def _ratios(before: Rig, after: Rig, torque: float) -> PairScales:
         first, second = (getattr(new.rotors[i], key) / getattr(old.rotors[i], key) for i in range(2))
         return first, second
 
+    def of_shafts(key: str) -> Two:
+        first, second = (getattr(new.rotors[i].shaft, key) / getattr(old.rotors[i].shaft, key) for i in range(2))
+        return first, second
+
     return PairScales(
         after.module_mm / before.module_mm,
         after.face_width_mm / before.face_width_mm,
@@ -67,11 +71,11 @@ def _ratios(before: Rig, after: Rig, torque: float) -> PairScales:
         torque,
         new.load_share / old.load_share,
         new.scale / old.scale,
-        _each(*(tuple(rotor.shaft.bore_mm for rotor in numbers.rotors) for numbers in (new, old))),
+        of_shafts("bore_mm"),
         of_rotors("mass_kg"),
         of_rotors("inertia_kg_m2"),
         of_rotors("bearing_n_per_m"),
-        _each(*(tuple(rotor.shaft.span_mm for rotor in numbers.rotors) for numbers in (new, old))),
+        of_shafts("span_mm"),
         (new.motor_inertia_kg_m2 / old.motor_inertia_kg_m2, new.load_inertia_kg_m2 / old.load_inertia_kg_m2),
         _each(new.coupling_nm_per_rad, old.coupling_nm_per_rad),
         _each(new.coupling_nm_s_per_rad, old.coupling_nm_s_per_rad),

@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import cos, pi, radians, sin, sqrt
 
 FACE_OVER_MODULE = 8.0
-"""Usual are 8 to 16 modules (Norton, Machine Design); the least, since flanks without corrections bear a narrow face best."""
+"""Usual are 8 to 16 modules (Norton, Machine Design); the least, since plain flanks bear a narrow face best."""
 LOAD_FACTOR = 2.0
 FLANK_PA = 1500e6 / 1.2 / sqrt(LOAD_FACTOR)
 ROOT_PA = 860e6 / 1.5 / LOAD_FACTOR
@@ -31,7 +31,7 @@ def proposed_face_width_mm(module_mm: float) -> float:
 def rated_torque_nm(
     teeth: tuple[int, int], module_mm: float, face_width_mm: float, pressure_angle_deg: float = 20.0
 ) -> float:
-    """Return the largest torque on the pinion at which neither flank nor root of a steel pair is stressed too far [N m].
+    """Return the largest torque on the pinion that stresses neither flank nor root of a steel pair too far [N m].
 
     Flank: p = sqrt(F E*/(π b R)) at the pitch point, F = T/r_b. Root: σ = F_t Y/(b m), F_t = T/r.
     """

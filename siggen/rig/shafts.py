@@ -61,7 +61,7 @@ def root_diameter_mm(rig: Rig, i: int) -> float:
 
 def shaft_end_mm(torque_nm: float, root_mm: float) -> float:
     """Return the least diameter of a shaft that bears a torque, at least a quarter of the gear's root circle [mm]."""
-    return max((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0), 0.25 * root_mm)
+    return max(float((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0)), 0.25 * root_mm)
 
 
 def _given(bore_mm: float, face_width_mm: float) -> Shaft:

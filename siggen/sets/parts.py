@@ -85,7 +85,9 @@ def generate_part(
             return unchanged(storage, events)
         storage.delete_leftovers()
         with Interruption() as interruption:
-            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, events=events, limit=limit)
+            run = set_run(
+                config, storage, engine_of(engine, workers), progress, interruption, events=events, limit=limit
+            )
             return run.finish_some(run.planned[chosen.number - 1 :: chosen.of])
 
 

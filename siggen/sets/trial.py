@@ -56,9 +56,7 @@ def default_gearboxes(config: Config) -> int:
     return min(GEARBOXES, max(2, RECORDS // len(config.states)), config.specimens)
 
 
-def trial(
-    config: Config, gearboxes: int, progress: Callable[[int, int], None] | None = None
-) -> tuple[StateTrial, ...]:
+def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] | None = None) -> tuple[StateTrial, ...]:
     """Return what short records of the first gearboxes of a set lose, by state.
 
     Parameters

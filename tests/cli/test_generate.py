@@ -52,7 +52,9 @@ def test_the_path_alone_is_on_stdout(config: Path, tmp_path: Path, simulation: S
 
 def test_failed_records_end_with_3_and_are_named(config: Path, tmp_path: Path, simulation: SimpleNamespace) -> None:
     simulation.function = simulate_with_failures
-    result = CliRunner().invoke(app, ["generate", str(config), "--out", str(tmp_path / "set"), "--workers", "1", "--allowed-loss", "0.2"])
+    result = CliRunner().invoke(
+        app, ["generate", str(config), "--out", str(tmp_path / "set"), "--workers", "1", "--allowed-loss", "0.2"]
+    )
     assert result.exit_code == EXIT_RECORDS_FAILED
     assert "record 8 failed: diverged (motion left the backlash)" in result.stderr
     assert "3 records could not be simulated; the set is usable" in result.stderr
