@@ -76,6 +76,12 @@ class RunJournal:
         who = {"engine": type(engine).__name__, "workers": engine.workers}
         facts |= {"identity": config.identity, "path": path, **who, "records": records, "shards": shards}
         self._tell("run_started", facts)
+        self.expect(records)
+
+    def expect(self, records: int) -> None:
+        """Note how many records the run shall have at its end, of which a share may fail."""
+        if self.limit is not None:
+            self.limit.records = records
 
     def taken_over(self, sidecar: Sidecar, done: int, total: int) -> None:
         """Tell of a shard that an earlier run made."""

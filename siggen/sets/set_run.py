@@ -89,7 +89,7 @@ def set_run(
         quantities = physics.stored(config)
         planned = planned_shards(config, earlier)
     run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned, journal)
-    run.expect(planned)
+    run.total = sum(shard.record_count for shard in planned)
     journal.start(config, str(storage.location), engine, run.total, len(planned))
     return run
 
@@ -151,13 +151,7 @@ class SetRun:
             return self.conclude(taken_over)
 
     def finish_some(self, wanted: Sequence[ShardPlan]) -> Generation:
-        """Make some shards and nothing else; `rows` and `failures` are theirs.
-
-        Raises
-        ------
-        InterruptionError
-            After SIGINT or SIGTERM.
-        """
+        """Make some shards and nothing else; `rows` and `failures` are theirs. Raises as `finish`."""
         with self._told():
             if not self.storage.exists(CONFIG):
                 self.storage.put(CONFIG, config_bytes(self.config))
@@ -174,19 +168,14 @@ class SetRun:
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
-        self.expect(wanted)
+        self.total = sum(shard.record_count for shard in wanted)
+        self.journal.expect(self.total)
         self._advance(0)
         with self.journal.driver.during("taking over"):
             self.take_over(wanted)
         taken_over = len(self.sidecars)
         self.making.make([shard for shard in wanted if shard.key not in self.sidecars], self._committed)
         return taken_over
-
-    def expect(self, wanted: Sequence[ShardPlan]) -> None:
-        """Count the records that this run shall have at its end."""
-        self.total = sum(shard.record_count for shard in wanted)
-        if self.journal.limit is not None:
-            self.journal.limit.records = self.total
 
     def conclude(self, taken_over: int) -> Generation:
         """Write tables, card and manifest over all shards, which are there."""
