@@ -188,10 +188,11 @@ def test_a_run_that_loses_more_of_a_state_than_allowed_stops_keeps_its_shards_an
         write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
     assert (tmp_path / "shards/train-00000.json").exists()
     assert not (tmp_path / "manifest.json").exists()
-    with pytest.raises(LossError, match="state slight 2"):  # resumed with the same share, from the same shard on
+    # resumed with the same share it stops again, once shard 1 is whole from what was kept of it
+    with pytest.raises(LossError, match="state slight 2"):
         write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
     generation = write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.2)
-    assert (len(generation.failures), generation.shards_taken_over) == (3, 1)
+    assert (len(generation.failures), generation.shards_taken_over) == (3, 2)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
