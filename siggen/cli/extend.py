@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from siggen.cli.engine_options import Address, EngineName
+from siggen.cli.engine_options import Address, AllowedLoss, EngineName
 from siggen.cli.run_display import LogJson, run_shown
 
 
@@ -22,6 +22,7 @@ def extend(
     ] = None,
     engine: EngineName = None,
     address: Address = None,
+    allowed_loss: AllowedLoss = 0.1,
     log_json: LogJson = None,
 ) -> None:
     """Add gearboxes to a finished set; the same command continues an interrupted extension.
@@ -30,7 +31,8 @@ def extend(
     measured section in the card is left out, since it was measured on fewer gearboxes. Every record is the one that a
     set generated at once would have.
 
-    Exit codes: 0 done, 2 no finished set or a wrong number, 3 done but some records failed, 130 interrupted.
+    Exit codes: 0 done, 2 no finished set or a wrong number, 3 records failed (done without them, or stopped by
+    --allowed-loss), 130 interrupted.
 
     Example: siggen extend sets/quickstart --specimens +100
     """
@@ -42,7 +44,8 @@ def extend(
     runner = engine if address is None else engine_of(engine, workers, address)
     count = workers if runner is engine else None
     with run_shown(log_json, folder) as shown:
-        generation = extend_set(folder, specimens, count, shown.progress, engine=runner, events=shown.events)
+        told: dict[str, Any] = {"events": shown.events, "allowed_loss": allowed_loss}
+        generation = extend_set(folder, specimens, count, shown.progress, engine=runner, **told)
     report(generation, say=shown.say)
     typer.echo(str(generation.path))
     if generation.failures:

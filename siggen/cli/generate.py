@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from siggen.cli.engine_options import Address, EngineName
+from siggen.cli.engine_options import Address, AllowedLoss, EngineName
 from siggen.cli.run_display import LogJson, run_shown
 from siggen.errors import counted
 
@@ -37,6 +37,7 @@ def generate(
         str | None,
         typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
     ] = None,
+    allowed_loss: AllowedLoss = 0.1,
     log_json: LogJson = None,
     overrides: Annotated[
         list[str] | None,
@@ -48,7 +49,8 @@ def generate(
     With --part i/N every job makes its shards in a folder of its own, knowing nothing of the others; `siggen merge`
     puts the parts together.
 
-    Exit codes: 0 done, 2 wrong configuration or folder, 3 done but some records failed, 130 interrupted.
+    Exit codes: 0 done, 2 wrong configuration or folder, 3 records failed (done without them, or stopped by
+    --allowed-loss), 130 interrupted.
 
     Example: siggen generate configs/quickstart.yaml --out sets/quickstart
     """
@@ -66,14 +68,15 @@ def generate(
     with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded):
             shown.say(f"implausible: {sentence}")
-        if told := compilation_text(loaded, default_workers() if workers is None else workers):
-            shown.say(told)
+        if text := compilation_text(loaded, default_workers() if workers is None else workers):
+            shown.say(text)
         runner = engine if address is None else engine_of(engine, workers, address)
-        count, progress, events = workers if runner is engine else None, shown.progress, shown.events
+        count, progress = workers if runner is engine else None, shown.progress
+        told: dict[str, Any] = {"events": shown.events, "allowed_loss": allowed_loss}
         if chosen is None:
-            generation = generate_set(loaded, out, count, progress, engine=runner, events=events)
+            generation = generate_set(loaded, out, count, progress, engine=runner, **told)
         else:
-            generation = generate_part(loaded, out, chosen, count, progress, engine=runner, events=events)
+            generation = generate_part(loaded, out, chosen, count, progress, engine=runner, **told)
     report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}", shown.say)
     typer.echo(str(generation.path))
     if generation.failures:

@@ -1,4 +1,4 @@
-"""`siggen plan`: what a configuration would give, before anything is simulated."""
+"""`siggen plan`: what a configuration would give, and which records it would lose."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ import typer
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.table import Table
 
     from siggen.config import Config
+    from siggen.sets.trial import StateTrial
 
 
 NOTES = ("stiffness_notes", "lubrication_notes", "torque_notes", "damage_notes", "shaft_notes")
@@ -28,20 +30,38 @@ def plan(
         list[str] | None,
         typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
     ] = None,
+    trial: Annotated[
+        int | None,
+        typer.Option(
+            "--trial",
+            min=0,
+            max=1000,
+            help="Gearboxes of which a short record of every state is simulated, to tell which share would be lost; "
+            "0: none. By default up to 10 where shafts bend, none elsewhere.",
+            metavar="N",
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
 ) -> None:
-    """List the records, shards and size that a configuration would give, and what in it is implausible.
+    """List the records, shards and size that a configuration would give, what is implausible and what would be lost.
 
-    Example: siggen plan configs/quickstart.yaml --set specimens=1000 --json
+    A record is lost where its motion leaves the model. Short records of a few gearboxes say of every state which share
+    that is; they take a second or so each. `--trial 0` leaves them out.
+
+    Example: siggen plan configs/quickstart.yaml --set specimens=1000 --trial 20
     """
     import json
+    from dataclasses import asdict
 
     from rich.console import Console
 
     from siggen.checks.loading import load_config
 
     with working("checking the configuration"):
-        summary = plan_summary(load_config(config, overrides or ()))
+        loaded = load_config(config, overrides or ())
+        summary = plan_summary(loaded)
+    tried = _tried(loaded, trial)
+    summary["trial"] = [{**asdict(state), "interval_95": state.interval} for state in tried]
     if as_json:
         typer.echo(json.dumps(summary, indent=2))
         return
@@ -53,6 +73,43 @@ def plan(
         console.print(f"implausible: {sentence}", highlight=False, markup=False, style="yellow")
     for note in (note for kind in NOTES for note in summary[kind]):
         console.print(f"note: {note}", highlight=False, markup=False)
+    _print_trial(console, tried)
+
+
+def _tried(config: Config, gearboxes: int | None) -> tuple[StateTrial, ...]:
+    """Return what short records of some gearboxes lose; a line on stderr tells how far it is."""
+    from siggen.cli.working import stepwise
+    from siggen.sets import trial
+
+    count = trial.default_gearboxes(config) if gearboxes is None else gearboxes
+    if not count:
+        return ()
+    with stepwise("trying short records of every state (--trial 0 leaves this out)") as progress:
+        return trial.trial(config, count, progress)
+
+
+def _print_trial(console: Console, tried: Sequence[StateTrial]) -> None:
+    """Print which share of every state would be lost, and what to do where that is more than a run allows."""
+    from rich.table import Table
+
+    from siggen.errors import counted
+    from siggen.sets.loss_limit import ALLOWED_LOSS
+
+    if not tried:
+        console.print("nothing was tried: --trial 10 simulates short records of ten gearboxes", markup=False)
+        return
+    title = f"Trial: a short record of {counted(tried[0].tried, 'gearbox', 'gearboxes')} in every state"
+    table = Table("state", "lost", "share", "95 % of all", title=title, title_justify="left")
+    for state in tried:
+        low, high = state.interval
+        table.add_row(state.state, f"{state.lost} of {state.tried}", f"{state.share:.0%}", f"{low:.0%} to {high:.0%}")
+    console.print(table)
+    for state in (state for state in tried if state.share > ALLOWED_LOSS):
+        sentence = (
+            f"{state.state}: more than {ALLOWED_LOSS:.0%} would be lost, at which `siggen generate` stops "
+            f"(--allowed-loss). {state.reason}"
+        )
+        console.print(sentence, highlight=False, markup=False, style="yellow")
 
 
 def plan_summary(config: Config) -> dict[str, Any]:

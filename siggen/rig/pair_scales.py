@@ -7,12 +7,14 @@ torque comes first: the one at which neither flank nor tooth root is stressed mo
 from __future__ import annotations
 
 from dataclasses import replace
+from math import ceil
 from typing import NamedTuple
 
 from siggen.config import Gears, Number, OperatingRange, at, bounds
 from siggen.config.pairs import Pair
 from siggen.rig.rig import Rig
-from siggen.rig.rig_numbers import LARGEST_BORE, rig_numbers, root_diameter_mm, shaft_diameter_mm
+from siggen.rig.rig_numbers import rig_numbers
+from siggen.rig.shafts import LARGEST_BORE, root_diameter_mm, shaft_end_mm
 
 Two = tuple[float, float]
 
@@ -58,6 +60,10 @@ def _ratios(before: Rig, after: Rig, torque: float) -> PairScales:
         first, second = (getattr(new.rotors[i], key) / getattr(old.rotors[i], key) for i in range(2))
         return first, second
 
+    def of_shafts(key: str) -> Two:
+        first, second = (getattr(new.rotors[i].shaft, key) / getattr(old.rotors[i].shaft, key) for i in range(2))
+        return first, second
+
     return PairScales(
         after.module_mm / before.module_mm,
         after.face_width_mm / before.face_width_mm,
@@ -65,11 +71,11 @@ def _ratios(before: Rig, after: Rig, torque: float) -> PairScales:
         torque,
         new.load_share / old.load_share,
         new.scale / old.scale,
-        of_rotors("bore_mm"),
+        of_shafts("bore_mm"),
         of_rotors("mass_kg"),
         of_rotors("inertia_kg_m2"),
         of_rotors("bearing_n_per_m"),
-        of_rotors("span_mm"),
+        of_shafts("span_mm"),
         (new.motor_inertia_kg_m2 / old.motor_inertia_kg_m2, new.load_inertia_kg_m2 / old.load_inertia_kg_m2),
         _each(new.coupling_nm_per_rad, old.coupling_nm_per_rad),
         _each(new.coupling_nm_s_per_rad, old.coupling_nm_s_per_rad),
@@ -120,10 +126,17 @@ def _bores_mm(before: Rig, after: Rig) -> Two:
     found = []
     for i, bore in enumerate(given):
         old, new = (
-            shaft_diameter_mm(value * (rig.teeth[1] / rig.teeth[0] if i else 1.0), root_diameter_mm(rig, i))
+            _shaft_mm(value * (rig.teeth[1] / rig.teeth[0] if i else 1.0), root_diameter_mm(rig, i))
             for rig, value in zip((before, after), torque, strict=True)
         )
         found.append(
             min(bore * new / old, max(LARGEST_BORE, bore / root_diameter_mm(before, i)) * root_diameter_mm(after, i))
         )
     return found[0], found[1]
+
+
+def _shaft_mm(torque_nm: float, root_mm: float) -> float:
+    """Return a shaft for the torque, in steps of 5 mm where it is that thick, at most 0.6 of the root circle [mm]."""
+    needed = shaft_end_mm(torque_nm, root_mm)
+    rounded = 5.0 * ceil(needed / 5.0) if needed > 10.0 else float(ceil(needed))
+    return min(rounded, LARGEST_BORE * root_mm)

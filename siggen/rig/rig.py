@@ -34,6 +34,8 @@ class Rig:
         Number of accelerometers.
     bores_mm : (pinion, gear) or None
         Diameters of the bores, which are those of the shafts; None: from the torque.
+    accuracy_classes : tuple of int
+        Flank tolerance classes of ISO 1328-1, equally likely for each gear.
     """
 
     teeth: tuple[int, int]
@@ -44,6 +46,7 @@ class Rig:
     sensors: int = 2
     pressure_angle_deg: float = 20.0
     bores_mm: Pair | None = None
+    accuracy_classes: tuple[int, ...] = (5, 6, 7)
 
     @property
     def hunting_turns(self) -> int:

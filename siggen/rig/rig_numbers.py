@@ -1,9 +1,7 @@
 """RigNumbers: masses, supports and sizes that follow from a rig's gears, torque and shafts.
 
-Steel discs and shafts by geometry. Stiffness of bearings by Palmgren's deflection of point contacts as manufacturers'
-catalogues give it, delta = 4.4e-4 Q^(2/3) D^(-1/3) (mm, N), Q = 4.37 F/Z without clearance, Z = 9 balls of D = 0.3 of
-the height between bore d and outer ring 1.6 d + 12 mm (series 62). What follows from nothing that is known scales with
-the gearbox of `bench`: `ASSUMED`.
+Steel discs and shafts by geometry, bearings by their catalogue. What follows from nothing that is known scales with the
+gearbox of `bench`: `ASSUMED`.
 """
 
 from __future__ import annotations
@@ -13,15 +11,11 @@ from typing import NamedTuple
 
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS
 from siggen.rig.rig import Pair, Rig
+from siggen.rig.shafts import Shaft, shafts
 
 STEEL_DENSITY_KG_M3 = 7850.0
-SHEAR_N_MM2 = 20.0
-"""Allowed in a shaft that also bends; a usual value for a first size."""
 RUNNING_IN_UM = 2.0
 """Relief by running in alone, C_ay of ISO 6336-1 for steel of 1500 N/mm²; the other end is the deflection."""
-LARGEST_BORE = 0.6
-"""Diameter of a bore over that of the root circle."""
-BALLS = 9
 BENCH_CENTRE_MM = 97.5
 BENCH_TORQUE_NM = (60.0, 156.7)
 BENCH_FORCE_N = 2365.0
@@ -30,13 +24,12 @@ ASSUMED = "scaled from the gearbox of bench, by size or torque"
 
 
 class RotorNumbers(NamedTuple):
-    """Of one gear with its shaft: diameter of the bore [mm], mass [kg], inertia [kg m²], both bearings [N/m]."""
+    """Of one gear with its shaft: mass [kg], inertia [kg m²], both bearings [N/m]."""
 
-    bore_mm: float
+    shaft: Shaft
     mass_kg: float
     inertia_kg_m2: float
     bearing_n_per_m: float
-    span_mm: float
 
 
 class RigNumbers(NamedTuple):
@@ -64,7 +57,8 @@ def rig_numbers(rig: Rig) -> RigNumbers:
     torque = (rig.torque_nm[1], rig.torque_nm[1] * ratio)
     base_mm = 0.5 * rig.module_mm * rig.teeth[0] * cos(radians(rig.pressure_angle_deg))
     force_n = 1e3 * torque[0] / base_mm
-    rotors = _rotor(rig, 0, torque[0], force_n), _rotor(rig, 1, torque[1], force_n)
+    first, second = shafts(rig)
+    rotors = _rotor(rig, 0, first, force_n), _rotor(rig, 1, second, force_n)
     motor, load = 4e-3 * torque[0] / BENCH_TORQUE_NM[0], 1e-2 * torque[1] / BENCH_TORQUE_NM[1]
     stiffness = 6300.0 * torque[0] / BENCH_TORQUE_NM[0], 2100.0 * torque[1] / BENCH_TORQUE_NM[1]
     inertias = (motor, rotors[0].inertia_kg_m2), (load, rotors[1].inertia_kg_m2)
@@ -109,32 +103,11 @@ def duration_s(rig: Rig, longest_s: float = 10.0) -> float:
     return min(max(ceil(10.0 * 1.02 * turns / rig.speed_hz[0]) / 10.0, 1.0), longest_s)
 
 
-def _rotor(rig: Rig, i: int, torque_nm: float, force_n: float) -> RotorNumbers:
-    pitch_mm = rig.module_mm * rig.teeth[i]
-    bore = rig.bores_mm[i] if rig.bores_mm else shaft_diameter_mm(torque_nm, root_diameter_mm(rig, i))
-    span_mm = rig.face_width_mm + 3.0 * bore
-    disc, shaft = (
+def _rotor(rig: Rig, i: int, shaft: Shaft, force_n: float) -> RotorNumbers:
+    pitch_mm, thick_mm = rig.module_mm * rig.teeth[i], shaft.diameter_mm
+    disc, rod = (
         STEEL_DENSITY_KG_M3 * 0.25 * pi * 1e-9 * area * length
-        for area, length in ((pitch_mm**2 - bore**2, rig.face_width_mm), (bore**2, span_mm))
+        for area, length in ((pitch_mm**2 - thick_mm**2, rig.face_width_mm), (thick_mm**2, shaft.span_mm))
     )
-    inertia = 0.125e-6 * (disc * (pitch_mm**2 + bore**2) + shaft * bore**2)
-    return RotorNumbers(bore, disc + shaft, inertia, 2.0 * bearing_stiffness_n_per_m(bore, 0.5 * force_n), span_mm)
-
-
-def root_diameter_mm(rig: Rig, i: int) -> float:
-    """Return the diameter of the root circle of a rig's pinion (0) or gear (1), without profile shift [mm]."""
-    return rig.module_mm * (rig.teeth[i] - 2.5)
-
-
-def shaft_diameter_mm(torque_nm: float, root_mm: float) -> float:
-    """Return a shaft for the torque, in steps of 5 mm where it is that thick, at most 0.6 of the root circle [mm]."""
-    needed = max((16e3 * torque_nm / (pi * SHEAR_N_MM2)) ** (1.0 / 3.0), 0.25 * root_mm)
-    rounded = 5.0 * ceil(needed / 5.0) if needed > 10.0 else float(ceil(needed))
-    return min(rounded, LARGEST_BORE * root_mm)
-
-
-def bearing_stiffness_n_per_m(bore_mm: float, force_n: float) -> float:
-    """Return dF/d(delta) of one deep-groove ball bearing under a radial force [N/m]."""
-    ball_mm = 0.3 * (0.6 * bore_mm + 12.0)
-    deflection_mm = 4.4e-4 * (4.37 * force_n / BALLS) ** (2.0 / 3.0) / ball_mm ** (1.0 / 3.0)
-    return float(1.5e3 * force_n / deflection_mm)
+    inertia = 0.125e-6 * (disc * (pitch_mm**2 + thick_mm**2) + rod * thick_mm**2)
+    return RotorNumbers(shaft, disc + rod, inertia, 2.0 * shaft.bearing.stiffness_n_per_m(0.5 * force_n))

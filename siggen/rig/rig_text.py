@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_numbers
 
@@ -15,11 +17,12 @@ PLACES_MM = (
 BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
 SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
+CLASSES_RULE = "the whole face carries at full load (ISO 6336-1: K_Hbeta up to 2)"
 SECOND_STAGE_TEETH = range(17, 29)
 """Of a pinion on the gear's shaft: from the least without undercut at 20 degrees (assumed; a measured one had 21)."""
 
 
-def rig_text(rig: Rig, name: str, base: str) -> str:
+def rig_text(rig: Rig, name: str, base: str, proposals: Mapping[str, str] | None = None) -> str:
     """Return the file's text.
 
     Parameters
@@ -29,13 +32,16 @@ def rig_text(rig: Rig, name: str, base: str) -> str:
         Of the set.
     base : str
         Preset that it extends.
+    proposals : mapping, optional
+        Option of `siggen init` -> where its number comes from, for those that were not given.
     """
-    numbers = rig_numbers(rig)
-    parts = (_head(rig, name, base, numbers), _gears(rig, numbers), _dynamics(rig, numbers), _states(rig))
-    return "\n".join((*parts, _background(rig, numbers), _sensors(rig, numbers.scale)))
+    numbers, why = rig_numbers(rig), dict(proposals or {})
+    gears = (_head(rig, name, base, numbers, why), _gears(rig, numbers, why), _manufacture(rig))
+    around = (_background(rig, numbers), _sensors(rig, numbers.scale))
+    return "\n".join((*gears, _dynamics(rig, numbers), _states(rig), *around))
 
 
-def _head(rig: Rig, name: str, base: str, numbers: RigNumbers) -> str:
+def _head(rig: Rig, name: str, base: str, numbers: RigNumbers, why: Mapping[str, str]) -> str:
     turns = numbers.duration_s * rig.speed_hz[0]
     cut = f"less than the hunting period of {rig.hunting_turns} turns"
     whole = "one hunting period and a turn more" if turns > rig.hunting_turns else cut
@@ -50,21 +56,31 @@ fs_hz: {numbers.fs_hz:g}              # carries ten mesh harmonics
 duration_s: {numbers.duration_s:g}               # {whole} at {rig.speed_hz[0]:g} Hz
 
 operating_points:
-  - speed_hz: {_range(rig.speed_hz)}             # of the pinion
-    torque_nm: {_range(rig.torque_nm)}            # on the pinion
+  - speed_hz: {_given_range(rig.speed_hz)}             # of the pinion
+    torque_nm: {_given_range(rig.torque_nm)}            # on the pinion{_proposed(why, "torque")}
 """
 
 
-def _gears(rig: Rig, numbers: RigNumbers) -> str:
-    bores = [f"{0.5 * rotor.bore_mm:.4g}" for rotor in numbers.rotors]
-    why = "as given" if rig.bores_mm else "shafts for the torque"
+def _gears(rig: Rig, numbers: RigNumbers, why: Mapping[str, str]) -> str:
+    bores = [_exact(0.5 * rotor.shaft.bore_mm) for rotor in numbers.rotors]
+    reason = "as given" if rig.bores_mm else "of the shaft, at most 0.6 of the root circle"
     return f"""\
 gears:
-  module_mm: {rig.module_mm:g}
-  pressure_angle_deg: {rig.pressure_angle_deg:g}
-  face_width_mm: {rig.face_width_mm:g}
-  pinion: {{teeth: {rig.teeth[0]}, bore_radius_mm: {bores[0]}}}     # {why}
+  module_mm: {_exact(rig.module_mm)}
+  pressure_angle_deg: {_exact(rig.pressure_angle_deg)}
+  face_width_mm: {_exact(rig.face_width_mm)}            # of both{_proposed(why, "face-width")}
+  pinion: {{teeth: {rig.teeth[0]}, bore_radius_mm: {bores[0]}}}     # {reason}
   gear: {{teeth: {rig.teeth[1]}, bore_radius_mm: {bores[1]}}}
+"""
+
+
+def _manufacture(rig: Rig) -> str:
+    share = rig.face_width_mm / BENCH_FACE_MM
+    return f"""\
+manufacture:
+  accuracy_class: {{kind: choice, values: {list(rig.accuracy_classes)}}}     # of ISO 1328-1; {CLASSES_RULE}
+  crowning_um: {_range((0.0, 4.0 * share))}     # in proportion to the face width, as in the preset
+  lead_misalignment_um: {_range((0.0, 2.0 * share))}
 """
 
 
@@ -76,8 +92,8 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
         *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
         "  shafts:                     # the gear between its bearings as in the preset",
         *(
-            f"    {name}: {{bearing_span_mm: {rotor.span_mm:.3g}, diameter_mm: {rotor.bore_mm:.3g}}}"
-            for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)
+            f"    {name}: {{bearing_span_mm: {_exact(shaft.span_mm)}, diameter_mm: {_exact(shaft.diameter_mm)}}}"
+            for name, shaft in zip(("pinion", "gear"), (rotor.shaft for rotor in numbers.rotors), strict=True)
         ),
         f"  # From here on {ASSUMED}.",
         f"  motor_inertia_kg_m2: {numbers.motor_inertia_kg_m2:.3g}",
@@ -102,13 +118,13 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
 
 
 def _rotor(name: str, rotor: RotorNumbers) -> str:
-    stiffness = _spread(rotor.bearing_n_per_m)
+    stiffness, bearing = _spread(rotor.bearing_n_per_m), rotor.shaft.bearing
     damping = tuple(2.0 * ratio * (rotor.bearing_n_per_m * rotor.mass_kg) ** 0.5 for ratio in (0.02, 0.04))
     return f"""\
   {name}:
-    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.span_mm:.3g} mm
+    mass_kg: {rotor.mass_kg:.3g}             # disc and a shaft of {rotor.shaft.span_mm:.3g} mm
     inertia_kg_m2: {rotor.inertia_kg_m2:.3g}
-    bearing_stiffness_x_n_per_m: {stiffness}     # two ball bearings of {rotor.bore_mm:.3g} mm bore
+    bearing_stiffness_x_n_per_m: {stiffness}     # two {bearing.kind} bearings of {bearing.bore_mm:.3g} mm bore
     bearing_stiffness_y_n_per_m: {stiffness}
     bearing_damping_x_n_s_per_m: {_range(damping, "loguniform")}    # 2 to 4 % of critical
     bearing_damping_y_n_s_per_m: {_range(damping, "loguniform")}"""
@@ -191,6 +207,22 @@ def _spread(value: float) -> str:
 def _range(values: Pair, kind: str = "uniform") -> str:
     low, high = (_number(value) for value in values)
     return low if low == high else f"{{kind: {kind}, low: {low}, high: {high}}}"
+
+
+def _given_range(values: Pair) -> str:
+    """Return what a user gave with all its digits."""
+    low, high = (_exact(value) for value in values)
+    return low if low == high else f"{{kind: uniform, low: {low}, high: {high}}}"
+
+
+def _exact(value: float) -> str:
+    """Return a number that reads back as the same one; what was computed loses the dust of its last digits."""
+    rounded = float(f"{value:.15g}")
+    return f"{rounded:.0f}" if rounded == int(rounded) else repr(rounded)
+
+
+def _proposed(why: Mapping[str, str], option: str) -> str:
+    return f"; proposed: {why[option]}" if option in why else ""
 
 
 def _number(value: float) -> str:

@@ -14,6 +14,7 @@ from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.errors import ConfigError, DatasetError, UsageError
 from siggen.sets.interruption import Interruption
+from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run
 
@@ -29,6 +30,7 @@ def extend(
     *,
     engine: Engine | str | None = None,
     events: Events | None = None,
+    allowed_loss: float = ALLOWED_LOSS,
 ) -> Generation:
     """Add specimens to a finished set, or continue an extension that was interrupted.
 
@@ -44,6 +46,8 @@ def extend(
         How many it shall have in all, or '+N' for N more.
     workers, progress, engine, events
         As for `generate`.
+    allowed_loss
+        The same, of the records of the extended set.
 
     Raises
     ------
@@ -53,6 +57,8 @@ def extend(
         If there is no finished set, its shards are of an earlier version, or one of them is damaged.
     InterruptionError
         After SIGINT or SIGTERM; the same call continues.
+    LossError
+        If a state lost more than `allowed_loss`; the same call with a larger share continues.
     """
     storage = storage_at(path)
     read_manifest(storage)  # a folder without a set must not be created by the lock
@@ -69,7 +75,8 @@ def extend(
         storage.delete_leftovers()
         earlier = [*(count for count in read_extensions(storage) if count < there), there]
         with Interruption() as interruption:
-            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, earlier, events)
+            chosen, limit = engine_of(engine, workers), LossLimit(config, allowed_loss)
+            run = set_run(config, storage, chosen, progress, interruption, earlier, events, limit)
             _check_shards(run, there)
             put_extensions(storage, [*earlier, wanted])
             return run.finish()

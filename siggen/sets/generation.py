@@ -11,6 +11,7 @@ from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.sets.interruption import Interruption
+from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, set_run, unchanged
 
@@ -26,6 +27,7 @@ def generate(
     *,
     engine: Engine | str | None = None,
     events: Events | None = None,
+    allowed_loss: float = ALLOWED_LOSS,
 ) -> Generation:
     """Generate a data set, or continue one that was interrupted; the files do not depend on `workers` nor on stops.
 
@@ -43,6 +45,8 @@ def generate(
         `siggen.engines.protocol` has it.
     events : callable, optional
         Called with every event of the run as a mapping: `siggen.sets.run_journal.EVENTS` has their fields.
+    allowed_loss : float
+        Share of a state's records that may fail, from 0 to 1; the run stops as soon as one has lost more.
 
     Raises
     ------
@@ -52,9 +56,12 @@ def generate(
         If there is no such engine, or it cannot have so many workers.
     InterruptionError
         After SIGINT or SIGTERM.
+    LossError
+        If a state lost more than `allowed_loss`. Committed shards stay; the same call with a larger share continues.
     EngineError
         If a simulation raised, or workers kept dying. Committed shards stay.
     """
+    limit = LossLimit(config, allowed_loss)
     storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
@@ -63,4 +70,4 @@ def generate(
         chosen = engine_of(engine, workers)
         with Interruption() as interruption:
             earlier = earlier_specimens(storage, config)
-            return set_run(config, storage, chosen, progress, interruption, earlier, events).finish()
+            return set_run(config, storage, chosen, progress, interruption, earlier, events, limit).finish()

@@ -21,6 +21,7 @@ from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.sets.interruption import Interruption
+from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
 
@@ -59,6 +60,7 @@ def generate_part(
     *,
     engine: Engine | str | None = None,
     events: Events | None = None,
+    allowed_loss: float = ALLOWED_LOSS,
 ) -> Generation:
     """Make the shards of one part of a set in a folder of its own; the same call continues an interrupted one.
 
@@ -68,20 +70,24 @@ def generate_part(
         Number of the part, from 1, and count of all parts. A part may have no shard, where there are fewer than parts.
     config, out, workers, progress, engine, events
         As for `generate`.
+    allowed_loss
+        The same, of the records of this part.
 
     Raises
     ------
-    DatasetError, UsageError, InterruptionError, EngineError
+    DatasetError, UsageError, InterruptionError, LossError, EngineError
         As of `generate`.
     """
-    chosen = Part(*part)
+    chosen, limit = Part(*part), LossLimit(config, allowed_loss)
     storage = storage_at(out)
     with storage.writing():
         if is_finished(storage, config):
             return unchanged(storage, events)
         storage.delete_leftovers()
         with Interruption() as interruption:
-            run = set_run(config, storage, engine_of(engine, workers), progress, interruption, events=events)
+            run = set_run(
+                config, storage, engine_of(engine, workers), progress, interruption, events=events, limit=limit
+            )
             return run.finish_some(run.planned[chosen.number - 1 :: chosen.of])
 
 

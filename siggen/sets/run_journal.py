@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 from siggen.columns.record import RecordFailure
 from siggen.dataset.sidecar import Sidecar
 from siggen.engines.protocol import Engine
+from siggen.sets.loss_limit import LossLimit
 from siggen.stage_times import StageTimes
 
 if TYPE_CHECKING:
@@ -52,6 +53,8 @@ class RunJournal:
         CPU seconds of the workers by stage, summed over all of them.
     failures
         Records of this run that could not be simulated.
+    limit
+        Ends a run that loses too many of them; None: no number is too many.
     """
 
     events: Events | None = None
@@ -60,6 +63,7 @@ class RunJournal:
     worker_cpu_s: dict[str, float] = field(default_factory=dict)
     failures: int = 0
     shard_started_s: float = 0.0
+    limit: LossLimit | None = None
 
     @property
     def seconds(self) -> float:
@@ -72,16 +76,26 @@ class RunJournal:
         who = {"engine": type(engine).__name__, "workers": engine.workers}
         facts |= {"identity": config.identity, "path": path, **who, "records": records, "shards": shards}
         self._tell("run_started", facts)
+        self.expect(records)
+
+    def expect(self, records: int) -> None:
+        """Note how many records the run shall have at its end, of which a share may fail."""
+        if self.limit is not None:
+            self.limit.records = records
 
     def taken_over(self, sidecar: Sidecar, done: int, total: int) -> None:
         """Tell of a shard that an earlier run made."""
         self._tell("shard_taken_over", {**_content(sidecar), "records_done": done, "records_total": total})
+        if self.limit is not None:
+            self.limit.set(sidecar.shard, sidecar.failures)
 
     def failed(self, shard: str, failures: Sequence[RecordFailure]) -> None:
         """Tell of records that could not be simulated, as soon as that is known."""
         self.failures += len(failures)
         for failure in failures:
             self._tell("record_failed", {"shard": shard, **asdict(failure)})
+        if self.limit is not None:
+            self.limit.add(shard, failures)
 
     def shard_done(self, sidecar: Sidecar, seconds: float, made: int, done: int, total: int) -> None:
         """Tell of a shard that is committed, and of the pace of this run, which has made `made` records.
@@ -93,6 +107,8 @@ class RunJournal:
         facts = {**_content(sidecar), "bytes": sum(file.bytes for file in sidecar.files), "seconds": round(seconds, 3)}
         facts |= {"records_done": done, "records_total": total, "records_per_s": round(rate, 3)}
         self._tell("shard_done", {**facts, "left_s": round((total - done) / rate, 1) if rate else None})
+        if self.limit is not None:
+            self.limit.set(sidecar.shard, sidecar.failures)
 
     def end(self, outcome: str, message: str, made: int, taken_over: int) -> None:
         """Tell that the run is over: done, interrupted, failed (with the message), or finished before."""

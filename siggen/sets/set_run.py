@@ -26,6 +26,7 @@ from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.planning.plan import ShardPlan, shards
 from siggen.sets import physics as contents
 from siggen.sets.interruption import Interruption
+from siggen.sets.loss_limit import LossLimit
 from siggen.sets.manifest_facts import manifest_facts
 from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
@@ -79,9 +80,10 @@ def set_run(
     interruption: Interruption,
     earlier: Sequence[int] = (),
     events: Events | None = None,
+    limit: LossLimit | None = None,
 ) -> SetRun:
     """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
-    journal = RunJournal(events)
+    journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()
         quantities = physics.stored(config)
@@ -149,13 +151,7 @@ class SetRun:
             return self.conclude(taken_over)
 
     def finish_some(self, wanted: Sequence[ShardPlan]) -> Generation:
-        """Make some shards and nothing else; `rows` and `failures` are theirs.
-
-        Raises
-        ------
-        InterruptionError
-            After SIGINT or SIGTERM.
-        """
+        """Make some shards and nothing else; `rows` and `failures` are theirs. Raises as `finish`."""
         with self._told():
             if not self.storage.exists(CONFIG):
                 self.storage.put(CONFIG, config_bytes(self.config))
@@ -173,6 +169,7 @@ class SetRun:
     def make(self, wanted: Sequence[ShardPlan]) -> int:
         """Make those of the wanted shards that no earlier run committed; return how many one did."""
         self.total = sum(shard.record_count for shard in wanted)
+        self.journal.expect(self.total)
         self._advance(0)
         with self.journal.driver.during("taking over"):
             self.take_over(wanted)

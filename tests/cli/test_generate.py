@@ -32,9 +32,9 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     """Let the command generate with a stand-in for the physics, in this process."""
     chosen = SimpleNamespace(function=simulate)
 
-    def stand_in(loaded, out, workers, progress, *, engine, events):
+    def stand_in(loaded, out, workers, progress, *, engine, events, allowed_loss):
         assert (workers in (None, 1), engine) == (True, None)
-        return write_fake_set(out, loaded, simulation=chosen.function, events=events)
+        return write_fake_set(out, loaded, simulation=chosen.function, events=events, allowed_loss=allowed_loss)
 
     monkeypatch.setattr(siggen.sets.generation, "generate", stand_in)
     return chosen
@@ -52,7 +52,9 @@ def test_the_path_alone_is_on_stdout(config: Path, tmp_path: Path, simulation: S
 
 def test_failed_records_end_with_3_and_are_named(config: Path, tmp_path: Path, simulation: SimpleNamespace) -> None:
     simulation.function = simulate_with_failures
-    result = CliRunner().invoke(app, ["generate", str(config), "--out", str(tmp_path / "set"), "--workers", "1"])
+    result = CliRunner().invoke(
+        app, ["generate", str(config), "--out", str(tmp_path / "set"), "--workers", "1", "--allowed-loss", "0.2"]
+    )
     assert result.exit_code == EXIT_RECORDS_FAILED
     assert "record 8 failed: diverged (motion left the backlash)" in result.stderr
     assert "3 records could not be simulated; the set is usable" in result.stderr
@@ -61,7 +63,7 @@ def test_failed_records_end_with_3_and_are_named(config: Path, tmp_path: Path, s
 
 def test_a_long_list_of_failures_is_cut_short(config: Path, tmp_path: Path, simulation: SimpleNamespace) -> None:
     simulation.function = lambda config, ids: [RecordFailure(i, "diverged", "always") for i in ids]
-    result = CliRunner().invoke(app, ["generate", str(config), "--out", str(tmp_path / "set")])
+    result = CliRunner().invoke(app, ["generate", str(config), "--out", str(tmp_path / "set"), "--allowed-loss", "1"])
     assert result.stderr.count("failed: diverged") == 10
     assert "30 records could not be simulated" in result.stderr
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from siggen.checks.loading import load_config
-from siggen.checks.plausibility import implausible
+from siggen.checks.plausibility import _hertz_pa, implausible
 from siggen.cli.app import app
 from siggen.errors import UsageError
+from siggen.specimen.gears import gear_pair
 
 RIGS = {
     "25/56": ["--teeth", "25,56", "--module", "2", "--face-width", "20", "--speed", "15,25", "--torque", "20"],
@@ -36,18 +39,52 @@ def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: 
     assert [state.severity for state in config.states] == ["healthy", "healthy", "slight", "moderate", "severe"]
 
 
-def test_a_load_that_is_light_for_the_errors_of_the_gears_is_told(tmp_path: Path) -> None:
-    """The reach of a tilt grows with the load, errors of the teeth do not."""
-    fine = ["--teeth", "18,47", "--module", "0.8", "--face-width", "8", "--speed", "20,30", "--torque"]
-    found = [run(*fine, torque, "--out", str(tmp_path / f"{torque}.yaml")).output for torque in ("1", "4")]
-    assert ["errors across the face" in text for text in found] == [True, False]
+SIGGEN = str(Path(sys.executable).parent / "siggen")
 
 
-def test_shafts_that_tilt_far_for_a_wide_face_are_told_with_what_follows(tmp_path: Path) -> None:
-    """2 of 8 through-face spalls of the wide one end as outside_model, none of the narrow one."""
-    wide = ["--teeth", "19,60", "--module", "5", "--speed", "20", "--torque", "300", "--face-width"]
-    found = [run(*wide, width, "--out", str(tmp_path / f"{width}.yaml")).output for width in ("50", "30")]
-    assert ["flanks tilt at rest" in text for text in found] == [True, False]
+def fresh(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run the installed command in a process of its own, without a terminal."""
+    return subprocess.run(
+        [SIGGEN, "init", *arguments], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
+    )
+
+
+def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
+    file = tmp_path / "rig.yaml"
+    given = ["--teeth", "32,80", "--module", "1.5125", "--face-width", "20.1255", "--bores", "20.3452,30"]
+    made = fresh(*given, "--speed", "24.1667", "--torque", "60.55,61.123456", "--out", str(file))
+    assert made.returncode == 0, made.stderr
+    config = load_config(file)
+    point = config.operating_points[0]
+    assert (point.speed_hz, point.torque_nm.low, point.torque_nm.high) == (24.1667, 60.55, 61.123456)
+    assert (config.gears.module_mm, config.gears.face_width_mm) == (1.5125, 20.1255)
+    assert (config.gears.pinion.bore_radius_mm, config.dynamics.shafts.pinion.diameter_mm) == (10.1726, 20.3452)
+
+
+def test_a_speed_in_rpm_is_that_in_hz_and_face_width_and_torque_are_proposed(tmp_path: Path) -> None:
+    file = tmp_path / "rig.yaml"
+    made = fresh("--teeth", "32,80", "--module", "1.5", "--speed", "1200rpm,1450/60", "--out", str(file))
+    assert made.returncode == 0, made.stderr
+    config = load_config(file)
+    speed = config.operating_points[0].speed_hz
+    assert (speed.low, speed.high) == (20.0, pytest.approx(1450 / 60, rel=1e-14))
+    assert config.gears.face_width_mm == 12.0
+    assert "--face-width was not given; proposed: 12 mm, 8 modules" in made.stderr
+    pair, torque_nm = gear_pair(config.gears), config.operating_points[0].torque_nm
+    pressure_mpa = 1e-6 * _hertz_pa(pair, torque_nm / pair.pinion.base_radius_m)
+    root_mpa = 4.3 * 1e3 * torque_nm / (16.0 * 1.5) / (12.0 * 1.5)
+    stressed = pressure_mpa / (1500 / 1.2 / 2**0.5), root_mpa / (860 / 1.5 / 2)
+    assert max(stressed) == pytest.approx(1.0, rel=5e-3)  # three digits
+    assert f"--torque was not given; proposed: {torque_nm:g} N m, what the gears are rated for" in made.stderr
+    assert "proposed: 12 mm" in file.read_text()
+
+
+def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
+    made = fresh("--module", "2", "--out", str(tmp_path / "rig.yaml"))
+    assert made.returncode == 2
+    assert "--teeth: received nothing; give the teeth of pinion and gear" in made.stderr
+    assert "--speed: received nothing; give the speed of the pinion" in made.stderr
+    assert "--torque" not in made.stderr
 
 
 @pytest.mark.parametrize(
@@ -58,6 +95,8 @@ def test_shafts_that_tilt_far_for_a_wide_face_are_told_with_what_follows(tmp_pat
         (["--module", "0.002"], "allowed: 0.3 to 50 mm"),
         (["--speed", "25,15"], "the lowest value first"),
         (["--speed", ""], "--speed: received nothing"),
+        (["--speed", "fast"], "--speed: received 'fast'; allowed: one speed in Hz"),
+        (["--speed", "20/0"], "--speed: received '20/0'"),
         (["--sensors", "0"], "allowed: 1 to 8"),
         (["--extends", "nothing"], "allowed: a preset"),
     ],

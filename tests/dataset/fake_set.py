@@ -232,11 +232,13 @@ def write_fake_set(
     simulation: Any = simulate,
     engine: str | None = None,
     events: Events | None = None,
+    allowed_loss: float = 1.0,
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
     # row groups of 2: several chunks per shard
     with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
-        return generate(config or fake_config(), path, workers, engine=engine, events=events)
+        told = {"events": events, "allowed_loss": allowed_loss}
+        return generate(config or fake_config(), path, workers, engine=engine, **told)  # type: ignore[arg-type]
 
 
 def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: Any = simulate) -> Verification:

@@ -12,7 +12,9 @@ from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import LEFTOVER_SUFFIX, LocalFolder
 from siggen.engines.protocol import Unfinished
 from siggen.errors import DatasetError, EngineError
+from siggen.sets.extension import extend
 from siggen.sets.generation import generate
+from siggen.sets.loss_limit import LossError
 from siggen.sets.shard_making import in_order
 from tests.dataset.fake_set import (
     FAKE_FILES,
@@ -176,3 +178,33 @@ def test_a_set_does_not_depend_on_the_engine(tmp_path: Path) -> None:
             generate(fake_config(), tmp_path / name, engine=engine)
         made[name] = file_bytes(tmp_path / name)
     assert made["named"] == made["object"]
+
+
+def test_a_run_that_loses_more_of_a_state_than_allowed_stops_keeps_its_shards_and_goes_on_when_told(
+    reference: Path, tmp_path: Path
+) -> None:
+    """Of 10 records of `slight` the second failure, record 8, is one too many for a tenth; shard 0 stays."""
+    with pytest.raises(LossError, match=r"of the 10 records of state slight 2 could not.*share of 0\.1.*Record 3: div"):
+        write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
+    assert (tmp_path / "shards/train-00000.json").exists()
+    assert not (tmp_path / "manifest.json").exists()
+    # resumed with the same share it stops again, once shard 1 is whole from what was kept of it
+    with pytest.raises(LossError, match="state slight 2"):
+        write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
+    generation = write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.2)
+    assert (len(generation.failures), generation.shards_taken_over) == (3, 2)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_workers_stop_at_the_same_loss(tmp_path: Path, workers: int) -> None:
+    with pytest.raises(LossError, match="state slight 2"):
+        write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1, workers=workers)
+
+
+def test_an_extension_stops_at_the_loss_of_the_whole_set(tmp_path: Path) -> None:
+    with fake_physics(simulate_with_failures):
+        generate(fake_config(), tmp_path, 0, allowed_loss=1.0)
+    with fake_physics(simulate_none):
+        with pytest.raises(LossError, match="of the 12 records of state slight 4"):
+            extend(tmp_path, "+1", workers=0, allowed_loss=0.3)
+        assert len(extend(tmp_path, "+1", workers=0, allowed_loss=0.4).failures) == 9

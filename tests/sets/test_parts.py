@@ -25,7 +25,7 @@ from tests.dataset.fake_set import (
 
 def write_part(path: Path, part: tuple[int, int], simulation: Any = simulate, **changes: Any) -> Generation:
     with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
-        return generate_part(fake_config(**changes), path, part, 0)
+        return generate_part(fake_config(**changes), path, part, 0, allowed_loss=1.0)
 
 
 def merge_fake(parts: list[Path], out: Path) -> Generation:

@@ -1,0 +1,93 @@
+"""LossLimit: ends a run that loses more records of a state than its user allows."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from siggen.columns.record import RecordFailure
+from siggen.errors import EXIT_RECORDS_FAILED, SiggenError, UsageError, counted
+from siggen.planning.plan import planned_record
+
+if TYPE_CHECKING:
+    from siggen.config import Config
+
+ALLOWED_LOSS = 0.1
+"""Share of a state's records that may fail before a run stops, unless told otherwise."""
+
+
+class LossError(SiggenError):
+    """Too many records of a state could not be simulated; what was made stays, and the same call continues."""
+
+    exit_code = EXIT_RECORDS_FAILED
+
+
+@dataclass(slots=True)
+class LossLimit:
+    """Counts failures by state, and raises as soon as a state has lost more than its share of the whole run.
+
+    Attributes
+    ----------
+    config
+        Whose states are counted.
+    share
+        Of the records of a state that may fail, from 0 to 1.
+    records
+        Of the whole run, which has as many of every state.
+    """
+
+    config: Config
+    share: float = ALLOWED_LOSS
+    records: int = 0
+    failures: dict[str, Sequence[RecordFailure]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse what is no share.
+
+        Raises
+        ------
+        UsageError
+        """
+        if not 0.0 <= self.share <= 1.0:
+            raise UsageError(f"--allowed-loss: received {self.share:g}; allowed: 0 to 1, where 1 never stops")
+
+    def add(self, shard: str, failures: Sequence[RecordFailure]) -> None:
+        """Count failures of a shard that is being made.
+
+        Raises
+        ------
+        LossError
+        """
+        if failures:
+            self.set(shard, (*self.failures.get(shard, ()), *failures))
+
+    def set(self, shard: str, failures: Sequence[RecordFailure]) -> None:
+        """Count all failures of a shard, in place of what was counted before.
+
+        Raises
+        ------
+        LossError
+        """
+        self.failures[shard] = failures
+        lost = Counter(planned_record(self.config, one.record_id).state_id for one in chain(*self.failures.values()))
+        each = self.records // len(self.config.states)
+        for state, count in sorted(lost.items()):
+            if count > self.share * each:
+                raise LossError(self._message(state, count, each))
+
+    def _message(self, state: int, count: int, each: int) -> str:
+        name, config = self.config.states[state].name, self.config
+        of_state = (
+            one for one in chain(*self.failures.values()) if planned_record(config, one.record_id).state_id == state
+        )
+        first = min(of_state, key=lambda one: one.record_id)
+        return (
+            f"stopped: of the {counted(each, 'record')} of state {name} {count} could not be simulated; allowed is a "
+            f"share of {self.share:g} (--allowed-loss). Record {first.record_id}: {first.status} ({first.reason}). "
+            "What was made stays. `siggen plan` says which share of every state to expect; change what the reason "
+            "names and take a new folder, or give the same command a larger --allowed-loss, with which it goes on "
+            "(1: never stop)"
+        )

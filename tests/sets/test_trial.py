@@ -1,0 +1,42 @@
+"""A trial: a short record of every state of the first gearboxes, and what of them is lost."""
+
+from __future__ import annotations
+
+import pytest
+
+from siggen.planning.plan import planned_record
+from siggen.sets.trial import StateTrial, default_gearboxes, shortened, trial
+from tests.config.minimal import config as minimal
+from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
+
+
+def test_a_trial_says_which_states_lose_records_and_why() -> None:
+    told: list[tuple[int, int]] = []
+    with fake_physics(
+        simulate_with_failures
+    ):  # record 3 is gearbox 0 in slight, 8 and 10 gearbox 1 in slight, moderate
+        found = trial(fake_config(), 2, lambda done, total: told.append((done, total)))
+    assert [(state.state, state.tried) for state in found] == [("healthy", 2), ("slight", 2), ("moderate", 2)]
+    # gearboxes take the operating points in turn: gearbox 0 runs records 0, 2, 4, gearbox 1 runs 7, 9, 11
+    assert [state.lost for state in found] == [0, 0, 0]
+    with fake_physics(simulate_none):
+        found = trial(fake_config(), 99)
+    assert [(state.lost, state.tried) for state in found] == [(5, 5)] * 3
+    assert found[0].reason == "diverged (always)"
+    assert told == [(0, 6), (3, 6)]
+
+
+def test_the_interval_is_wilsons() -> None:
+    """Of 10 records 0, 1 and 5: values of the literature (Brown, Cai, DasGupta 2001, formula 4)."""
+    assert StateTrial("a", 10, 0).interval == pytest.approx((0.0, 0.2775), abs=1e-4)
+    assert StateTrial("a", 10, 1).interval == pytest.approx((0.0179, 0.4042), abs=1e-4)
+    assert StateTrial("a", 10, 5).interval == pytest.approx((0.2366, 0.7634), abs=1e-4)
+
+
+def test_records_of_a_trial_are_short_and_those_of_the_set() -> None:
+    config = minimal(duration_s=2.0)
+    short = shortened(config)
+    assert 8 <= short.duration_s * config.operating_points[0].speed_hz < 8.01
+    assert planned_record(short, 3) == planned_record(config, 3)
+    assert shortened(minimal(duration_s=0.1)).duration_s == 0.1
+    assert default_gearboxes(config) == 0

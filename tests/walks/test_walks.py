@@ -1,0 +1,152 @@
+"""What a user comes for, from beginning to end in at most five commands, each in a fresh process."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pyarrow.csv
+import pytest
+import yaml
+from scipy.io import wavfile
+
+import siggen
+from tests.publication.conftest import FACTS
+from tests.walks.walking import FS_HZ, recorded, walk
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
+SIZE = "--set specimens=6 --set duration_s=0.6 --set 'splits={train: 10, validation: 4, test: 6}'"
+RECORDING = "set/data/test-00000.parquet --row 4 --fs 25600 --teeth 18,47 --tacho tacho_s"
+
+
+@pytest.fixture(scope="session")
+def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the drawing of a gearbox, and a small set of it."""
+    folder = tmp_path_factory.mktemp("rig")
+    drawing = "--teeth 18,47 --module 3 --face-width 20 --speed 33,36 --torque 30,45 --sensors 1"
+    walk(folder, f"siggen init {drawing} --out rig.yaml")
+    walk(folder, f"siggen generate rig.yaml {SIZE} --out set --workers 1")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def models(rig: Path) -> Path:
+    walk(rig, "siggen-diagnostics train set --no-cnn --out models")
+    return rig / "models"
+
+
+def blocks() -> list[str]:
+    """Return the Python blocks of the page on one's own classifier, with the names of this set and training."""
+    section = PAGE.read_text(encoding="utf-8").split("\n## Your own classifier\n")[1].split("\n## ")[0]
+    found = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    return [
+        block.replace("runs/quickstart", "set").replace("runs/models", "models").replace("runs/", "") for block in found
+    ]
+
+
+def test_from_a_drawing_to_a_loaded_training_set(rig: Path) -> None:
+    planned = walk(rig, f"siggen plan rig.yaml {SIZE}")
+    counts = re.search(r"train (\d), validation (\d), test (\d)", planned)
+    assert counts is not None
+    (rig / "load.py").write_text(
+        "import siggen\n"
+        "dataset = siggen.open('set')\n"
+        "for split in dataset.splits:\n"
+        "    for batch in dataset.records(split):\n"
+        "        signal = batch.column(dataset.channels[0].column).flatten().to_numpy().reshape(batch.num_rows, -1)\n"
+        "        print(split, batch.num_rows, signal.shape[1], signal.std() > 0)\n"
+    )
+    loaded = [line.split() for line in walk(rig, "python load.py").splitlines()]
+    records = {split: sum(int(rows) for name, rows, *_ in loaded if name == split) for split, *_ in loaded}
+    assert records == {
+        name: 5 * int(gearboxes)
+        for name, gearboxes in zip(("train", "validation", "test"), counts.groups(), strict=True)
+    }
+    assert {(samples, varies) for _, _, samples, varies in loaded} == {("15360", "True")}
+
+
+def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path, models: Path) -> None:
+    tree, network = blocks()
+    (rig / "tree.py").write_text(tree)
+    (rig / "network.py").write_text(network)
+    in_python = walk(rig, "python tree.py")
+    by_command = walk(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")
+    assert by_command.removesuffix("scores.csv\n") == in_python
+    rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
+    assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
+    reported = json.loads((models / "metrics.json").read_text())["classifiers"]
+    for row in rows:
+        if row["name"] != "yours":
+            assert (row["score"], row["low"], row["high"]) == published(row, reported[row["name"]])
+    assert "yours minus this" in walk(rig, "python network.py")
+
+
+def published(row: dict[str, object], metrics: dict[str, dict[str, dict[str, float]]]) -> tuple[float, ...]:
+    """Return what `metrics.json` says of a score."""
+    found = {
+        "AUC": {"every damage": metrics["detection"]["auroc"], **metrics["detection"]["auroc_by_state"]},
+        "balanced accuracy": {"all": metrics["balanced_accuracy"]},
+        "macro AUROC": {"all": metrics["macro_auroc"]},
+    }[str(row["measure"])][str(row["records"])]
+    return found["value"], found["low"], found["high"]
+
+
+def test_from_recordings_of_a_healthy_machine_to_a_verdict(tmp_path: Path) -> None:
+    for seed, month in enumerate(("may", "june", "july")):
+        text = "\n".join(f"{value:.6f}".replace(".", ",") + ";0" for value in recorded(seed, 0.0))
+        (tmp_path / f"{month}.csv").write_text(f"vibration;key\n{text}\n")
+    for seed, (month, depth) in enumerate({"august": 0.0, "september": 0.7}.items(), 8):
+        wavfile.write(tmp_path / f"{month}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
+    described = f"--channel vibration=1 --unit g --fs {FS_HZ:g} --teeth 18,47 --speed-range 28,32"
+    walk(tmp_path, f"siggen-diagnostics baseline may.csv june.csv july.csv {described} --out machine")
+    said = walk(tmp_path, "siggen-diagnostics check machine august.wav september.wav", code=4)
+    assert "august.wav: unchanged" in said
+    assert "september.wav: changed" in said
+    assert (tmp_path / "machine" / "machine.html").stat().st_size > 10_000
+
+
+def test_from_a_set_to_a_ranking_of_an_own_indicator(rig: Path) -> None:
+    (rig / "own.py").write_text(
+        "import numpy as np\n\n\n"
+        "def crest(signal, tacho, gears):\n"
+        "    return float(np.abs(signal).max() / np.sqrt(np.mean(np.square(signal))))\n"
+    )
+    walk(rig, "siggen-diagnostics indicators set --indicator own:crest --out indicators")
+    walk(rig, "siggen-diagnostics features set --indicator own:crest --out features.csv")
+    table = pyarrow.csv.read_csv(rig / "features.csv")
+    dataset = siggen.open(rig / "set")
+    (channel,) = dataset.channels
+    for row in table.to_pylist():
+        signal = dataset.record(row["record_id"])[channel.column].astype(np.float64)
+        expected = np.abs(signal).max() / np.sqrt(np.mean(signal**2))
+        assert row[f"crest__{channel.name}"] == pytest.approx(expected, rel=1e-5)
+    assert "crest" in (rig / "indicators" / "indicators.html").read_text()
+
+
+def test_from_a_set_to_a_published_folder_that_opens_again(rig: Path) -> None:
+    (rig / "publication.yaml").write_text(yaml.safe_dump(FACTS))
+    (rig / "reopen.py").write_text(
+        "import numpy as np\nimport siggen\n"
+        "mine, published = siggen.open('set'), siggen.open('upload')\n"
+        "column = mine.channels[0].column\n"
+        "print(np.array_equal(mine.record(3)[column], published.record(3)[column]), published.labels().num_rows)\n"
+    )
+    walk(rig, "siggen publish set --to upload --facts publication.yaml")
+    walk(rig, "siggen verify upload")
+    assert walk(rig, "python reopen.py").split() == ["True", "30"]
+    assert "cc-by-4.0" in (rig / "upload" / "README.md").read_text()
+
+
+def test_predict_by_classifiers_on_indicators(rig: Path, models: Path) -> None:
+    said = walk(rig, f"siggen-diagnostics predict models {RECORDING} --out prediction")
+    assert "state" in said
+    assert json.loads((rig / "prediction" / "prediction.json").read_text())
+
+
+@pytest.mark.slow  # trains both networks
+def test_predict_by_networks(rig: Path) -> None:
+    walk(rig, "siggen-diagnostics train set --out all_models")
+    said = walk(rig, f"siggen-diagnostics predict all_models {RECORDING} --out by_networks")
+    assert "network" in said

@@ -1,0 +1,40 @@
+"""Commands as a user gives them: installed programs, in a folder of its own, with nothing of the checkout in reach."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+PROGRAMS = Path(sys.executable).parent
+CLEAN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+FS_HZ = 12_800.0
+
+
+def walk(folder: Path, command: str, code: int = 0) -> str:
+    """Run one command in a fresh process, `python FILE` or an installed program; return all that it said."""
+    program, *rest = shlex.split(command)
+    python = [sys.executable, "-P"] if program == "python" else [str(PROGRAMS / program)]
+    environment = {**CLEAN, "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [*python, *rest], cwd=folder, env=environment, capture_output=True, text=True, timeout=500, check=False
+    )
+    said = done.stdout + done.stderr
+    assert done.returncode == code, f"{command}: exit code {done.returncode}\n{said}"
+    assert "Traceback" not in said
+    return said
+
+
+def recorded(seed: int, depth: float) -> np.ndarray:
+    """Return 4 s of a gearbox of 18 and 47 teeth near 30 Hz in g, (n,); one tooth carries less, by a depth."""
+    rng = np.random.default_rng(seed)
+    time_s = np.arange(round(4.0 * FS_HZ)) / FS_HZ
+    turns = (30.0 + 0.05 * rng.standard_normal()) * time_s + 0.003 * np.sin(2 * np.pi * 0.8 * time_s)
+    dip = 1.0 - depth * np.exp(-0.5 * (((turns + rng.uniform()) % 1.0 - 0.5) / 0.02) ** 2)
+    shafts = 1.0 + 0.1 * np.cos(2 * np.pi * turns) + 0.1 * np.cos(2 * np.pi * turns * 18 / 47)
+    mesh = sum(np.cos(2 * np.pi * (harmonic * 18 * turns + 0.1 * harmonic)) / harmonic for harmonic in (1, 2, 3))
+    return np.asarray(dip * shafts * mesh + 0.05 * rng.standard_normal(time_s.size))
