@@ -13,7 +13,6 @@ from diagnostics.cli.baseline import baseline
 from diagnostics.cli.calibrate import calibrate
 from diagnostics.cli.check import check
 from diagnostics.cli.explore import explore
-from diagnostics.cli.features import features
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
@@ -33,7 +32,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
-app.command()(features)
 app.command()(indicators)
 app.command()(train)
 app.command()(report)

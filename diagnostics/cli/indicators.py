@@ -45,7 +45,11 @@ def indicators(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="FOLDER", help="Folder for the report. Default: DIR_indicators.", show_default=False
+            "--out",
+            "-o",
+            metavar="FOLDER | FILE",
+            help="Folder for the report, DIR_indicators unless told; a .parquet or .csv file takes the table alone.",
+            show_default=False,
         ),
     ] = None,
     indicator: OwnIndicators = None,
@@ -94,6 +98,8 @@ def indicators(
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
 
+    Example: siggen-diagnostics indicators data/quickstart --out features.parquet
+
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
     span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
@@ -110,6 +116,9 @@ def indicators(
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
     directory = Path(targets[0])
+    if out is not None and out.suffix in (".parquet", ".csv"):
+        _table_alone(directory, out, indicator, workers)
+        return
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
@@ -146,6 +155,25 @@ def indicators(
     typer.echo(str(path))
     if show:
         opened(path)
+
+
+def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: int) -> None:
+    """Write the indicators of every record and channel, as classifiers take them, without judging any."""
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.indicators.classifier_table import check_table, classifier_table, write_table
+    from diagnostics.indicators.own_indicator import load_indicators
+    from diagnostics.indicators.table import record_table
+    from siggen.dataset.reading import open as open_set
+
+    own = load_indicators(indicator)
+    dataset = open_set(directory)
+    with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
+        table = record_table(dataset, own=own, workers=workers, advance=advance)
+    notes = check_table(table, dataset)
+    write_table(classifier_table(table, notes), out)
+    for note in notes:
+        typer.echo(f"note: {note}", err=True)
+    typer.echo(str(out))
 
 
 def _of_recordings(

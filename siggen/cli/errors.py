@@ -30,7 +30,9 @@ def errors(
 ) -> None:
     """Write pitch and profile deviations of every tooth, as a machine would measure them about the shaft's axis.
 
-    Deviations are positive where material is missing. Example: siggen inspect errors set.yaml --out e.csv --png e.png
+    Deviations are positive where material is missing.
+
+    Example: siggen inspect errors set.yaml --out e.csv --png e.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file

@@ -141,8 +141,8 @@ def test_commands_take_a_place_for_a_folder(
     assert f"{PLACE}: " in capsys.readouterr().out
     assert run(siggen.cli.app.main, monkeypatch, "show", place, "--record", "1") == 0
     assert f"Record 1 of {PLACE}" in capsys.readouterr().out
-    assert run(diagnostics.cli.app.main, monkeypatch, "features", place, "--out", "there.csv") == 0
-    assert run(diagnostics.cli.app.main, monkeypatch, "features", str(kept), "--out", "here.csv") == 0
+    assert run(diagnostics.cli.app.main, monkeypatch, "indicators", place, "--out", "there.csv") == 0
+    assert run(diagnostics.cli.app.main, monkeypatch, "indicators", str(kept), "--out", "here.csv") == 0
     assert (tmp_path / "there.csv").read_bytes() == (tmp_path / "here.csv").read_bytes()
     assert run(diagnostics.cli.app.main, monkeypatch, "explore", place) == 0
     assert (tmp_path / "set_explore.html").stat().st_size > 10_000

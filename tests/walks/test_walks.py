@@ -114,7 +114,7 @@ def test_from_a_set_to_a_ranking_of_an_own_indicator(rig: Path) -> None:
         "    return float(np.abs(signal).max() / np.sqrt(np.mean(np.square(signal))))\n"
     )
     walk(rig, "siggen-diagnostics indicators set --indicator own:crest --out indicators")
-    walk(rig, "siggen-diagnostics features set --indicator own:crest --out features.csv")
+    walk(rig, "siggen-diagnostics indicators set --indicator own:crest --out features.csv")
     table = pyarrow.csv.read_csv(rig / "features.csv")
     dataset = siggen.open(rig / "set")
     (channel,) = dataset.channels

@@ -24,8 +24,8 @@ from tests.dataset.fake_set import fake_config, fake_record, write_fake_set
 from tests.dataset.resealed_set import reseal
 
 COMMANDS = {
-    "features": ("--out", "out.parquet"),
     "indicators": ("--out", "out"),
+    "table": ("--out", "out.parquet"),
     "train": ("--no-cnn", "--out", "out"),
     "report": ("--no-cnn", "--out", "out"),
     "audit": ("--out", "out"),
@@ -162,7 +162,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ALL),
     "empty folder": (emptied, ("no data set here",), ALL),
     "photos": (photos, ("not a siggen data set",), ALL),
-    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("features", "indicators", "train", "audit")),
+    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "train", "audit")),
     "no healthy": (
         some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "features"), ("indicators",),
     ),
@@ -189,7 +189,8 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
     edit, parts, _ = BAD[what]
     edit(folder)
     monkeypatch.chdir(tmp_path)
-    assert run(monkeypatch, command, str(folder), *COMMANDS[command]) == 2
+    program = "indicators" if command == "table" else command
+    assert run(monkeypatch, program, str(folder), *COMMANDS[command]) == 2
     error = capsys.readouterr().err
     assert error.startswith("siggen-diagnostics: ")
     for part in ("bad_set", *parts):
@@ -204,7 +205,7 @@ def test_a_single_clipped_record_is_noted_and_used(
     folder, out = tmp_path / "set", tmp_path / "features.parquet"
     shutil.copytree(good_set, folder)
     samples(clipped_once)(folder)
-    assert run(monkeypatch, "features", str(folder), "--out", str(out)) == 0
+    assert run(monkeypatch, "indicators", str(folder), "--out", str(out)) == 0
     assert "note: channel bearing_vertical is clipped" in capsys.readouterr().err
     assert [note for note in table_notes(pq.read_table(out)) if "1 record(s) (3)" in note]
 
@@ -212,5 +213,5 @@ def test_a_single_clipped_record_is_noted_and_used(
 def test_a_good_set_passes_without_a_note(
     good_set: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(monkeypatch, "features", str(good_set), "--out", str(tmp_path / "features.parquet")) == 0
+    assert run(monkeypatch, "indicators", str(good_set), "--out", str(tmp_path / "features.parquet")) == 0
     assert capsys.readouterr().err == ""

@@ -77,7 +77,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
         ("indicators", "--out", "ranking"),
         ("train", "--no-cnn", "--out", "models"),
         ("audit", "--out", "audit"),
-        ("features", "--out", "features.parquet"),
+        ("indicators", "--out", "features.parquet"),
     ):
         out = str(tmp_path / options[-1])
         assert run(monkeypatch, command, str(folder), *options[:-1], out) == 0, capsys.readouterr().err
@@ -160,7 +160,7 @@ def test_an_own_indicator_goes_through_features_training_audit_report_and_predic
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
     own = ("--indicator", "own_indicators_of_a_user:peak_to_peak")
-    assert run(monkeypatch, "features", str(folder), "--out", "features.parquet", *own) == 0
+    assert run(monkeypatch, "indicators", str(folder), "--out", "features.parquet", *own) == 0
     assert "peak_to_peak__bearing_vertical" in pq.read_schema("features.parquet").names
     assert run(monkeypatch, "audit", str(folder), "--out", "audit", *own) == 0
     assert run(monkeypatch, "report", str(folder), "--no-cnn", "--out", "report", *own) == 0
