@@ -29,7 +29,9 @@ from siggen.errors import UsageError
 EXPLORER = "explorer.html"
 
 if TYPE_CHECKING:
+    from diagnostics.indicators.own_indicator import OwnIndicator
     from diagnostics.recordings.measured_recording import RecordingFacts
+    from siggen.dataset.reading import Dataset
 
 
 def indicators(
@@ -146,15 +148,19 @@ def indicators(
     table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)
     folder = out or beside(dataset.path, "_indicators")
     judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
-    explorer = EXPLORER if explore else ""
-    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=explorer)
+    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * explore)
     if explore:
-        from diagnostics.explore.explorer import ExplorerOptions, write_explorer
-
-        write_explorer(dataset, folder / EXPLORER, ExplorerOptions(workers=workers, own=own), terminal_stage)
+        _explorer(dataset, folder, workers, own)
     typer.echo(str(path))
     if show:
         opened(path)
+
+
+def _explorer(dataset: Dataset, folder: Path, workers: int, own: tuple[OwnIndicator, ...]) -> None:
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.explore.explorer import ExplorerOptions, write_explorer
+
+    write_explorer(dataset, folder / EXPLORER, ExplorerOptions(workers=workers, own=own), terminal_stage)
 
 
 def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: int) -> None:

@@ -18,11 +18,12 @@ from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.records.state_classes import CLASS, class_names
 from diagnostics.records.usable_records import RecordCheck
 from siggen.dataset.reading import Dataset
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, UsageError
 
 BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.indicators"
 NOTES_KEY = b"diagnostics.notes"
+WRITERS = (".parquet", ".csv")
 
 
 def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:
@@ -116,8 +117,27 @@ def feature_matrix(table: pa.Table, healthy: str | None = None) -> FeatureMatrix
     return FeatureMatrix(np.stack(columns, axis=1), names, labels)
 
 
+def check_suffix(path: Path) -> None:
+    """Check that a table can be written under this name.
+
+    Raises
+    ------
+    UsageError
+        If the suffix is neither .parquet nor .csv.
+    """
+    if path.suffix not in WRITERS:
+        raise UsageError(f"{path}: received suffix {path.suffix!r}; allowed are {', '.join(WRITERS)}")
+
+
 def write_table(table: pa.Table, path: Path) -> None:
-    """Write a table as CSV or, by any other suffix, Parquet; undefined values are NaN."""
+    """Write a table as Parquet or CSV, by the file's suffix; undefined values are NaN.
+
+    Raises
+    ------
+    UsageError
+        If the suffix is neither.
+    """
+    check_suffix(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".csv":
         from pyarrow import csv

@@ -71,7 +71,7 @@ def check_states(dataset: Dataset) -> None:
     raise DatasetError(
         f"{dataset.path}: no {missing} records to rank indicators with; received the states {states}. Add a {missing} "
         "state under `states` in the configuration and generate the set into a new folder; `siggen-diagnostics "
-        "features` writes the values alone."
+        "indicators --out FILE.parquet` writes the values alone."
     )
 
 

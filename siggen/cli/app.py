@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -32,8 +33,15 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (init, plan, generate, merge, extend, verify, publish, show, simulate, export_model, schema)
-INSPECTED = {"tvms": tvms, "flank": flank, "pressure": pressure, "errors": errors, "modes": modes, "path": path}
-INSPECTED |= {"run": run_report}
+INSPECTED: dict[str, Callable[..., None]] = {
+    "tvms": tvms,
+    "flank": flank,
+    "pressure": pressure,
+    "errors": errors,
+    "modes": modes,
+    "path": path,
+    "run": run_report,
+}
 """What `siggen inspect` shows of one gearbox, or of a run."""
 
 app = typer.Typer(
@@ -53,8 +61,8 @@ inspect = typer.Typer(
     rich_markup_mode="rich",
     epilog="Begin with: siggen inspect tvms quickstart --open",
 )
-for name, command in INSPECTED.items():
-    inspect.command(name)(command)
+for name, shown in INSPECTED.items():
+    inspect.command(name)(shown)
 app.add_typer(inspect, name="inspect")
 
 

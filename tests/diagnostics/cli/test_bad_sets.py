@@ -164,7 +164,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "photos": (photos, ("not a siggen data set",), ALL),
     "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "train", "audit")),
     "no healthy": (
-        some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "features"), ("indicators",),
+        some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "--out FILE.parquet"), ("indicators",),
     ),
     "healthy only": (some_rows(lambda row: row["state"] == "healthy"), ("no damaged records",), ("indicators",)),
     "single state": (some_rows(lambda row: row["state"] == "slight"), ("single state", "Add damaged"), ("train",)),
