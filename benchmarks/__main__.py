@@ -23,7 +23,7 @@ from benchmarks.row import Row
 from siggen.engines.worker import ONE_THREAD
 
 DEFAULT = (
-    *("presets", "record", "sensing", "background", "blocks", "filtering"),
+    *("presets", "record", "sensing", "background", "filtering"),
     *("stiffness", "integration", "precision", "lanes"),
     *("instructions", "loader", "cold", "memory", "startup", "storage", "workers", "quickstart"),
     *("indicators", "pages", "house", "engines", "audit"),

@@ -1,4 +1,4 @@
-"""What all channels see of the background of one record, by itself, as the way its filters are computed asks."""
+"""What all channels see of the background of one record, by itself."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
-from siggen.record.background import record_background
 from siggen.record.block_inputs import BlockInputs
 from siggen.specimen.instrument import Instrument
 
@@ -25,9 +24,6 @@ class _Standstill:
 
 
 def layers(config: Config, specimen: Specimen, record: PlannedRecord, instrument: Instrument) -> None:
-    """Compute the background; in blocks motions and forces are transformed too, a quarter of all transforms."""
-    if instrument.blocks is None:
-        record_background(config, specimen, record, instrument)
-        return
+    """Compute the background; motions and forces are transformed too, a quarter of all transforms."""
     for _ in BlockInputs(config, specimen, record, _Standstill(), instrument).seen():
         pass

@@ -87,12 +87,6 @@ class Config(Section):
     housing: Housing | None = Field(default=None, description="what lies between the bearings and sensors with a path")
     background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
 
-    filters: Literal["record", "blocks"] = Field(
-        default="record",
-        description="how paths, sensors and noise are computed; record: over the whole record at once; blocks: "
-        "block after block, with filters of limited length, in memory that does not grow with the duration",
-    )
-
     @property
     def samples(self) -> int:
         """Number of samples of a record's channel."""

@@ -6,62 +6,85 @@ their phase against the pinion's angle, so that all states of a gearbox share th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 
-from siggen.arrays import ComplexArray, FloatArray
+from siggen.arrays import FloatArray
 from siggen.config import Background, Config, Floor, ForeignMesh, ShaftLines, constant, draw
 from siggen.dynamics.drive.comb import Comb, turns_of
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
-from siggen.record.background_course import Course, record_course
-from siggen.record.force_floor import floor_spectra
-from siggen.record.rubbing import rubbing_force
-from siggen.specimen.background import AXES, SpecimenBackground
-from siggen.specimen.instrument import Instrument
+from siggen.record.background_course import Course, course_at
+from siggen.record.force_floor import bearing_strength, floor_levels, random_levels
+from siggen.record.rubbing import RubbingForce
+from siggen.specimen.background import AXES, FLOOR_INPUTS, SpecimenBackground
+from siggen.specimen.block_responses import BACKGROUND, FLOOR, Input
 
 
-@dataclass(frozen=True, slots=True)
-class RecordBackground:
-    """Channel -> spectrum (k,) of its acceleration before the sensor, and the labels of all parts."""
+class BackgroundBlocks:
+    """All parts of a record's background from sample `first` on, over `length` samples.
 
-    spectra: Mapping[str, ComplexArray]
-    labels: Mapping[str, object]
+    `labels` are there from the first block on. Nothing is drawn from the state.
+    """
 
+    def __init__(
+        self,
+        config: Config,
+        specimen: Specimen,
+        record: PlannedRecord,
+        background: SpecimenBackground,
+        first: int,
+        length: int,
+    ) -> None:
+        self._of_record = (config, specimen, record)
+        self._background, self._next, self._length = background, first, length
+        assert config.background is not None
+        course = self._course(1)
+        self._asked = config.background.floor
+        self._section = with_levels(config.background, background.section, course)
+        self._levels = {} if self._section.floor is None else random_levels(self._section.floor, course)
+        self._generators = {name: course.of_record(f"background.floor.{name}") for name in FLOOR_INPUTS}
+        self._rubbing: RubbingForce | None = None
+        self.labels: dict[str, object] = {}
 
-def record_background(
-    config: Config, specimen: Specimen, record: PlannedRecord, instrument: Instrument
-) -> RecordBackground | None:
-    """Return the background of one record; None without the section. Nothing is drawn from the state."""
-    background = instrument.background
-    if background is None or config.background is None:
-        return None
-    course = record_course(config, specimen, record, instrument.length)
-    section = with_levels(config.background, background.section, course)
-    forces, labels = _forces(section, course, background)
-    floor: dict[str, ComplexArray] = {}
-    if section.floor is not None:
-        floor = floor_spectra(section.floor, course)
-        labels |= floor_labels(config.background.floor, section.floor)
-    return RecordBackground(_seen(background, forces, floor), labels)
+    @property
+    def floor(self) -> Floor | None:
+        """The floor as drawn for the record."""
+        return self._section.floor
 
+    def take(self, count: int) -> dict[Input, FloatArray]:
+        """Return the next values (count,) of every input."""
+        course = self._course(count)
+        forces, labels = line_forces(self._section, course, self._background)
+        if self._section.rubbing is not None:
+            if self._rubbing is None:
+                self._rubbing = RubbingForce(self._section, self._section.rubbing, course, self._length)
+            forces["mesh"] = self._rubbing.take(course)
+            labels |= self._rubbing.labels
+        found = {Input(BACKGROUND, name): force for name, force in forces.items()}
+        if self._section.floor is not None:
+            labels |= floor_labels(self._asked, self._section.floor)
+            found |= self._white(self._section.floor, course)
+        self.labels = self.labels or labels
+        self._next += count
+        return found
 
-def _seen(
-    background: SpecimenBackground, forces: dict[str, FloatArray], floor: dict[str, ComplexArray]
-) -> dict[str, ComplexArray]:
-    """Return channel -> spectrum (k,), input after input; `forces` and `floor` are used up, since they are large."""
-    totals = {name: np.zeros(way.shape[1], dtype=np.complex128) for name, way in background.responses.items()}
-    for name in list(dict.fromkeys([*forces, *floor])):
-        spectrum = np.fft.rfft(forces.pop(name)) if name in forces else floor.pop(name)
-        if name in floor:
-            spectrum += floor.pop(name)
-        row = background.inputs.index(name)
-        for channel, way in background.responses.items():
-            totals[channel] += way[row] * spectrum
-    return totals
+    def _course(self, count: int) -> Course:
+        return course_at(*self._of_record, self._next, count)
+
+    def _white(self, floor: Floor, course: Course) -> dict[Input, FloatArray]:
+        """Return noise of the floor's density above its low corner, modulated where shafts do that."""
+        found = {}
+        random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
+        for name, level in floor_levels(floor).items():
+            values = self._generators[name].standard_normal(course.length)
+            values *= level * sqrt(0.5 * course.fs_hz)
+            strength = bearing_strength(floor, course, name, random)
+            if strength is not None:
+                values *= np.sqrt(strength)
+            found[Input(FLOOR, name)] = values
+        return found
 
 
 def with_levels(section: Background, drawn: Background, course: Course) -> Background:
@@ -80,20 +103,6 @@ def floor_labels(asked: Floor | None, floor: Floor) -> dict[str, object]:
         "machine_force_n_per_sqrt_hz": constant(floor.machines_n_per_sqrt_hz),
         **({"floor_level_std": constant(floor.level_std)} if random else {}),
     }
-
-
-def _forces(
-    section: Background, course: Course, background: SpecimenBackground
-) -> tuple[dict[str, FloatArray], dict[str, object]]:
-    """Return input -> force (length,), and labels."""
-    forces: dict[str, FloatArray] = {}
-    labels: dict[str, object] = {}
-    if section.rubbing is not None:
-        force, labels = rubbing_force(section, course, section.rubbing)
-        if "mesh" in background.inputs:
-            forces["mesh"] = force
-    lines, found = line_forces(section, course, background)
-    return {**forces, **lines}, {**labels, **found}
 
 
 def line_forces(

@@ -68,11 +68,6 @@ class Course:
         return harmonic_sum(self.turns[shaft], shaft_phasors(depth, phase_rad))
 
 
-def record_course(config: Config, specimen: Specimen, record: PlannedRecord, length: int) -> Course:
-    """Return the course of one record over `length` samples, the last of which are the record's."""
-    return course_at(config, specimen, record, config.samples - length, length)
-
-
 def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: int, count: int) -> Course:
     """Return the course of one record over `count` samples from sample `first`, below 0 in the history."""
     pair, point = gear_pair(specimen.gears), draw_operating_point(config, record.specimen_id, record.operating_point_id)

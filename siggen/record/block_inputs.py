@@ -11,7 +11,7 @@ from siggen.config import Config
 from siggen.dynamics.time.response_stream import Pieces
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
-from siggen.record.background_blocks import BackgroundBlocks
+from siggen.record.background import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks
 from siggen.sensing.block_filter import AHEAD, TOGETHER
 from siggen.specimen.block_responses import MOTION, BlockResponses, Input, block_responses
@@ -24,7 +24,6 @@ class BlockInputs:
     def __init__(
         self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
     ) -> None:
-        assert instrument.blocks is not None
         self._samples, self._grid = config.samples, instrument.blocks.grid
         back, background = self._grid.back, instrument.background
         self._motions = MotionBlocks(config, specimen, record, response, back)
@@ -89,5 +88,4 @@ class BlockInputs:
 
 def _with_floor(instrument: Instrument, background: BackgroundBlocks) -> BlockResponses:
     """Return the filters with the floor of one record."""
-    assert instrument.blocks is not None
     return block_responses(instrument.blocks.grid, instrument_ways(instrument, background.floor))

@@ -14,18 +14,16 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
 from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines, Turning
-from siggen.sensing.force_density import noise_of, tabulated
-from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.force_density import tabulated
 from siggen.sensing.pink_noise import PinkStream
 from siggen.sensing.sensor_response import high_pass_response
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.sensing.spectral_filter import frequencies, record_of
 from siggen.sensing.spread import Spread
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
 SPECTRUM_TAPS = 16_384
-"""Of the filter of a sensor's noise, if it is made in blocks: at 25.6 kHz densities are smoothed over 1.6 Hz."""
+"""Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
 
 Part = Callable[[int, FloatArray], FloatArray]
 """From the first sample and the pinion's angles (k,) to what is added there (k,); parts of a record in order."""
@@ -79,20 +77,15 @@ class ChannelDisturbance:
         density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
         corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
         self._labels[f"pink_noise_{channel.name}_m_s2_per_sqrt_hz"] = density
-        if record.in_blocks:
-            pink = PinkStream(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
-            return lambda _, angle: pink.take(angle.size)
-        spectrum = noise_spectrum(density, record.length, record.fs_hz, rng, pink_corner_hz=corner_hz)
-        spectrum = spectrum if channel.high_pass is None else spectrum * channel.high_pass
-        return lambda _, angle: record_of(spectrum, record.length, angle.size)
+        pink = PinkStream(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
+        return lambda _, angle: pink.take(angle.size)
 
 
 class NoiseLength(NamedTuple):
-    """Samples that the responses of channels stand for; whether noise comes in blocks or has that period."""
+    """Samples that the responses of channels stand for, at their rate."""
 
     length: int
     fs_hz: float
-    in_blocks: bool
 
 
 def _of_spectrum(
@@ -100,20 +93,11 @@ def _of_spectrum(
 ) -> Part:
     rng = draws.record("noise_spectrum")
     factor = at(section.factor, draws.level("noise_spectrum.factor", rng))
-    noise = (_shaped if record.in_blocks else _periodic)(section, factor, channel, record, rng)
+    noise = _shaped(section, factor, channel, record, rng)
     if section.modulation is None:
         return lambda _, angle: noise(angle.size)
     strength = NoiseStrength(section.modulation, draws, turning.gear_order, record.fs_hz)
     return lambda _, angle: noise(angle.size) * np.sqrt(strength.take(angle))
-
-
-def _periodic(
-    section: SensorDensity, factor: float, channel: ChannelInstrument, record: NoiseLength, rng: np.random.Generator
-) -> Callable[[int], FloatArray]:
-    density = factor * tabulated(frequencies(record.length, record.fs_hz), section.frequency_hz, section.density)
-    density = density if channel.high_pass is None else density * np.abs(channel.high_pass)
-    values = noise_of(density, record.length, record.fs_hz, rng)
-    return lambda count: values[record.length - count :]
 
 
 def _shaped(

@@ -1,42 +1,18 @@
-"""Noise of forces in the mesh, at every bearing and of both machines, as spectra; independent of each other."""
+"""Noise of forces in the mesh, at every bearing and of both machines, in order; independent of each other."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
-from siggen.arrays import ComplexArray, FloatArray
+from siggen.arrays import FloatArray
 from siggen.config import Floor, constant
 from siggen.record.background_course import Course
 from siggen.sensing.modulation import LevelCourse, shaft_course
-from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import MACHINES, SHAFTS
-from siggen.specimen.block_responses import floor_shape
 from siggen.specimen.measured_path import INPUTS
 
 PHASE_SPREAD = 0.1
 """Noise of one shaft's bearings rises at the same angle, within this share of a turn to either side."""
-
-
-def floor_spectra(floor: Floor, course: Course) -> dict[str, ComplexArray]:
-    """Return input -> spectrum (length // 2 + 1,) of its force; that of bearings is modulated by their shafts."""
-    shape = floor_shape(floor, frequencies(course.length, course.fs_hz))
-    random = {shaft: level.take(course.length) for shaft, level in random_levels(floor, course).items()}
-    found = {}
-    for name, level in floor_levels(floor).items():
-        rng = course.of_record(f"background.floor.{name}")
-        spectrum = noise_spectrum(level, course.length, course.fs_hz, rng)
-        strength = bearing_strength(floor, course, name, random)
-        if strength is None:
-            found[name] = spectrum * shape
-        elif random:
-            # before the shape: a level of milliseconds would spread its strong low frequencies over all others
-            found[name] = _modulated(spectrum, strength) * shape
-        else:
-            found[name] = _modulated(spectrum * shape, strength)
-    return found
 
 
 def floor_levels(floor: Floor) -> dict[str, float]:
@@ -62,7 +38,3 @@ def bearing_strength(floor: Floor, course: Course, name: str, random: Mapping[st
     turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.floor.{name}.turn") - 1.0)
     strength = shaft_course([course.shaft_lines(shaft, depth, turn)])
     return strength * random[shaft] if shaft in random else strength
-
-
-def _modulated(spectrum: ComplexArray, strength: FloatArray) -> ComplexArray:
-    return np.asarray(np.fft.rfft(np.sqrt(strength) * np.fft.irfft(spectrum, strength.size)))

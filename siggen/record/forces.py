@@ -1,56 +1,21 @@
-"""The forces of one record that shake its housing: those of the bearings, with broadband noise on each."""
+"""Broadband noise on the bearing forces of one record, which shake its housing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import hypot
 from typing import NamedTuple
 
 import numpy as np
 
-from siggen.arrays import ComplexArray, FloatArray
+from siggen.arrays import FloatArray
 from siggen.config import Config, ForceNoise, at
-from siggen.dynamics.time.response import Response
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.background_course import noise_levels
 from siggen.seeding import Stage, named_generator, named_uniforms
-from siggen.sensing.noise_spectrum import noise_spectrum
-from siggen.sensing.spectral_filter import frequencies, record_spectrum
 from siggen.specimen.drive import record_owner
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.instrument import Instrument
-from siggen.specimen.measured_path import INPUTS
-
-
-@dataclass(frozen=True, slots=True)
-class RecordForces:
-    """Spectra (k,) of the bearing forces `INPUTS`, noise included; none where no sensor has a path; and labels."""
-
-    spectra: tuple[ComplexArray, ...]
-    labels: dict[str, object]
-
-
-def record_forces(
-    config: Config, specimen: Specimen, record: PlannedRecord, response: Response, instrument: Instrument
-) -> RecordForces:
-    """Return the forces of one record; all sensors see the same ones."""
-    noise = force_noise(config, specimen, record)
-    if not instrument.has_path:
-        return RecordForces((), noise.labels)
-    rolled_off = noise.roll_off(frequencies(instrument.length, config.fs_hz))
-    spectra = []
-    for name in INPUTS:
-        spectrum = record_spectrum(
-            response.history.bearing_force_n[name], response.bearing_force_n[name], instrument.length
-        )
-        if noise.density > 0.0:
-            spectrum += rolled_off * noise_spectrum(
-                noise.density, instrument.length, config.fs_hz, force_generator(config, record, name)
-            )
-        spectra.append(spectrum)
-    return RecordForces(tuple(spectra), noise.labels)
 
 
 class DrawnForceNoise(NamedTuple):

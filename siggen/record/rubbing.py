@@ -17,27 +17,50 @@ from siggen.compiled import njit
 from siggen.config import Background, Bursts, Rubbing, at, constant
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.record.background_course import Course
-from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter, noise_of
+from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course
 from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies
 
 REFERENCE_SPEED_M_S = 3.0
 REFERENCE_LINE_LOAD_N_PER_M = 5e4
 """Rolling speed at the pitch point and line load at which the force is k r."""
+CONTACT_TAPS = 1024
+"""Of the contact's filter, whose corner lies in the kilohertz: at 25.6 kHz 40 ms."""
 
 
-def rubbing_force(section: Background, course: Course, rubbing: Rubbing) -> tuple[FloatArray, dict[str, object]]:
-    """Return the force (length,) [N] of a drawn section, and its labels."""
-    size = force_size_n(section, rubbing, course)
-    noise = _noise(rubbing, course)
-    strength = np.sqrt(modulation(rubbing, course, level_process(rubbing, course).take(course.length)))
-    labels = rubbing_labels(rubbing, size)
-    if rubbing.bursts is not None:
-        drawn = drawn_bursts(rubbing.bursts, course, course.length)
-        strength += burst_rise(drawn, 0, course.length)
-        labels["burst_count"] = drawn.recorded
-    return size * noise * strength, labels
+class RubbingForce:
+    """The force of one record from the first sample of `course` on, over `length` samples, and its labels."""
+
+    def __init__(self, section: Background, rubbing: Rubbing, course: Course, length: int) -> None:
+        self._rubbing, self._size = rubbing, force_size_n(section, rubbing, course)
+        corner_hz, steepness = constant(rubbing.corner_hz), constant(rubbing.steepness)
+        unit = 1.0 / sqrt(contact_bandwidth_hz(corner_hz, steepness))
+        taps = shape_taps(lambda f: unit * contact_filter(f, corner_hz, steepness), CONTACT_TAPS, course.fs_hz)
+        self._noise = ShapedNoise(taps, course.fs_hz, course.of_record("background.rubbing"))
+        self._level = level_process(rubbing, course)
+        self._share = constant(rubbing.replayed_share)
+        self._patterns = {
+            shaft: shaft_pattern(corner_hz, steepness, course, shaft, order)
+            for shaft, order in (course.orders.items() if self._share > 0.0 else ())
+        }
+        self._bursts = None if rubbing.bursts is None else drawn_bursts(rubbing.bursts, course, length)
+        self._done = 0
+        self.labels = rubbing_labels(rubbing, self._size)
+        if self._bursts is not None:
+            self.labels["burst_count"] = self._bursts.recorded
+
+    def take(self, course: Course) -> FloatArray:
+        """Return the force (k,) [N] over the next samples, those of `course`."""
+        noise = sqrt(1.0 - self._share) * self._noise.take(course.length)
+        for shaft, pattern in self._patterns.items():
+            noise += sqrt(0.5 * self._share) * replayed(course.angle_rad, course.orders[shaft], pattern)
+        strength = np.sqrt(modulation(self._rubbing, course, self._level.take(course.length)))
+        if self._bursts is not None:
+            strength += burst_rise(self._bursts, self._done, course.length)
+        self._done += course.length
+        return np.asarray(self._size * noise * strength)
 
 
 def rubbing_labels(rubbing: Rubbing, size_n: float) -> dict[str, object]:
@@ -63,20 +86,6 @@ def force_size_n(section: Background, rubbing: Rubbing, course: Course) -> float
     return float(
         stiffness * roughness_m * speed ** constant(rubbing.speed_exponent) * load ** constant(rubbing.load_exponent)
     )
-
-
-def _noise(rubbing: Rubbing, course: Course) -> FloatArray:
-    """Return n (length,) of variance 1: new for every record but for what both gears replay."""
-    corner_hz, steepness = constant(rubbing.corner_hz), constant(rubbing.steepness)
-    unit = 1.0 / sqrt(contact_bandwidth_hz(corner_hz, steepness))
-    share = constant(rubbing.replayed_share)
-    shape = unit * contact_filter(frequencies(course.length, course.fs_hz), corner_hz, steepness)
-    noise = sqrt(1.0 - share) * noise_of(shape, course.length, course.fs_hz, course.of_record("background.rubbing"))
-    for shaft, order in course.orders.items():
-        if share > 0.0:
-            pattern = shaft_pattern(corner_hz, steepness, course, shaft, order)
-            noise += sqrt(0.5 * share) * replayed(course.angle_rad, order, pattern)
-    return noise
 
 
 def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str, order: float) -> FloatArray:

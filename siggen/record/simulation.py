@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from siggen.checks.quantity_names import acceleration_name
 from siggen.columns.record import Record, RecordFailure
@@ -26,7 +25,7 @@ from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_po
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
-from siggen.record.quantities import internal_quantities, is_asked_for
+from siggen.record.quantities import is_asked_for
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
@@ -179,7 +178,6 @@ def _stream(
     with stage("inputs"):
         step_s = 1.0 / (config.fs_hz * steps)
         motion = specimen_motion(specimen.dynamics, state.mesh, point, step_s, driven, stride=stride)
-    in_blocks = config.filters == "blocks"
     with stage("loop"):
         stream = response_stream(
             motion,
@@ -193,8 +191,7 @@ def _stream(
             excitation=driven.excitation,
             settle_s=_settle_s(config, motion),
             history_s=history_s(config),
-            ahead=AHEAD if in_blocks else 0,
-            in_blocks=in_blocks,
+            ahead=AHEAD,
         )
     return stream, point
 
@@ -219,19 +216,11 @@ def _simulated(
     seen = {motion for channel in instrument.channels for motion in channel.motions}
     if with_internals:
         seen |= {motion for motion in state.mesh.structure.motions if is_asked_for(config, acceleration_name(motion))}
-    response: Response | _RefusedPieces | StreamedInternals
-    if config.filters == "blocks":
-        with refused_as("outside_model"):
-            stream, point = _stream(
-                config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
-            )
-        response = _RefusedPieces(stream)
-        if with_internals:
-            response = StreamedInternals(config, specimen, stream, response)
-    else:
-        response, point = record_response(
-            config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
-        )
+    with refused_as("outside_model"):
+        stream, point = _stream(config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen)
+    response: _RefusedPieces | StreamedInternals = _RefusedPieces(stream)
+    if with_internals:
+        response = StreamedInternals(config, specimen, stream, response)
     with stage("sensing"):
         channels, channel_labels = measured_channels(config, specimen, planned, response, instrument)
     ends_rad = driven.rotation.angle_rad(np.array([0, config.samples - 1]) / config.fs_hz)
@@ -246,20 +235,9 @@ def _simulated(
         "status": "ok",
         **channel_labels,
     }
-    internals = _internals(config, specimen, response) if with_internals else None
+    internals = response.quantities() if isinstance(response, StreamedInternals) else None
     tacho_s = driven.rotation.tacho_s(config.samples / config.fs_hz)
     return Record(planned, labels, channels, tacho_s, internals)
-
-
-def _internals(
-    config: Config, specimen: Specimen, response: Response | _RefusedPieces | StreamedInternals
-) -> dict[str, NDArray[np.float32]]:
-    """Return the quantities that are asked for."""
-    if isinstance(response, StreamedInternals):
-        return response.quantities()
-    assert isinstance(response, Response)
-    found = internal_quantities(specimen, response)
-    return {name: values.astype(np.float32) for name, values in found.items() if is_asked_for(config, name)}
 
 
 class _RefusedPieces:

@@ -41,7 +41,8 @@ class BlockGrid:
 
 def block_grid(history: int, samples: int) -> BlockGrid:
     """Return the grid of a record of so many samples whose filters remember at least `history` samples."""
-    memory, block = filter_length(history + AHEAD, 0), min(samples, BLOCK_SAMPLES)
+    # a response that remembers nothing, such as a leak from across an axis, stands at time 0: it must not fade
+    memory, block = filter_length(max(history, AHEAD) + AHEAD, 0), min(samples, BLOCK_SAMPLES)
     return BlockGrid(memory, block, filter_length(memory, block))
 
 

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.sensing.noise_spectrum import noise_spectrum
 
 
 def contact_filter(frequency_hz: FloatArray, corner_hz: float, steepness: float) -> FloatArray:
@@ -53,8 +52,3 @@ def tabulated(frequency_hz: FloatArray, knots_hz: Sequence[float], density: Sequ
         raise ValueError(f"density: received {list(knots)} Hz, {list(values)}; allowed: as many, ascending, above 0")
     safe = np.maximum(frequency_hz, knots[0])
     return np.asarray(np.exp(np.interp(np.log(safe), np.log(knots), np.log(values))))
-
-
-def noise_of(density: FloatArray, length: int, fs_hz: float, rng: np.random.Generator) -> FloatArray:
-    """Return a stationary record (length,) of one-sided density (length // 2 + 1,), periodic over its length."""
-    return np.asarray(np.fft.irfft(noise_spectrum(1.0, length, fs_hz, rng) * density, length))

@@ -36,49 +36,6 @@ class Measurement:
     step_m_s2: float
 
 
-def measure(
-    signal_m_s2: NDArray[np.float64],
-    *,
-    gain: float,
-    range_m_s2: float,
-    bits: int | None,
-    rng: np.random.Generator,
-    noise_floor_m_s2: float | None = None,
-    snr_db: float | None = None,
-    disturbance_m_s2: NDArray[np.float64] | None = None,
-) -> Measurement:
-    """Return the channel stored for an acceleration (n,).
-
-    Parameters
-    ----------
-    gain : factor on the signal, before the noise
-    range_m_s2 : values beyond ± this are clipped
-    bits : of the converter, 2 to 24, or None for no quantisation
-    noise_floor_m_s2, snr_db : standard deviation of white noise, or its level below the signal; neither: no noise
-    disturbance_m_s2 : (n,) what the surroundings and the electronics add besides, behind the gain; None: nothing
-
-    Raises
-    ------
-    ValueError
-        If an argument is outside its allowed range or the signal is not finite.
-    """
-    _check(signal_m_s2, gain=gain, range_m_s2=range_m_s2, bits=bits, noise_floor_m_s2=noise_floor_m_s2, snr_db=snr_db)
-    amplified = gain * signal_m_s2
-    rms = float(np.std(amplified))
-    floor = noise_floor_m_s2 if snr_db is None else rms / 10.0 ** (snr_db / 20.0)
-    noisy = amplified if floor is None else amplified + floor * rng.standard_normal(amplified.size)
-    noisy = noisy if disturbance_m_s2 is None else noisy + disturbance_m_s2
-    stored, clipped, step = converted(noisy, range_m_s2, bits)
-    stored.setflags(write=False)
-    return Measurement(
-        accel_m_s2=stored,
-        noise_floor_m_s2=float(floor or 0.0),
-        snr_db=ratio_db(rms, floor or 0.0),
-        clipped_share=clipped / stored.size,
-        step_m_s2=step,
-    )
-
-
 def converted(
     analogue_m_s2: NDArray[np.float64], range_m_s2: float, bits: int | None
 ) -> tuple[NDArray[np.float32], int, float]:
@@ -101,28 +58,3 @@ def ratio_db(rms: float, floor: float) -> float:
     if floor == 0.0:
         return math.inf
     return 20.0 * math.log10(rms / floor) if rms > 0.0 else -math.inf
-
-
-def _check(
-    signal_m_s2: NDArray[np.float64],
-    *,
-    gain: float,
-    range_m_s2: float,
-    bits: int | None,
-    noise_floor_m_s2: float | None,
-    snr_db: float | None,
-) -> None:
-    if signal_m_s2.ndim != 1 or signal_m_s2.size == 0 or not np.isfinite(signal_m_s2).all():
-        raise ValueError(f"signal_m_s2: received shape {signal_m_s2.shape}; allowed are finite one-dimensional signals")
-    if not math.isfinite(gain):
-        raise ValueError(f"gain: received {gain}; allowed are finite factors")
-    if not range_m_s2 > 0.0 or (bits is not None and math.isinf(range_m_s2)):
-        raise ValueError(f"range_m_s2: received {range_m_s2}; allowed are values above 0, finite ones if quantised")
-    if bits is not None and not 2 <= bits <= MAX_BITS:
-        raise ValueError(f"bits: received {bits}; allowed are 2 to {MAX_BITS}, or None")
-    if noise_floor_m_s2 is not None and snr_db is not None:
-        raise ValueError(f"noise: received floor {noise_floor_m_s2} and {snr_db} dB; allowed is one of them")
-    if noise_floor_m_s2 is not None and not (math.isfinite(noise_floor_m_s2) and noise_floor_m_s2 >= 0.0):
-        raise ValueError(f"noise_floor_m_s2: received {noise_floor_m_s2}; allowed are finite values from 0")
-    if snr_db is not None and not math.isfinite(snr_db):
-        raise ValueError(f"snr_db: received {snr_db}; allowed are finite ratios")

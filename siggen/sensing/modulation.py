@@ -27,11 +27,6 @@ def shaft_phasors(depth: float, phase_rad: FloatArray) -> ComplexArray:
     return np.asarray(depth / np.sqrt(np.arange(1.0, phase_rad.size + 1.0)) * np.exp(1j * phase_rad))
 
 
-def level_course(samples: int, std: float, memory_samples: float, rng: np.random.Generator) -> FloatArray:
-    """Return exp(s U - s²/2) (n,), U Gaussian of variance 1 whose correlation falls to 1/e over `memory_samples`."""
-    return LevelCourse(std, memory_samples, rng).take(samples)
-
-
 class LevelCourse:
     """The same course block after block."""
 

@@ -102,10 +102,9 @@ def variation_labels(config: Config, driven: RecordDrive) -> dict[str, object]:
     """Return the labels of the variation at the samples; none without it."""
     if driven.torque is None:
         return {}
-    block = BLOCK_SAMPLES if config.filters == "blocks" else config.samples
     speed, torque = Spread(), Spread()
-    for first in range(0, config.samples, block):
-        samples = np.arange(first, min(first + block, config.samples))
+    for first in range(0, config.samples, BLOCK_SAMPLES):
+        samples = np.arange(first, min(first + BLOCK_SAMPLES, config.samples))
         turning = driven.rotation.turning(samples / config.fs_hz)
         speed.take(turning.speed_rad_s)
         torque.take(driven.torque.motor_torque_nm(turning))

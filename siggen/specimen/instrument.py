@@ -17,7 +17,7 @@ from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BlockGrid, block_grid
 from siggen.sensing.modal_path import modal_accelerance, modal_shares
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
-from siggen.sensing.spectral_filter import filter_length, frequencies
+from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import (
     ENTRIES,
     FLOOR_INPUTS,
@@ -80,21 +80,13 @@ class ChannelInstrument:
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """All channels of one specimen, and the length whose frequencies their responses have.
-
-    It is that of the records that they filter, or what `blocks` of a record remember.
-    """
+    """All channels of one specimen, and the length whose frequencies their responses have: what `blocks` remember."""
 
     length: int
     fs_hz: float
     channels: tuple[ChannelInstrument, ...]
+    blocks: BlockResponses
     background: SpecimenBackground | None = None
-    blocks: BlockResponses | None = None
-
-    @property
-    def has_path(self) -> bool:
-        """Whether a channel needs the bearing forces."""
-        return any(channel.accelerance is not None for channel in self.channels)
 
 
 def settle_s(config: Config) -> float:
@@ -118,12 +110,11 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     section = drawn_background(config, specimen.specimen_id)
     history = max(history_s(config), background_history_s(section))
     history_samples = round(history * config.fs_hz)
-    blocks = block_grid(history_samples, config.samples) if config.filters == "blocks" else None
-    length = filter_length(history_samples, config.samples) if blocks is None else blocks.memory
+    blocks = block_grid(history_samples, config.samples)
     housing = specimen_housing(config, specimen.specimen_id)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
-    grid = frequencies(length, config.fs_hz)
-    paths = _paths(specimen, housing, grid, kept=blocks is not None)
+    grid = frequencies(blocks.memory, config.fs_hz)
+    paths = _paths(specimen, housing, grid)
     channels = []
     for sensor in specimen.sensors:
         gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
@@ -135,9 +126,7 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
         ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, paths)) for c in channels}
         del paths  # as large as the responses of a channel
         background = specimen_background(config, specimen, section, ways, grid)
-    found = Instrument(length, config.fs_hz, tuple(channels), background)
-    if blocks is None:
-        return found
+    found = Instrument(blocks.memory, config.fs_hz, tuple(channels), block_responses(blocks, {}), background)
     filters = _in_blocks(found, blocks)
     if background is not None and background.section.redraw == "gearbox":  # nobody asks for them again
         background = replace(background, responses={})
@@ -197,11 +186,10 @@ class _Paths:
     shares: ComplexArray | None
 
 
-def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray, *, kept: bool) -> _Paths:
-    """Return housing and grid; what the modes do is kept for all paths where the grid does not grow with the record."""
+def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray) -> _Paths:
+    """Return housing and grid, and what the modes do for all paths."""
     modal = housing is not None and any(isinstance(sensor.path, ModalPath) for sensor in specimen.sensors)
-    shared = kept and modal and housing is not None
-    return _Paths(housing, grid, modal_shares(housing.modes, grid) if shared and housing is not None else None)
+    return _Paths(housing, grid, modal_shares(housing.modes, grid) if modal and housing is not None else None)
 
 
 def _channel(sensor: Sensor, axis: str, gain: float, draw: _Draw, paths: _Paths) -> ChannelInstrument:

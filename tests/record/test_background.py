@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,17 +11,19 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record, label_names
 from siggen.config import Config
+from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
-from siggen.record.background import record_background
-from siggen.record.background_course import record_course
-from siggen.record.force_floor import floor_spectra
-from siggen.record.rubbing import force_size_n, rubbing_force
+from siggen.record.background import BackgroundBlocks
+from siggen.record.background_course import course_at
+from siggen.record.block_inputs import BlockInputs
+from siggen.record.rubbing import RubbingForce, force_size_n
 from siggen.record.simulation import simulate, simulate_specimen
-from siggen.sensing.spectral_filter import frequencies, record_of
+from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import drawn_background
-from siggen.specimen.instrument import specimen_instrument
+from siggen.specimen.block_responses import FLOOR
+from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import minimal
 
 LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
@@ -53,10 +56,22 @@ def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], di
     planned = planned_record(config, record_id)
     specimen = draw_specimen(config, planned.specimen_id)
     instrument = specimen_instrument(config, specimen)
-    found = record_background(config, specimen, planned, instrument)
-    assert found is not None
-    signals = {n: record_of(s, instrument.length, config.samples) for n, s in found.spectra.items()}
-    return signals, dict(found.labels)
+    inputs = BlockInputs(config, specimen, planned, Standstill(instrument), instrument)
+    blocks = list(inputs.seen())
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, inputs.labels
+
+
+class Standstill:
+    """A response at rest: what is left is the background."""
+
+    def __init__(self, instrument: Instrument) -> None:
+        self.motions = tuple(motion for channel in instrument.channels for motion in channel.motions)
+
+    places: tuple[str, ...] = ()
+    before = 0
+
+    def pieces(self) -> Iterator[Piece]:
+        return iter(())
 
 
 def test_a_record_holds_the_gears_and_the_background_and_its_labels() -> None:
@@ -121,7 +136,7 @@ def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
     # a mesh inside presses on two seats with equal and opposite forces: far above all modes a = F arm x / I
     places = (0.0, 100.0, -200.0)
     lids = [{**LID, "name": f"lid{k}", "position_mm": [x, 0.0]} for k, x in enumerate(places)]
-    config = loaded(*lids, background={"second_stage": {"order": 4.13}})
+    config = loaded(*lids, background={"second_stage": {"order": 4.13}, "redraw": "record"})
     specimen = draw_specimen(config, 0)
     background = specimen_instrument(config, specimen).background
     assert background is not None
@@ -176,9 +191,9 @@ def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     drawn = drawn_background(config, 0)
     assert drawn is not None
     assert drawn.rubbing is not None
-    course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
+    course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
     assert force_size_n(drawn, drawn.rubbing, course) == pytest.approx(16.0)
-    force, _ = rubbing_force(drawn, course, drawn.rubbing)
+    force = RubbingForce(drawn, drawn.rubbing, course, course.length).take(course)
     # 1,500 Hz over 1 s: 1,500 independent values; the band holds all but (f_c/f)^3/4 of the power
     assert force.std() == pytest.approx(16.0, rel=0.06)
     load = {"load_exponent": 0.5, "speed_exponent": 1.0}
@@ -195,8 +210,8 @@ def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
     drawn = drawn_background(config, 0)
     assert drawn is not None
     assert drawn.rubbing is not None
-    course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
-    force, _ = rubbing_force(drawn, course, drawn.rubbing)
+    course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
+    force = RubbingForce(drawn, drawn.rubbing, course, course.length).take(course)
     turns, per_turn = 94, config.fs_hz / 30.0
     # turns of the pinion do not fall on samples: read at equal angles
     at_angles = np.interp(np.arange(turns * 1024) * per_turn / 1024, np.arange(force.size), force).reshape(turns, 1024)
@@ -228,10 +243,13 @@ def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> 
         drawn = drawn_background(config, 0)
         assert drawn is not None
         assert drawn.floor is not None
-        course = record_course(config, draw_specimen(config, 0), planned_record(config, 0), config.samples)
-        spectra = floor_spectra(drawn.floor, course)
-        high = frequencies(course.length, course.fs_hz) > 2000.0  # most of the floor's power lies far below
-        found[std] = {name: np.fft.irfft(s * high, course.length) for name, s in spectra.items()}
+        specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
+        background = specimen_instrument(config, specimen).background
+        assert background is not None
+        blocks = BackgroundBlocks(config, specimen, planned, background, 0, config.samples)
+        high = frequencies(config.samples, config.fs_hz) > 2000.0
+        whites = {one.name: values for one, values in blocks.take(config.samples).items() if one.kind == FLOOR}
+        found[std] = {name: np.fft.irfft(np.fft.rfft(s) * high, s.size) for name, s in whites.items()}
     for name, signal in found[0.7].items():
         level = np.mean(signal**2) / np.mean(found[0.0][name] ** 2)
         kurtosis = np.mean(signal**4) / np.mean(signal**2) ** 2

@@ -115,7 +115,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     assert np.abs(turned - moved).max() > 1e-7  # bearings give way
 
 
-STREAMED = ["filters=blocks", "specimens=1", "internals.records=all"]
+STREAMED = ["specimens=1", "internals.records=all"]
 
 
 @pytest.mark.parametrize("name", ["configs/linear_pits.yaml", "configs/quickstart.yaml", "tests/configs/casing.yaml"])

@@ -13,7 +13,7 @@ from siggen.columns.record import Record
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response, simulate, specimen_state
-from siggen.sensing.measurement import measure
+from tests.sensing.test_measurement import measured
 
 THREADS = (1, 3, 16)
 """Linear algebra libraries split work by their number, also beyond the cores; for two most results still agree."""
@@ -47,7 +47,7 @@ def test_sums_over_a_record_do_not_depend_on_its_address() -> None:
         memory = np.empty(samples + 9)
         shifted = memory[shift : shift + samples]
         shifted[:] = values
-        stored = measure(shifted, gain=1.1, range_m_s2=3.0, bits=16, noise_floor_m_s2=0.1, rng=np.random.default_rng(1))
+        stored = measured(shifted, 1, gain=1.1, range_m_s2=3.0, bits=16, noise_floor_m_s2=0.1)
         labels.add((stored.snr_db, stored.clipped_share, float(np.std(shifted)), float(np.mean(shifted))))
     assert len(labels) == 1
 

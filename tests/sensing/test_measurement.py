@@ -8,14 +8,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.sensing.measurement import Measurement, measure, power_of_two_from
+from siggen.sensing.measurement import Measurement, power_of_two_from
+from siggen.sensing.recorder import Recorder
 
 SINE = 100.0 * np.sin(2.0 * np.pi * np.arange(20000) / 97.0)
 
 
 def measured(signal: np.ndarray = SINE, seed: int = 5, **changes) -> Measurement:
-    chain = {"gain": 1.0, "range_m_s2": 500.0, "bits": None, **changes}
-    return measure(signal, rng=np.random.default_rng(seed), **chain)
+    chain = {"range_m_s2": 500.0, "bits": None, "noise_floor_m_s2": None, "snr_db": None, **changes}
+    recorder = Recorder(signal.size, chain.pop("gain", 1.0))
+    parts = np.array_split(signal, 3)
+    for part in parts:
+        recorder.take(part)
+    recorder.finish(rng=np.random.default_rng(seed), **chain)
+    for part in parts:
+        recorder.convert(part.size, None)
+    return recorder.measurement()
 
 
 @given(st.floats(min_value=1e-200, max_value=1e200))
@@ -30,7 +38,8 @@ def test_the_step_is_the_smallest_power_of_two_that_covers_the_value(value: floa
 def test_quantised_values_are_exact_multiples_of_the_step_within_the_range(
     range_m_s2: float, bits: int, scale: float
 ) -> None:
-    signal = scale * range_m_s2 * np.sin(np.arange(200.0))
+    # a channel is kept as float32 until it is converted
+    signal = (scale * range_m_s2 * np.sin(np.arange(200.0))).astype(np.float32).astype(float)
     result = measured(signal, range_m_s2=range_m_s2, bits=bits)
     assert result.step_m_s2 >= 2.0 * range_m_s2 / 2.0**bits
     codes = [Fraction(float(value)) / Fraction(result.step_m_s2) for value in result.accel_m_s2]
@@ -97,21 +106,6 @@ def test_same_generator_same_bytes_and_read_only() -> None:
     assert not first.accel_m_s2.flags.writeable
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"gain": float("nan")},
-        {"range_m_s2": 0.0},
-        {"range_m_s2": float("inf"), "bits": 16},
-        {"bits": 1},
-        {"bits": 25},
-        {"noise_floor_m_s2": -1.0},
-        {"snr_db": float("inf")},
-        {"noise_floor_m_s2": 1.0, "snr_db": 10.0},
-        {"signal": np.array([0.0, np.nan])},
-        {"signal": np.empty(0)},
-    ],
-)
-def test_impossible_chains_are_refused(wrong: dict) -> None:
+def test_accelerations_that_are_not_finite_are_refused() -> None:
     with pytest.raises(ValueError, match="allowed"):
-        measured(**wrong)
+        measured(np.array([0.0, np.nan, 0.0]))

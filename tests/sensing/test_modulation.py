@@ -8,8 +8,8 @@ from scipy.signal import hilbert
 
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
 from siggen.seeding import Stage, generator
-from siggen.sensing.force_density import noise_of
-from siggen.sensing.modulation import level_course, periodic_course, replayed, shaft_course, shaft_phasors
+from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course, shaft_phasors
+from siggen.sensing.noise_spectrum import noise_spectrum
 
 FS, LENGTH = 25600.0, 1 << 21
 FREQUENCY = np.arange(LENGTH // 2 + 1) * FS / LENGTH
@@ -21,17 +21,21 @@ def rng(name: int) -> np.random.Generator:
     return generator(5, Stage.BACKGROUND, name)
 
 
+def noise(drawn: np.random.Generator) -> np.ndarray:
+    return np.fft.irfft(BAND * noise_spectrum(1.0, LENGTH, FS, drawn), LENGTH)
+
+
 def kurtosis(x: np.ndarray) -> float:
     return float((x**4).mean() / (x**2).mean() ** 2)
 
 
 @pytest.mark.parametrize("std", [0.0, 0.35, 0.64])
 def test_a_random_level_raises_kurtosis_and_envelope_variation_as_in_closed_form(std: float) -> None:
-    noise = noise_of(BAND, LENGTH, FS, rng(1))
-    level = level_course(LENGTH, std, 3e-3 * FS, rng(2))
+    carried = noise(rng(1))
+    level = LevelCourse(std, 3e-3 * FS, rng(2)).take(LENGTH)
     # 82 s hold 27,000 independent levels: exp(2 s U) scatters by √((e^(4s²) - 1)/27,000), 1.3 % at s = 0.64
     assert level.mean() == pytest.approx(1.0, abs=0.02)
-    signal = noise * np.sqrt(level)
+    signal = carried * np.sqrt(level)
     envelope = np.abs(hilbert(signal))
     assert kurtosis(signal) == pytest.approx(3.0 * np.exp(std**2), rel=0.05)
     variation = (envelope.std() / envelope.mean()) ** 2
@@ -39,7 +43,7 @@ def test_a_random_level_raises_kurtosis_and_envelope_variation_as_in_closed_form
 
 
 def test_the_level_forgets_itself_over_its_time() -> None:
-    logarithm = np.log(level_course(LENGTH, 0.5, 100.0, rng(3)))
+    logarithm = np.log(LevelCourse(0.5, 100.0, rng(3)).take(LENGTH))
     logarithm -= logarithm.mean()
     for lag, expected in ((100, np.exp(-1.0)), (300, np.exp(-3.0))):
         found = (logarithm[lag:] * logarithm[:-lag]).mean() / logarithm.var()
@@ -53,7 +57,7 @@ def test_shaft_lines_alone_raise_the_kurtosis_as_in_closed_form() -> None:
     depths = 0.3 / np.sqrt(np.arange(1.0, 4.0))
     assert course.min() > 0.0
     assert course.mean() == pytest.approx(1.0, abs=1e-3)
-    signal = noise_of(BAND, LENGTH, FS, rng(4)) * np.sqrt(course)
+    signal = noise(rng(4)) * np.sqrt(course)
     assert kurtosis(signal) == pytest.approx(3.0 * (1.0 + 0.5 * (depths**2).sum()), rel=0.01)
     lines = 2.0 * np.abs((course * np.exp(-1j * np.arange(1, 4)[:, None] * angle)).mean(axis=1))
     np.testing.assert_allclose(lines, depths, rtol=1e-2)  # not a whole number of turns

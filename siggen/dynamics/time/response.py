@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 WINDOW_SAMPLES = 32_768
-"""Output samples that one spline of the inputs covers, where it does not cover all."""
+"""Output samples that one spline of the inputs covers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +169,6 @@ def response_stream(
     settle_s: float = 0.0,
     history_s: float = 0.0,
     ahead: int = 0,
-    in_blocks: bool = False,
 ) -> ResponseStream:
     """Return what a motion that was made for the step 1/(fs_hz steps_per_sample) does, before it is stepped.
 
@@ -177,7 +176,7 @@ def response_stream(
     longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else, nor do
     `ahead` samples behind the record. Filtering costs about a fifth of a response for four forces or motions: without
     `bearing_forces` there are none, and accelerations are those of the named `motions`; None: all. The motion must hold
-    the vectors of `excitation`. `in_blocks`: splines of inputs cover windows of fixed length instead of all time.
+    the vectors of `excitation`.
 
     Raises
     ------
@@ -191,8 +190,7 @@ def response_stream(
     if excitation is not None and motion.coarse_inputs:
         half, rate_hz = half_length(steps_per_sample), fs_hz * steps_per_sample
         ends_s = -(settle + half) / rate_hz, ((samples + ahead) * steps_per_sample + half) / rate_hz
-        window_s = WINDOW_SAMPLES / fs_hz if in_blocks else None
-        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz, window_s)
+        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz, WINDOW_SAMPLES / fs_hz)
     wanted = tuple(name for name in motion.structure.motions if motions is None or name in motions)
     return ResponseStream(
         Run(motion, drive, fs_hz, steps_per_sample, acting, wanted), samples, settle=settle, history=history,
