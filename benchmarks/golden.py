@@ -61,12 +61,11 @@ def records(preset: str) -> Iterator[Record]:
         yield record
 
 
-def compared(presets: Sequence[str]) -> Iterator[Moved]:
+def compared(numbers: dict[str, Any]) -> Iterator[Moved]:
     """Yield every channel, and the labels, of every state of some presets beside what was kept."""
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
     same_kind = kept["processor"] == processor()
-    for preset in presets:
-        found = _numbers(preset)
+    for preset, found in numbers.items():
         if list(found["states"]) != list(kept["presets"].get(preset, {"states": {}})["states"]):
             raise ValueError(f"{preset}: other states than kept; python -m benchmarks golden --write keeps them anew")
         for state, now in found["states"].items():
@@ -77,10 +76,10 @@ def compared(presets: Sequence[str]) -> Iterator[Moved]:
                 yield _labels(preset, state, _named(found["labels"], now), _named(names, before))
 
 
-def write() -> None:
-    """Keep what the records of all presets are now."""
-    found = {preset: _numbers(preset) for preset in PRESETS}
-    kept = {"simulation_version": SIMULATION_VERSION, "processor": processor(), "presets": found}
+def write(found: dict[str, Any]) -> None:
+    """Keep what the records of these presets are now; others stay as they were kept."""
+    presets = {**json.loads(KEPT.read_text(encoding="utf-8"))["presets"], **found} if KEPT.exists() else found
+    kept = {"simulation_version": SIMULATION_VERSION, "processor": processor(), "presets": presets}
     KEPT.write_text(_text(kept), encoding="utf-8")
 
 
@@ -109,14 +108,15 @@ def main(arguments: Sequence[str]) -> int:
     asked = parser.parse_args(arguments)
     if unknown := [preset for preset in asked.presets if preset not in PRESETS]:
         parser.error(f"received preset {unknown[0]!r}; allowed: {', '.join(PRESETS)}")
-    if asked.write:
-        write()
-        return 0
-    found = list(compared(asked.presets or PRESETS))
+    numbers = {preset: numbers_of(preset) for preset in asked.presets or PRESETS}
+    found = list(compared(numbers))
     for one in found:
         print(f"{one.preset:12} {one.state:16} {one.channel:28} {one.text}")
     moved = sum(not one.equal for one in found)
     print(f"{len(found) - moved} equal, {moved} moved")
+    if asked.write:
+        write(numbers)
+        return 0
     return int(moved > 0)
 
 
@@ -124,7 +124,8 @@ def _first_record(config: Config, state: int) -> int:
     return next(i for i in range(config.records_per_specimen) if planned_record(config, i).state_id == state)
 
 
-def _numbers(preset: str) -> dict[str, Any]:
+def numbers_of(preset: str) -> dict[str, Any]:
+    """Return what is kept of a preset: digest, rms and samples of every channel, and a digest of every label."""
     states: dict[str, Any] = {}
     labels: list[str] = []
     for record in records(preset):

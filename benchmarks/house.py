@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
@@ -20,6 +21,9 @@ ABOUT = 1.1
 SHORT_LINES, SHORT_SHARE = 15, 0.08
 IMPORT_SHARE = 0.10
 """Files with so few lines of logic, their share, and the share of lines that import; models have 3 to 10 %."""
+CODE_LINES = {"siggen": 22_000, "diagnostics": 14_000, "tests": 25_000, "benchmarks": 3_000, "docs/scripts": 2_000}
+COMMANDS = {"siggen": 12, "diagnostics": 8}
+MOST_PARAMETERS = 8
 ROOMS = ROOT / "tests" / "house" / "test_layering.py"
 
 
@@ -57,10 +61,38 @@ def rows(*, quick: bool) -> Iterator[Row]:
     importing = sum(module.import_lines for module in every)
     total = importing + sum(module.logic_lines for module in every)
     yield _share_row("lines that import, of all lines of code", importing / total, IMPORT_SHARE)
+    yield from _sizes(packages)
     if not quick:
         strict, of_decorators = _strict_errors()
         what = "mypy --strict: errors but those of numba's decorators"
         yield Row(what, f"{strict} (and {of_decorators} of decorators)", goal="0", met=strict == 0)
+
+
+def _sizes(packages: Mapping[str, Mapping[str, Module]]) -> Iterator[Row]:
+    """Yield what the repository asks a reader to know: code, words, configuration paths, commands, parameters."""
+    for name, most in CODE_LINES.items():
+        found = packages.get(name) or _modules(name)
+        lines = sum(module.logic_lines + module.import_lines for module in found.values())
+        yield Row(f"{name}: code lines (files)", f"{lines} ({len(found)})", goal=f"about {most}")
+    words = sum(len(page.read_text(encoding="utf-8").split()) for page in (ROOT / "docs").rglob("*.md"))
+    yield Row("words in docs", str(words), goal="about 50000")
+    counted = re.search(r"There are (\d+) keys", (ROOT / "docs/reference/yaml.md").read_text(encoding="utf-8"))
+    yield _row("configuration paths", int(counted.group(1)) if counted else 0, 200)
+    for name, most in COMMANDS.items():
+        app = importlib.import_module(f"{name}.cli.app").app
+        yield _row(f"{name}: commands", len(app.registered_commands) + len(app.registered_groups), most)
+    most, where = max(_parameters(path) for name in packages for path in (ROOT / name).rglob("*.py"))
+    yield Row("most parameters of a function", f"{most} ({where})", goal="<= 8", met=most <= MOST_PARAMETERS)
+
+
+def _parameters(path: Path) -> tuple[int, str]:
+    """Return the most parameters of a function of a file, and which one; `self` does not count."""
+    found = [(0, "")]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            names = [one.arg for one in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
+            found.append((len([name for name in names if name != "self"]), f"{path.relative_to(ROOT)}: {node.name}"))
+    return max(found)
 
 
 def _row(what: str, value: int, most: int, goal: str = "") -> Row:

@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.shipped import ROOT, shipped
 from siggen.arrays import FloatArray
-from siggen.config import Config
+from siggen.config import Config, by_reference
 from siggen.dynamics.drive.excitation import Excitation, Source
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.dynamics.time.response import Response, response_of
@@ -42,7 +42,8 @@ class RecordCase:
         self, integrator: str = "runge_kutta", steps: int = STEPS, more: tuple[Source, ...] = (), stride: int = 1
     ) -> PairMotion:
         """Return the motion; `more` acts besides what drives the record."""
-        dynamics = self.specimen.dynamics.model_copy(update={"integrator": integrator})
+        own = self.specimen.dynamics
+        dynamics = by_reference(own) if integrator == "runge_kutta" else own
         found = specimen_motion(
             dynamics,
             self.state.mesh,

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 import siggen
+from siggen.config import by_reference
 
 STEPS = 32
 
@@ -25,7 +26,7 @@ def difference(coarse: Any, fine: Any) -> float:
 def main(path: str, gearboxes: int) -> None:
     """Print the differences by state: those of every gearbox."""
     config = siggen.load_config(path)
-    finer = siggen.load_config(path, ["dynamics.integrator=runge_kutta", f"dynamics.steps_per_sample={STEPS}"])
+    finer = config.model_copy(update={"dynamics": by_reference(config.dynamics, STEPS)})
     ids = range(gearboxes * config.records_per_specimen)
     found: dict[str, list[float]] = {state.name: [] for state in config.states}
     for coarse, fine in zip(siggen.simulate(config, ids), siggen.simulate(finer, ids), strict=True):

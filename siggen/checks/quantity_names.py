@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 
-from siggen.config import Config, corners
+from siggen.config import Config, by_reference, corners
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
@@ -56,7 +56,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
     dynamics = specimen.dynamics
     if dynamics.mesh.law == "pairs":  # every integrator has the same quantities; this one starts no motion
-        dynamics = dynamics.model_copy(update={"integrator": "runge_kutta"})
+        dynamics = by_reference(dynamics)
     motion = specimen_motion(dynamics, mesh, point, step_s)
     return quantity_names(motion.structure, motion.internal_names)
 

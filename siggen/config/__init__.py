@@ -7,7 +7,7 @@ from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, Listed
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.config.drawing import corners, draw
-from siggen.config.dynamics import Coupling, Dynamics, Rotor
+from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
@@ -100,6 +100,7 @@ __all__ = [
     "apply_overrides",
     "at",
     "bounds",
+    "by_reference",
     "config_file",
     "constant",
     "corners",

@@ -11,7 +11,6 @@ from pydantic import Field, model_validator
 
 from siggen.config.background import Background
 from siggen.config.dynamics import Dynamics
-from siggen.config.first_default import uncounted
 from siggen.config.gears import Gears
 from siggen.config.housing import Housing
 from siggen.config.internals import Internals
@@ -26,8 +25,8 @@ from siggen.config.variation import Variation
 from siggen.config.wording import AllowedText
 from siggen.errors import Problem
 
-IDENTITY_VERSION = 1
-"""Part of every identity and never raised, or all identities would change; see docs/develop/versions.md."""
+IDENTITY_VERSION = 2
+"""Part of every identity; raising it changes all of them; see docs/develop/versions.md."""
 
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
@@ -112,10 +111,9 @@ class Config(Section):
 
     @cached_property
     def identity(self) -> str:
-        """SHA-256 (hexadecimal) of what differs from the first defaults, without `specimens`: what records follow from.
+        """SHA-256 (hexadecimal) of what differs from the defaults, without `specimens`: what records follow from.
 
-        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist;
-        where a default has changed, its first value is what does not count (`first_default`).
+        Keys at their defaults do not count, so that later versions can add keys without orphaning sets that exist.
         """
         content = {**_identity_content(self), "schema_version": IDENTITY_VERSION}
         del content["specimens"]
@@ -124,17 +122,15 @@ class Config(Section):
 
 
 def _identity_content(value: Any) -> Any:
-    """Return a value as plain mappings and lists without the keys that are at first defaults; `kind` always counts."""
+    """Return a value as plain mappings and lists without the keys that are at their defaults; `kind` always counts."""
     match value:
         case Section():
             found: dict[str, Any] = {}
             for name, field in type(value).model_fields.items():
-                item, first = value.identity_value(name), uncounted(field)
+                item, default = value.identity_value(name), field.get_default(call_default_factory=True)
                 content = _identity_content(item)
-                # A section that has always been there counts by its keys, whose defaults may have changed.
-                counts = (
-                    bool(content) if isinstance(item, Section) and isinstance(first[0], Section) else item not in first
-                )
+                # what is named and means the same does not count either (`identity_value`)
+                counts = bool(content) if isinstance(default, Section) else item != default
                 found |= {name: content} if counts or name == "kind" else {}
             return found
         case tuple():

@@ -138,12 +138,6 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if "dynamics" not in sections:
         return
     dynamics = sections["dynamics"]
-    if dynamics.mesh.law == "pairs" and dynamics.method == "product":
-        allowed = "allowed: auto, runge_kutta or exponential (dynamics.mesh.law: pairs)"
-        yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
-    if dynamics.mesh.law == "linear" and dynamics.method == "exponential":
-        allowed = "allowed: auto, product or runge_kutta (dynamics.mesh.law: linear)"
-        yield Problem("dynamics.integrator", f"'{dynamics.integrator}'", allowed)
     if dynamics.mesh.law == "linear" and dynamics.friction.model not in {"auto", "off"}:
         allowed = "allowed: auto or off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.friction.model", f"'{dynamics.friction.model}'", allowed)

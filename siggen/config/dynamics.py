@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
-from siggen.config.first_default import IdentityDefault
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.number import Number, Within
 from siggen.config.section import Section, Whole
@@ -25,16 +23,16 @@ class Rotor(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0), IdentityDefault(8.5e7)] = Field(
+    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(
         default=2e8, description="both bearings of the shaft, horizontal"
     )
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0), IdentityDefault(8.5e7)] = Field(
+    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(
         default=2e8, description="both bearings of the shaft, vertical"
     )
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0), IdentityDefault(2134.0)] = Field(
+    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
         default=1000.0, description="horizontal; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0), IdentityDefault(2134.0)] = Field(
+    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(
         default=1000.0, description="vertical; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
     )
 
@@ -42,52 +40,31 @@ class Rotor(Section):
 class Coupling(Section):
     """Torsional spring and damper between a gear and the machine on its shaft."""
 
-    stiffness_nm_per_rad: Annotated[Number, Within(above=0), IdentityDefault(330.0)] = Field(
-        default=6300.0, description="torsional stiffness"
-    )
-    damping_nm_s_per_rad: Annotated[Number, Within(least=0), IdentityDefault(0.231)] = Field(
-        default=0.0984, description="torsional damping"
-    )
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=6300.0, description="torsional stiffness")
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0)] = Field(default=0.0984, description="torsional damping")
 
 
 class OutputCoupling(Coupling):
     """The same for the longer shaft to the driven machine; 5 % of critical between the inertias of a small stage."""
 
-    stiffness_nm_per_rad: Annotated[Number, Within(above=0), IdentityDefault(330.0)] = Field(
-        default=2100.0, description="torsional stiffness"
-    )
-    damping_nm_s_per_rad: Annotated[Number, Within(least=0), IdentityDefault(0.231)] = Field(
-        default=0.286, description="torsional damping"
-    )
-
-
-LATER_KEYS = frozenset({"shafts", "integration_tolerance", "contact"})
-"""Keys of `dynamics` and `dynamics.mesh` that not all sets of earlier versions have written out."""
+    stiffness_nm_per_rad: Annotated[Number, Within(above=0)] = Field(default=2100.0, description="torsional stiffness")
+    damping_nm_s_per_rad: Annotated[Number, Within(least=0)] = Field(default=0.286, description="torsional damping")
 
 
 class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
-    model: Annotated[Literal["8dof", "6dof", "torsional", "casing"], IdentityDefault("8dof")] = Field(
+    model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
         default="casing",
         description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
     )
-    integrator: Annotated[
-        Literal["auto", "product", "runge_kutta", "exponential"] | None, IdentityDefault("product", None)
-    ] = Field(
-        default=None,
-        description="auto: product with the law linear, exponential with pairs; product integrates the tabulated "
-        "stiffness exactly, with the linear mesh law alone; runge_kutta is plain, of first order where teeth enter and "
-        "leave contact; exponential propagates the linear part exactly, with the law pairs alone; null: product with "
-        "the law linear, runge_kutta with pairs, as files without this key have always been read",
-    )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
-        default=4, description="integration steps per sample of product and runge_kutta"
+        default=4, description="integration steps per sample with the law linear"
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the delivered acceleration that exponential chooses its steps for, once for "
-        "all states of a gearbox",
+        description="relative rms error of the delivered acceleration that steps are chosen for with the law pairs, "
+        "once for all states of a gearbox",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"
@@ -95,12 +72,8 @@ class Dynamics(Section):
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
     )
-    motor_inertia_kg_m2: Annotated[Number, Within(above=0), IdentityDefault(0.016107)] = Field(
-        default=4e-3, description="of the driving machine"
-    )
-    load_inertia_kg_m2: Annotated[Number, Within(above=0), IdentityDefault(0.005153)] = Field(
-        default=1e-2, description="of the driven machine"
-    )
+    motor_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=4e-3, description="of the driving machine")
+    load_inertia_kg_m2: Annotated[Number, Within(above=0)] = Field(default=1e-2, description="of the driven machine")
     pinion: Rotor = Field(default=Rotor(), description="the pinion and its shaft")
     gear: Rotor = Field(default=Rotor(), description="the gear and its shaft")
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
@@ -115,27 +88,10 @@ class Dynamics(Section):
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
     )
 
-    @model_validator(mode="before")
-    @classmethod
-    def _auto_resolved(cls, raw: Any) -> Any:
-        """Read `integrator: auto` as what it stands for, so that it counts in the identity.
-
-        Sets of earlier versions have it written out beside every other key. There it stays what it was.
-        """
-        if not isinstance(raw, Mapping) or raw.get("integrator") != "auto":
-            return raw
-        mesh = raw.get("mesh", {})
-        mesh = mesh if isinstance(mesh, Mapping) else dict(mesh) if isinstance(mesh, Mesh) else {}
-        if {*cls.model_fields} - LATER_KEYS <= {*raw} and {*Mesh.model_fields} - LATER_KEYS <= {*mesh}:
-            return {**raw, "integrator": None}
-        return {**raw, "integrator": "product" if mesh.get("law") == "linear" else "exponential"}
-
     @property
     def method(self) -> str:
-        """The integrator that `integrator` stands for: product, runge_kutta or exponential."""
-        if self.integrator is not None:
-            return self.integrator
-        return "product" if self.mesh.law == "linear" else "runge_kutta"
+        """The integrator, which the law chooses: product with the linear one, exponential with pairs."""
+        return "product" if self.mesh.law == "linear" else "exponential"
 
     @property
     def rubbing(self) -> str:
@@ -143,3 +99,20 @@ class Dynamics(Section):
         if self.friction.model != "auto":
             return self.friction.model
         return "off" if self.mesh.law == "linear" else "mixed_ehl"
+
+
+class ReferenceDynamics(Dynamics):
+    """The same section, stepped by the reference in place of what its law chooses; no file can ask for it."""
+
+    @property
+    def method(self) -> str:
+        """The classical Runge-Kutta method."""
+        return "runge_kutta"
+
+
+def by_reference(dynamics: Dynamics, steps_per_sample: int | None = None) -> Dynamics:
+    """Return the section as the reference steps it, with other steps per sample if they are given."""
+    values = {name: getattr(dynamics, name) for name in Dynamics.model_fields}
+    if steps_per_sample is not None:
+        values["steps_per_sample"] = steps_per_sample
+    return ReferenceDynamics.model_construct(**values)

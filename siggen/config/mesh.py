@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.first_default import IdentityDefault
 from siggen.config.number import Number, Within
 from siggen.config.oil import Oil
 from siggen.config.section import Section
@@ -15,7 +14,7 @@ from siggen.config.section import Section
 class Mesh(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
 
-    law: Annotated[Literal["linear", "pairs"], IdentityDefault("linear")] = Field(
+    law: Literal["linear", "pairs"] = Field(
         default="pairs", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
@@ -65,7 +64,7 @@ class Mesh(Section):
 class Friction(Section):
     """Friction between the flanks; needs the law pairs."""
 
-    model: Annotated[Literal["auto", "off", "constant", "mixed_ehl"], IdentityDefault("off")] = Field(
+    model: Literal["auto", "off", "constant", "mixed_ehl"] = Field(
         default="auto",
         description="mixed_ehl: asperities and oil film share the load by speed, load and roughness; auto: mixed_ehl "
         "with the law pairs, off with the law linear",

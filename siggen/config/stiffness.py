@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from siggen.config.first_default import IdentityDefault
 from siggen.config.problems import refusal
 from siggen.config.section import Real, Section, Whole
 from siggen.errors import Problem
@@ -37,7 +35,7 @@ class Stiffness(Section):
     table_points: Annotated[Whole, Field(ge=65, le=1_000_000)] = Field(
         default=2049, description="points of a stiffness table over one path of contact"
     )
-    coupling: Annotated[Literal["none", "body", "auto"], IdentityDefault("none")] = Field(
+    coupling: Literal["none", "body", "auto"] = Field(
         default="auto",
         description="whether neighbouring teeth in contact deflect each other through the gear body; none: the mesh is "
         "the plain sum of its pairs (paper A); auto: body for calibrated, none otherwise",
@@ -46,21 +44,16 @@ class Stiffness(Section):
     @property
     def coupled_by(self) -> str:
         """The coupling that `coupling` stands for: body or none."""
-        if self.coupling != "auto":
-            return self.coupling
+        return self._brought_along if self.coupling == "auto" else self.coupling
+
+    @property
+    def _brought_along(self) -> str:
         return "body" if self.beam == "calibrated" and self.foundation == "sainsot" else "none"
 
     def identity_value(self, key: str) -> Any:
         """Return what the value of a key stands for: a coupling that a beam brings along is the same when named."""
-        return self.coupled_by if key == "coupling" else super().identity_value(key)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _written_before_coupling(cls, raw: Any) -> Any:
-        """Read a section that names every key but `coupling`, as sets before that key were written, as uncoupled."""
-        if isinstance(raw, Mapping) and {*raw} == {*cls.model_fields} - {"coupling"}:
-            return {**raw, "coupling": "none"}
-        return raw
+        same = key == "coupling" and self.coupling == self._brought_along
+        return "auto" if same else super().identity_value(key)
 
     @model_validator(mode="after")
     def _goes_together(self) -> Stiffness:

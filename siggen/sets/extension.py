@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.extensions import put_extensions, read_extensions
-from siggen.dataset.manifest import CONFIG, read_manifest
+from siggen.dataset.manifest import CONFIG, read_manifest, simulation_version
 from siggen.dataset.promises import has_checksums
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
@@ -67,11 +68,11 @@ def extend(
         there = int(manifest["specimens"])
         wanted = _wanted(specimens, there)
         _check_begun(storage, there, wanted)
+        if not has_checksums(manifest) or simulation_version(manifest) != SIMULATION_VERSION:
+            raise _of_earlier_version(storage, wanted)
         config = _config(storage, wanted)
         if config.identity != manifest["identity"]:
             raise DatasetError(f"{storage.location}/{CONFIG} is not the configuration of this set; nothing was changed")
-        if not has_checksums(manifest):
-            raise _of_earlier_version(storage, wanted)
         storage.delete_leftovers()
         earlier = [*(count for count in read_extensions(storage) if count < there), there]
         with Interruption() as interruption:
@@ -127,7 +128,8 @@ def _check_shards(run: SetRun, there: int) -> None:
 
 def _of_earlier_version(storage: Storage, wanted: int) -> DatasetError:
     return DatasetError(
-        f"{storage.location} was written before shards had checksums; such a set is read and verified, not extended. "
+        f"{storage.location} was made by another version of the simulation; such a set "
+        "is read and verified, not extended. "
         "Generate one into a new folder: "
         f"siggen generate {storage.location}/{CONFIG} --set specimens={wanted} --out NEW"
     )

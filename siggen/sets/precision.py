@@ -147,8 +147,9 @@ def unrounded(config: Config) -> Config:
 
 def reference_config(config: Config) -> Config:
     """Return the same configuration, integrated by the reference."""
-    finer = {"integrator": "runge_kutta", "steps_per_sample": REFERENCE_STEPS}
-    return config.model_copy(update={"dynamics": config.dynamics.model_copy(update=finer)})
+    from siggen.config import by_reference  # reading needs no model of the configuration
+
+    return config.model_copy(update={"dynamics": by_reference(config.dynamics, REFERENCE_STEPS)})
 
 
 def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[int, str]:

@@ -9,7 +9,7 @@ from siggen.config import Manufacture, Uniform, parse
 from siggen.errors import ConfigError
 from tests.config.minimal import config, minimal
 
-PAIRS = {"dynamics": {"integrator": "runge_kutta", "mesh": {"law": "pairs"}}}
+PAIRS = {"dynamics": {"mesh": {"law": "pairs"}}}
 
 
 def with_section(**section: object) -> dict[str, object]:

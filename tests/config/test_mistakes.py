@@ -98,12 +98,6 @@ MISTAKES = [
         "a number above 0",
     ),
     (
-        {"dynamics__mesh__law": "pairs", "dynamics__integrator": "product"},
-        "dynamics.integrator",
-        "'product'",
-        "auto, runge_kutta or exponential (dynamics.mesh.law: pairs)",
-    ),
-    (
         {"dynamics__mesh__law": "linear", "dynamics__friction__model": "constant"},
         "dynamics.friction.model",
         "'constant'",

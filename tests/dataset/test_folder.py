@@ -48,20 +48,6 @@ def test_a_folder_with_other_things_is_refused_and_left_alone(tmp_path: Path) ->
     assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_a_set_begun_before_auto_meant_exponential_goes_on_with_its_own_integrator_alone(tmp_path: Path) -> None:
-    short = {"steps_per_sample": 2, "mesh": {"law": "pairs"}}
-    older = fake_config(dynamics=short)
-    written = config_bytes(older).replace(b"integrator: null", b"integrator: auto")  # as it was written
-    (tmp_path / "config.yaml").write_bytes(written)
-    asked = fake_config(dynamics={**short, "integrator": "auto"})
-    with pytest.raises(DatasetError, match=r"dynamics\.integrator: auto there, exponential asked for"):
-        is_finished(LocalFolder(tmp_path), asked)
-    assert not is_finished(LocalFolder(tmp_path), older)
-    resumed = parse(parse_yaml(written.decode())).config
-    assert resumed.dynamics.method == "runge_kutta"
-    assert not is_finished(LocalFolder(tmp_path), resumed)
-
-
 def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     before = file_bytes(tmp_path)

@@ -14,14 +14,14 @@ import siggen
 from siggen.cli.app import app
 from siggen.columns.record import signal_matrix
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.config import parse, read_yaml
 from siggen.dataset.manifest import read_manifest, simulation_version
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.sidecar import committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
+from siggen.sets.extension import extend
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import verify_fake_set, write_fake_set
+from tests.dataset.fake_set import file_bytes, verify_fake_set, write_fake_set
 
 FIRST = Path(__file__).parent / "schema_1"
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
@@ -80,24 +80,15 @@ def test_its_hashes_are_verified_and_a_flipped_byte_shows(tmp_path: Path) -> Non
     assert [m.what for m in verify(folder).mismatches] == ["data/train-00000.parquet"]
 
 
-def test_its_identity_is_still_that_of_its_configuration() -> None:
-    config = parse(read_yaml(FIRST / "config.yaml")).config
-    assert config is not None
-    assert config.identity == siggen.open(FIRST).manifest["identity"]
-
-
-@pytest.mark.slow
-def test_the_records_of_version_2_are_still_what_this_version_simulates() -> None:
-    found = verify(SECOND, 4, workers=0)
-    assert found.records == (0, 1, 2, 3)
-    assert found.mismatches == ()
-
-
-@pytest.mark.slow
-def test_its_records_are_still_what_this_version_simulates() -> None:
-    found = verify(FIRST, 2, workers=0)
-    assert found.records == (0, 1)
-    assert found.mismatches == ()
+@pytest.mark.parametrize("made", [FIRST, SECOND])
+def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(made: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(made, tmp_path / "set"))
+    before = file_bytes(folder)
+    with pytest.raises(DatasetError, match="read and verified, not extended"):
+        extend(folder, "+1", 0)
+    with pytest.raises(DatasetError):
+        write_fake_set(folder)
+    assert file_bytes(folder) == before
 
 
 def test_its_shards_are_not_mixed_with_those_of_this_version() -> None:

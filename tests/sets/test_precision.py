@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -18,7 +17,7 @@ from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.storage import LocalFolder
-from siggen.errors import EXIT_MISMATCH
+from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.sets.precision import REFERENCE_STEPS, measure_precision
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
@@ -45,7 +44,7 @@ def simulate_rounded(config: Config, record_ids: Sequence[int]) -> list[Record |
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    write_fake_set(tmp_path / "set", fake_config(dynamics={"integrator": "auto"}))
+    write_fake_set(tmp_path / "set", fake_config())
     return tmp_path / "set"
 
 
@@ -95,11 +94,17 @@ def test_the_same_records_are_chosen_again(folder: Path, monkeypatch: pytest.Mon
     assert all(state["largest"] == 0.0 for state in first["states"])
 
 
-def test_a_set_made_with_two_runge_kutta_steps_is_measured_and_states_no_tolerance(tmp_path: Path) -> None:
-    folder = Path(shutil.copytree(SECOND, tmp_path / "set"))
-    found = measure_precision(folder, 2)
+def test_a_set_of_the_linear_law_is_measured_and_states_no_tolerance(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_fake_set(tmp_path / "set", fake_config(dynamics={"mesh": {"law": "linear"}}))
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", partial(simulate_off_by, error=2e-3))
+    found = measure_precision(tmp_path / "set", 3)
     assert found.tolerance is None
     assert found.within
-    assert [state.state for state in found.states] == ["healthy", "severe"]
-    # Two steps at 16 kHz err like one at 32 kHz: between a tenth and ten percent of a percent, never nothing.
-    assert 1e-4 < found.largest < 1e-1
+    assert found.largest == pytest.approx(2e-3, rel=1e-2)
+
+
+def test_a_set_of_another_simulation_is_not_measured() -> None:
+    with pytest.raises(DatasetError, match="made by simulation version 1"):
+        measure_precision(SECOND, 2)

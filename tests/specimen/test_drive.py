@@ -145,7 +145,7 @@ def test_tones_follow_a_cage_that_lags() -> None:
 
 @pytest.mark.parametrize("mesh", [["dynamics.mesh.law=pairs", "dynamics.friction.model=constant"], []])
 def test_pairs_and_casing_take_all_of_it(mesh: list[str]) -> None:
-    config = load(*VARYING, *FORCES, "dynamics.model=casing", "dynamics.integrator=runge_kutta", *mesh)
+    config = load(*VARYING, *FORCES, "dynamics.model=casing", *mesh)
     (found,) = simulate(config, [0])
     assert isinstance(found, Record), found
     assert all(np.isfinite(signal).all() for signal in found.channels.values())

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import siggen
 from siggen.columns.record import Record, signal_column
-from siggen.config import Config
+from siggen.config import Config, by_reference
 from siggen.dynamics.time import transient
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -50,16 +50,14 @@ def accelerations(
     angle = start_angle_rad(config, state.pair, record)
     driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
     rate_hz = config.fs_hz * steps
-    dynamics = specimen.dynamics.model_copy(update={"integrator": integrator})
+    dynamics = by_reference(specimen.dynamics) if integrator == "runge_kutta" else specimen.dynamics
     motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
     times = np.arange(round(WINDOW_S * rate_hz) + 1) / rate_hz
     pitches = driven.rotation.angle_rad(times) * motion.teeth / (2.0 * np.pi)
     inputs = np.zeros((times.size, motion.equations.external_input.shape[0]))
     if driven.excitation is not None:
         inputs = driven.excitation.inputs(times, driven.rotation)
-    reference = specimen_motion(
-        dynamics.model_copy(update={"integrator": "runge_kutta"}), state.mesh, point, 1.0, driven
-    )
+    reference = specimen_motion(by_reference(dynamics), state.mesh, point, 1.0, driven)
     path = np.empty((times.size, 2 * len(motion.structure.coordinates)))
     motion.start(pitches[0])
     # the same start for both: without the friction that the exponential one starts with

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
+from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
 from siggen.planning.plan import planned_record
@@ -88,8 +89,9 @@ def beginning(
     """
     loaded = load_config(
         ROOT / config,
-        ["duration_s=0.01", "dynamics.integrator=runge_kutta", f"dynamics.steps_per_sample={steps}", *overrides],
+        ["duration_s=0.01", f"dynamics.steps_per_sample={steps}", *overrides],
     )
+    loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
     planned = planned_record(loaded, record)
     specimen = draw_specimen(loaded, planned.specimen_id)
     state = specimen_state(loaded, specimen, planned.state_id)

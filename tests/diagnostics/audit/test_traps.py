@@ -172,7 +172,7 @@ def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well
 
 
 def test_solver_settings_of_a_state_are_found(clean: MeasuredSet) -> None:
-    states = [{"name": "healthy"}, {"name": "slight", "dynamics": {"integrator": "runge_kutta"}}]
+    states = [{"name": "healthy"}, {"name": "slight", "dynamics": {"steps_per_sample": 8}}]
     assert traps(replace(clean, config={"states": states})) == ["solver_settings_by_state"]
 
 
