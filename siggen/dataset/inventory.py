@@ -60,6 +60,11 @@ class ListedShard:
     environment: Count
     internals: ObjectName | None = None
 
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The files of rows."""
+        return (self.file,) if self.internals is None else (self.file, self.internals)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ListedSplit:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk, ChunkSimulation
-from siggen.dataset.environment import environment
-from siggen.dataset.gate import manifest_facts
+from siggen.dataset.environment import environment, fingerprint, version_text
+from siggen.dataset.gate import manifest_facts, sidecar_facts
 from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.inventory import HashedFiles, Inventory, PromisedFile
 from siggen.dataset.manifest import (
@@ -24,7 +24,7 @@ from siggen.dataset.manifest import (
     RUN,
     read_manifest,
 )
-from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER
+from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER, sidecar_name
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
 from siggen.dataset.storage import Storage, sha256
@@ -68,6 +68,10 @@ class Verification:
         How they were compared, or why none was.
     mismatches
         Empty for a set that is what it promises to be.
+    made_by
+        The versions that made the shards, each with its fingerprint.
+    here
+        The version that compared.
     has_checksums
         Whether a reader of signals checks every byte as well; sets made before there were checksums have none.
     """
@@ -79,6 +83,8 @@ class Verification:
     comparison: str
     mismatches: tuple[Mismatch, ...]
     has_checksums: bool = True
+    made_by: tuple[str, ...] = ()
+    here: str = ""
 
 
 def verify(
@@ -117,6 +123,8 @@ def verify(
         *_strangers(storage, manifest.files),
         *_run(storage),
     ]
+    if not mismatches and isinstance(manifest, Inventory) and manifest.has_checksums:
+        mismatches += _sidecar_mismatches(storage, manifest)
     records: tuple[int, ...] = ()
     comparison = "none asked for"
     if sample and mismatches:
@@ -128,7 +136,9 @@ def verify(
         mismatches += different
     total = sum(facts.bytes for facts in manifest.files.values())
     count, checked = len(manifest.files) + 2, manifest.has_checksums
-    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked)
+    environments = manifest.environments if isinstance(manifest, Inventory) else ()
+    versions = tuple(dict.fromkeys(version_text(one) for one in environments)), version_text(environment())
+    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked, *versions)
 
 
 def why_not_again(manifest: HashedFiles, sample: int) -> str:
@@ -153,6 +163,22 @@ def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Ite
             yield Mismatch(name, f"{sizes[name]} bytes instead of {facts.bytes}")
         elif problem := _content_problem(storage, name, facts.sha256):
             yield Mismatch(name, problem)
+
+
+def _sidecar_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
+    """Yield the sidecars that say something else than the manifest, which a stranger may have sealed around them."""
+    for shard in manifest.shards:
+        name = sidecar_name(shard.shard)
+        try:
+            facts = sidecar_facts(name, storage.get(name))
+        except (VerificationError, DatasetError) as error:
+            yield Mismatch(name, str(error))
+            continue
+        tables = {table.name: (table.bytes, table.sha256) for table in (facts.data, facts.internals) if table}
+        promised = {table: (manifest.files[table].bytes, manifest.files[table].sha256) for table in shard.tables}
+        listed = (shard.specimens, shard.records, shard.rows, manifest.environments[shard.environment])
+        if tables != promised or listed != (facts.specimens, facts.records, facts.data.rows, facts.environment):
+            yield Mismatch(name, "says something else than the manifest")
 
 
 def _content_problem(storage: Storage, name: str, promised: str) -> str:
@@ -187,8 +213,8 @@ def _simulate_again(
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
     ids = _sample(dataset, sample)
-    here = environment()
-    exact = {record_id: _environment(dataset.inventory, record_id) == here for record_id in ids}
+    here = fingerprint(environment())
+    exact = {record_id: fingerprint(_environment(dataset.inventory, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
@@ -227,9 +253,9 @@ def _sample(dataset: Dataset, count: int) -> list[int]:
     return sorted(Random(dataset.inventory.identity).sample(ids, min(count, len(ids))))
 
 
-def _environment(manifest: Inventory, record_id: int) -> Mapping[str, str] | None:
+def _environment(manifest: Inventory, record_id: int) -> Mapping[str, str]:
     owners = (shard for shard in manifest.shards if in_ranges(record_id, shard.records))
-    return next((manifest.environments[shard.environment] for shard in owners), None)
+    return next((manifest.environments[shard.environment] for shard in owners), {})
 
 
 def problem_lines(mismatches: Sequence[Mismatch]) -> list[str]:
