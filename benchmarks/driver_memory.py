@@ -17,8 +17,8 @@ from siggen.columns.record import label_schema
 from siggen.dataset import label_tables
 from siggen.dataset.checked_file import BLOCK_BYTES, DIGITS
 from siggen.dataset.chunk import Chunk, ChunkResult
+from siggen.dataset.object_name import data_name
 from siggen.dataset.shard import FileFacts
-from siggen.dataset.sidecar import data_name
 from siggen.planning.plan import ShardPlan, estimated_bytes
 from siggen.sets import set_run, shard_making
 from siggen.sets.shard_making import ShardMaking

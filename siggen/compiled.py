@@ -15,15 +15,16 @@ import os
 import stat
 import tempfile
 from collections.abc import Callable
-from functools import cache
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 
+from siggen.sources import sources_digest
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 WITH_COMPILED_CODE = ("*.py", "dynamics/**/*.py", "gears/**/*.py", "record/**/*.py", "sensing/**/*.py")
+"""Files that compiled code may come from, constants included."""
 
 
 def njit(**options: Any) -> Callable[[Function], Function]:
@@ -63,23 +64,13 @@ def _of_these_sources(function: Function) -> Function:
     """Let the cache of a compiled function know the sources of all: an index of another version is not even read."""
     file = _cache_file(function)
     if hasattr(file, "_version"):  # numba's own; where a later numba has it no more, it caches as it does by itself
-        file._version = f"{file._version}, sources {compiled_sources()}"
+        file._version = f"{file._version}, sources {sources_digest(WITH_COMPILED_CODE)}"
     return function
 
 
 def _cache_file(function: Any) -> Any:
     """Return numba's file of a function's cache; None for one that is not cached."""
     return getattr(getattr(function, "_cache", None), "_cache_file", None)
-
-
-@cache
-def compiled_sources() -> str:
-    """Return the digest of all files that compiled code may come from, constants included."""
-    package, digest = Path(__file__).resolve().parent, sha256()
-    for pattern in WITH_COMPILED_CODE:
-        for path in sorted(package.glob(pattern)):
-            digest.update(f"{path.relative_to(package).as_posix()} ".encode() + path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def private_folder(parent: Path) -> Path | None:

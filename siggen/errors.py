@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -89,3 +90,12 @@ class SolverFailure(SiggenError):  # noqa: N818 - a status of a record, not a fa
         self.status = status
         self.reason = reason
         super().__init__(f"{status}: {reason}")
+
+
+def path_fault(error: Exception) -> str:
+    """Return in words that a path given by the user can be none of a file; empty for every other error."""
+    if isinstance(error, OSError) and error.errno in {errno.ENAMETOOLONG, errno.ELOOP}:
+        text = str(error.filename)
+        shown = text if len(text) <= 100 else f"{text[:40]}...{text[-40:]}"
+        return f"{shown}: no file can have this path ({error.strerror}); give another one"
+    return ""

@@ -75,7 +75,8 @@ def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) ->
     (package / "dynamics").mkdir(parents=True)
     for empty in (package / "__init__.py", package / "dynamics" / "__init__.py"):
         empty.touch()
-    (package / "compiled.py").write_bytes(Path("siggen/compiled.py").read_bytes())
+    for file in ("compiled.py", "sources.py"):
+        (package / file).write_bytes(Path("siggen", file).read_bytes())
     (tmp_path / "caller.py").write_text(CALLER, encoding="utf-8")
 
     def said(added: float) -> str:

@@ -10,7 +10,10 @@ from collections.abc import Iterator
 
 from benchmarks.row import Row
 
-PARTS = ("mutated_configurations", "mutated_recordings", "hostile_files", "bit_flips", "digests", "shortages", "kills")
+PARTS = (
+    *("mutated_configurations", "mutated_recordings", "hostile_files", "foreign_sets", "bit_flips", "digests"),
+    *("shortages", "kills"),
+)
 """Each is a topic by itself: `python -m benchmarks faults.kills`."""
 
 

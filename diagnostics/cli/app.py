@@ -18,7 +18,7 @@ from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
 from diagnostics.cli.score import score
 from diagnostics.cli.train import train
-from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, SiggenError
+from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 PROGRAM = "siggen-diagnostics"
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
@@ -72,6 +72,9 @@ def main() -> None:
         typer.echo(f"{PROGRAM}: interrupted", err=True)
         sys.exit(EXIT_INTERRUPTED)
     except Exception as error:
+        if words := path_fault(error):
+            typer.echo(f"{PROGRAM}: {words}", err=True)
+            sys.exit(EXIT_USAGE)
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
         kind = type(error).__name__

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns, refuse_twice
+from diagnostics.recordings.recorded_columns import Columns, refuse_many, refuse_twice
 from siggen.errors import UsageError
 
 SEPARATORS = ("\t", ";", ",")
@@ -39,6 +39,7 @@ def read_csv(path: Path) -> Columns:
         first = lines[0][1]
         separator = next((mark for mark in SEPARATORS if mark in first), ",")
         decimal = "," if separator != "," and any("," in text for _, text in lines[1:]) else "."
+        refuse_many(path, first.count(separator) + 1)
         rows = [_cells(text, separator) for _, text in lines]
         named = not all(_is_number(cell, decimal) for cell in rows[0])
         above = int(named) + int(named and len(rows) > 1 and _are_units(rows[1], len(rows[0]), decimal))

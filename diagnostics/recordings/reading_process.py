@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.recorded_columns import Columns, refuse_many
 from siggen.errors import UsageError
 
 MEMORY_BYTES, MEMORY_PER_BYTE = 4 << 30, 64
@@ -113,7 +113,9 @@ def _read(question: dict[str, Any]) -> None:
     path, folder = Path(question["path"]), Path(question["to"])
     try:
         _limit(path.stat().st_size)
-        _keep(file_columns(path, question["row"]), folder)
+        found = file_columns(path, question["row"])
+        refuse_many(path, len(found.values))
+        _keep(found, folder)
     except UsageError as error:
         text = str(error).replace(question["path"], question["shown"])
         (folder / "refused").write_text(text, encoding="utf-8", errors="replace")

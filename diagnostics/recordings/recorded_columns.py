@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from siggen.errors import UsageError
+
+MOST_COLUMNS = 4_000
+"""Of a file: no recorder has as many channels, and every column costs time wherever it is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +58,21 @@ def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:
     return {f"{prefix}:{k}" if prefix else str(k): row for k, row in enumerate(rows, start=1)}
 
 
+def refuse_many(path: Path, columns: int) -> None:
+    """Refuse a file of very many columns.
+
+    Raises
+    ------
+    UsageError
+        If it has more than `MOST_COLUMNS`.
+    """
+    if columns > MOST_COLUMNS:
+        raise UsageError(
+            f"{path}: received {columns} columns; allowed are at most {MOST_COLUMNS}, with one row per sample. Are "
+            "rows and columns exchanged?"
+        )
+
+
 def refuse_twice(path: Path, names: Sequence[str]) -> None:
     """Refuse a file in which a name stands for several columns: nobody could say which of them is meant.
 
@@ -62,5 +81,6 @@ def refuse_twice(path: Path, names: Sequence[str]) -> None:
     UsageError
         If there is such a name; columns without a name are not counted.
     """
-    if again := sorted({name for name in names if name and names.count(name) > 1}):
-        raise UsageError(f"{path}: {names.count(again[0])} columns are called {again[0]}; rename them in the file")
+    counts = Counter(name for name in names if name)
+    if again := sorted(name for name, count in counts.items() if count > 1):
+        raise UsageError(f"{path}: {counts[again[0]]} columns are called {again[0]}; rename them in the file")

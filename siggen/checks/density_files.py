@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
 
 COLUMNS = ("frequency_hz", "density")
@@ -50,11 +53,11 @@ def _read(file: Path, where: str, columns: tuple[str, ...]) -> tuple[dict[str, l
     least = 2 if columns == COLUMNS else 1
     allowed = f"allowed: a CSV file with the columns {', '.join(columns)}, {least} to {MOST_KNOTS} rows of numbers"
     try:
-        with file.open(newline="") as lines:
-            rows = list(csv.DictReader(lines))
+        lines = io.StringIO(data_file_bytes(file).decode("utf-8-sig"), newline="")
+        rows = list(islice(csv.DictReader(lines), MOST_KNOTS + 1))
         numbers = {column: [float(row[column]) for row in rows] for column in columns}
     except OSError as error:
-        return harmless, [Problem(where, f"{file}: {error.strerror}", allowed)]
+        return harmless, [Problem(where, f"{shortened_path(file)}: {error.strerror}", allowed)]
     except (KeyError, TypeError, ValueError, csv.Error):
         return harmless, [Problem(where, f"{file}: columns are missing, or not numbers", allowed)]
     if not least <= len(rows) <= MOST_KNOTS:

@@ -27,7 +27,7 @@ from siggen.cli.show import show
 from siggen.cli.simulate import simulate
 from siggen.cli.tvms import tvms
 from siggen.cli.verify import verify
-from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, SiggenError
+from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
@@ -99,6 +99,9 @@ def main() -> None:
         typer.echo("siggen: not enough memory; finished shards stay, and the same command goes on from there", err=True)
         sys.exit(EXIT_UNEXPECTED)
     except Exception as error:
+        if words := path_fault(error):
+            typer.echo(f"siggen: {words}", err=True)
+            sys.exit(EXIT_USAGE)
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
         kind = type(error).__name__

@@ -90,6 +90,8 @@ def report(generation: Generation, what: str = "the set", say: Callable[[str], N
         say(f"{generation.path} is finished already; nothing to do (`siggen verify` checks every byte)")
     else:
         say(_made(generation, what))
+        for note in generation.notes[:LISTED_FAILURES]:
+            say(note)
     for failure in generation.failures[:LISTED_FAILURES]:
         say(f"record {failure.record_id} failed: {failure.status} ({failure.reason})")
     if generation.failures:

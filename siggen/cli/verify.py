@@ -57,6 +57,9 @@ def verify(
         again = f"{counted(len(found.records), 'record')} simulated again, compared "
         again = again if found.records else "records simulated again: "
         typer.echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
+        for maker in found.made_by:
+            same = "as this one" if maker == found.here else f"this is {found.here}"
+            typer.echo(f"made by {maker}; {same}")
         if not found.has_checksums:
             typer.echo("its shards have no checksums: only this command sees a changed bit of a signal, no reader does")
         for line in problem_lines(found.mismatches):

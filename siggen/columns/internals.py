@@ -17,13 +17,6 @@ from siggen.planning.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
 if TYPE_CHECKING:
     from siggen.config import Config
 
-FOLDER = "internals"
-
-
-def internals_name(shard: str) -> str:
-    """Return the object name of a shard's internals."""
-    return f"{FOLDER}/{shard}.parquet"
-
 
 def internals_schema(config: Config, quantities: Sequence[Column]) -> pa.Schema:
     """Return the schema of `internals/*.parquet`: the ids of the records, then one series per quantity."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from siggen.config.data_file import is_file
 from siggen.config.presets import config_file
 from siggen.config.problems import received_text
 from siggen.config.yaml_source import read_yaml
@@ -75,9 +76,9 @@ def _extended(name: object, folder: Path, source: str) -> Path:
         raise ConfigError([Problem(EXTENDS, received_text(name), allowed)], source)
     try:
         beside = folder / name
-        return (beside if beside.is_file() else config_file(name)).resolve()
+        return (beside if is_file(beside) else config_file(name)).resolve()
     except UsageError as error:
-        raise ConfigError([Problem(EXTENDS, f"the text '{name}'", f"{allowed} ({error})")], source) from None
+        raise ConfigError([Problem(EXTENDS, received_text(name), f"{allowed} ({error})")], source) from None
 
 
 def _anchored(value: Any, folder: Path) -> Any:

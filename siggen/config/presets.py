@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from siggen.config.data_file import is_file, kind_of_path, shortened_path
 from siggen.errors import UsageError
 
 SUFFIX = ".yaml"
@@ -27,10 +28,10 @@ def config_file(source: str | Path) -> Path:
         If there is neither; names the presets.
     """
     path = Path(source)
-    if path.is_file():
+    if is_file(path):
         return path
     shipped = presets()
     if path.parent == Path() and path.name.removesuffix(SUFFIX) in shipped:
         return shipped[path.name.removesuffix(SUFFIX)]
-    what = "is a folder" if path.is_dir() else "there is no such file"
-    raise UsageError(f"{source}: {what}; allowed are the path of a YAML file, or a preset: {', '.join(shipped)}")
+    shown, what = shortened_path(source), kind_of_path(path)
+    raise UsageError(f"{shown}: {what}; allowed are the path of a YAML file, or a preset: {', '.join(shipped)}")

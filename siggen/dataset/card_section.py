@@ -41,15 +41,16 @@ def write_card_section(path: Path | str, section: str) -> None:
     read_manifest(storage)  # a folder without a set must not be created by the lock
     with storage.writing():
         manifest = read_manifest(storage)
-        if not storage.exists(CARD) or sha256(storage, CARD) != manifest["files"][CARD]["sha256"]:
+        promised = manifest.files.get(CARD)
+        if promised is None or not storage.exists(CARD) or sha256(storage, CARD) != promised.sha256:
             raise VerificationError(
                 f"{storage.location}/{CARD} is not the one that {MANIFEST} promises; "
                 "the set's own `siggen generate` command makes it again once the file is deleted"
             )
         card = with_section(storage.get(CARD).decode(), section).encode()
-        files = {**manifest["files"], CARD: {"bytes": len(card), "sha256": hashlib.sha256(card).hexdigest()}}
+        files = {**manifest.content["files"], CARD: {"bytes": len(card), "sha256": hashlib.sha256(card).hexdigest()}}
         storage.put(CARD, card)
-        storage.put(MANIFEST, sealed({**manifest, "files": files}))
+        storage.put(MANIFEST, sealed({**manifest.content, "files": files}))
 
 
 def with_section(card: str, section: str) -> str:

@@ -2,26 +2,58 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import sys
+from collections.abc import Mapping
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from siggen.sources import CHARACTERS, sources_digest
+
 PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
+MAKES_RECORDS = (
+    *("arrays.py", "compiled.py", "lanes.py", "seeding.py", "config/**/*.py", "planning/**/*.py", "gears/**/*.py"),
+    *("dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py", "columns/**/*.py", "record/**/*.py"),
+    "dataset/chunk.py",
+)
+"""Sources that can change a record of a configuration. What checks a configuration, writes files, distributes tasks or
+draws pictures is none of them."""
+
+MAKES_BITS = ("sources", "numpy", "scipy", "numba", "llvmlite", "python", "system", "libc", "cpu")
+CHOOSES_INSTRUCTIONS = ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES")
+"""Variables with which a user asks for other instructions than those of the processor."""
+
 VECTOR_EXTENSIONS = ("avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "asimd", "sve")
 """Extensions for which compilers and numpy choose other instructions, hence another rounding."""
 
 
 def environment() -> dict[str, str]:
-    """Return versions, operating system, C library and CPU family; equal environments give equal bits."""
-    return {
+    """Return versions, sources, system, C library and CPU family, and the `fingerprint` of what can change a bit."""
+    facts = {
         **{package: _version(package) for package in PACKAGES},
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
         "libc": " ".join(platform.libc_ver()).strip() or "unknown",
         "cpu": _cpu(),
+        "sources": sources_digest(MAKES_RECORDS),
     }
+    makes_bits = json.dumps({name: facts[name] for name in MAKES_BITS}, sort_keys=True)
+    return {**facts, "fingerprint": sha256(makes_bits.encode()).hexdigest()[:CHARACTERS]}
+
+
+def fingerprint(made_in: Mapping[str, str]) -> str:
+    """Return the fingerprint of an environment; empty for one from before there were any."""
+    return made_in.get("fingerprint", "")
+
+
+def version_text(made_in: Mapping[str, str]) -> str:
+    """Return which siggen an environment had, and its fingerprint."""
+    own = fingerprint(made_in)
+    siggen = made_in.get("siggen", "of unknown version")[:40]
+    return f"siggen {siggen} ({f'fingerprint {own[:CHARACTERS]}' if own else 'without fingerprint'})"
 
 
 def host_facts() -> dict[str, object]:
@@ -70,4 +102,5 @@ def _cpu() -> str:
     vendor = facts.get("vendor_id") or facts.get("CPU implementer") or platform.machine()
     family = facts.get("cpu family") or facts.get("CPU architecture") or "?"
     model = facts.get("model") or facts.get("CPU part") or "?"
-    return " ".join([vendor, "family", family, "model", model, *(f for f in VECTOR_EXTENSIONS if f in flags)])
+    asked = (f"{name}={os.environ[name]}" for name in CHOOSES_INSTRUCTIONS if os.environ.get(name))
+    return " ".join([vendor, "family", family, "model", model, *(f for f in VECTOR_EXTENSIONS if f in flags), *asked])

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from siggen.config import parse, yaml_text
-from siggen.dataset.manifest import CONFIG, MANIFEST, check_schema
-from siggen.dataset.seal import unsealed
+from siggen.dataset.gate import manifest_facts
+from siggen.dataset.inventory import Inventory
+from siggen.dataset.manifest import CONFIG, MANIFEST, read_manifest
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
 
@@ -43,13 +44,14 @@ def is_finished(storage: Storage, config: Config) -> bool:
 
 
 def _has_every_file(storage: Storage) -> bool:
+    sizes = storage.sizes()
     try:
-        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+        facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError:
         return False
-    check_schema(storage, manifest)
-    sizes = storage.sizes()
-    return all(sizes.get(name) == facts["bytes"] for name, facts in manifest["files"].items())
+    if not isinstance(facts, Inventory):
+        read_manifest(storage)  # says why it is not touched
+    return all(sizes.get(name) == file.bytes for name, file in facts.files.items())
 
 
 def _refuse_strangers(storage: Storage) -> None:

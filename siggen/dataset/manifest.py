@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from siggen.columns.versions import FIRST_SIMULATION_VERSION, READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.seal import unsealed
+from siggen.columns.versions import READ_VERSIONS, SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.dataset.gate import manifest_facts
+from siggen.dataset.inventory import Inventory
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage, sha256
@@ -108,8 +109,8 @@ def _split(sidecars: Sequence[Sidecar]) -> dict[str, Any]:
     }
 
 
-def read_manifest(storage: Storage) -> dict[str, Any]:
-    """Return the manifest of a finished set.
+def read_manifest(storage: Storage) -> Inventory:
+    """Return what the manifest of a finished set says.
 
     Raises
     ------
@@ -119,27 +120,16 @@ def read_manifest(storage: Storage) -> dict[str, Any]:
     if not storage.exists(MANIFEST):
         raise DatasetError(_why_no_manifest(storage))
     try:
-        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+        facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
         raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
-    check_schema(storage, manifest)
-    return manifest
-
-
-def check_schema(storage: Storage, manifest: Mapping[str, Any]) -> None:
-    """Raise DatasetError if the files of a set are of a version that is not read here."""
-    found = manifest.get("schema_version")
-    if found not in READ_VERSIONS:
+    if not isinstance(facts, Inventory):
         raise DatasetError(
-            f"{storage.location}: received schema version {found}; allowed are {' and '.join(READ_VERSIONS)}. The set "
-            "was written by another version of siggen: read it with a newer one (pip install --upgrade siggen); "
-            "`siggen verify` checks its files all the same"
+            f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed are "
+            f"{' and '.join(READ_VERSIONS)}. The set was written by another version of siggen: read it with a "
+            "newer one (pip install --upgrade siggen); `siggen verify` checks its files all the same"
         )
-
-
-def simulation_version(manifest: Mapping[str, Any]) -> int:
-    """Return which version of the simulation made a set; sets that do not say so were made by the first one."""
-    return int(manifest.get("simulation_version", FIRST_SIMULATION_VERSION))
+    return facts
 
 
 def _why_no_manifest(storage: Storage) -> str:

@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from typing import Any
 
-from siggen.dataset.seal import unsealed
-from siggen.dataset.sidecar import sidecar_name
+from siggen.dataset.gate import sidecar_facts
+from siggen.dataset.inventory import Inventory, PromisedFile
+from siggen.dataset.object_name import sidecar_name
 from siggen.dataset.storage import Storage, sha256
 from siggen.errors import DatasetError, VerificationError
-
-CRC = "crc32_per_64_kib"
-
-
-def has_checksums(manifest: Mapping[str, Any]) -> bool:
-    """Tell whether a set's files have checksums of their blocks; tables and shards were given them together."""
-    return any(CRC in facts for facts in manifest["files"].values())
 
 
 class Promises:
@@ -25,22 +17,16 @@ class Promises:
     Parameters
     ----------
     storage : Storage
-    manifest : mapping
-
-    Attributes
-    ----------
-    has_checksums : bool
+    inventory : Inventory
     """
 
-    def __init__(self, storage: Storage, manifest: Mapping[str, Any]) -> None:
+    def __init__(self, storage: Storage, inventory: Inventory) -> None:
         self._storage = storage
-        self._files: Mapping[str, Mapping[str, Any]] = manifest["files"]
-        self._owners: dict[str, str] = {}
-        for shard in manifest["shards"]:
-            self._owners |= {shard[kind]: shard["shard"] for kind in ("file", "internals") if kind in shard}
+        self._files = inventory.files
+        self._has_checksums = inventory.has_checksums
+        self._owners = {name: one.shard for one in inventory.shards for name in (one.file, one.internals) if name}
         self._of_shard: dict[str, dict[str, str]] = {}
         self._hashed: set[str] = set()
-        self.has_checksums = has_checksums(manifest)
 
     def check_sizes(self) -> None:
         """Compare the size of every file that is there; a missing one is named when it is read.
@@ -52,8 +38,8 @@ class Promises:
         """
         sizes = self._storage.sizes()
         for name, facts in self._files.items():
-            if name in sizes and sizes[name] != facts["bytes"]:
-                raise self._broken(name, f"it has {sizes[name]} bytes instead of {facts['bytes']}")
+            if name in sizes and sizes[name] != facts.bytes:
+                raise self._broken(name, f"it has {sizes[name]} bytes instead of {facts.bytes}")
 
     def content(self, name: str) -> bytes:
         """Return a small file whole.
@@ -64,7 +50,7 @@ class Promises:
             If it is missing or its hash is another one.
         """
         content = self._storage.get(name)
-        if hashlib.sha256(content).hexdigest() != self._promised(name)["sha256"]:
+        if hashlib.sha256(content).hexdigest() != self._promised(name).sha256:
             raise self._broken(name, "SHA-256 differs")
         return content
 
@@ -79,31 +65,34 @@ class Promises:
             If the sidecar or the table is missing, or not what the manifest promises.
         """
         promised = self._promised(name)
-        if CRC in promised:
-            return str(promised[CRC])
-        if self.has_checksums and name in self._owners:
-            return self._shard_checksums(self._owners[name])[name]
+        if promised.crc32_per_64_kib is not None:
+            return promised.crc32_per_64_kib
+        if self._has_checksums and name in self._owners:
+            return self._of_its_shard(name)
         if name not in self._owners and name not in self._hashed:
-            if sha256(self._storage, name) != promised["sha256"]:
+            if sha256(self._storage, name) != promised.sha256:
                 raise self._broken(name, "SHA-256 differs")
             self._hashed.add(name)
         return None
 
-    def _promised(self, name: str) -> Mapping[str, Any]:
+    def _promised(self, name: str) -> PromisedFile:
         if name not in self._files:
             raise self._broken(name, "the manifest does not name it")
         return self._files[name]
 
-    def _shard_checksums(self, shard: str) -> dict[str, str]:
+    def _of_its_shard(self, name: str) -> str:
+        shard = self._owners[name]
         if shard not in self._of_shard:
-            name = sidecar_name(shard)
+            sidecar = sidecar_name(shard)
             try:
-                sidecar = unsealed(name, self.content(name))
+                facts = sidecar_facts(sidecar, self.content(sidecar))
             except VerificationError as error:
-                raise self._broken(name, str(error)) from error
-            tables = [sidecar[kind] for kind in ("data", "internals") if kind in sidecar]
-            self._of_shard[shard] = {table["name"]: table[CRC] for table in tables}
-        return self._of_shard[shard]
+                raise self._broken(sidecar, str(error)) from error
+            tables = (facts.data, facts.internals) if facts.internals else (facts.data,)
+            self._of_shard[shard] = {table.name: table.crc32_per_64_kib or "" for table in tables}
+        if name not in self._of_shard[shard]:
+            raise self._broken(name, "the sidecar of its shard does not name it")
+        return self._of_shard[shard][name]
 
     def _broken(self, name: str, why: str) -> DatasetError:
         where = self._storage.location

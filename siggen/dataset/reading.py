@@ -18,7 +18,8 @@ from siggen.columns.column import Column
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.id_ranges import in_ranges
-from siggen.dataset.manifest import CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, read_manifest
+from siggen.dataset.inventory import Inventory, ListedShard
+from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
 from siggen.dataset.promises import Promises
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
@@ -46,6 +47,8 @@ class Dataset:
         For a set in an object store a path that is none of this machine: s3://bucket/set.
     manifest : dict
         Content of manifest.json: identity, counts, failures, shards, environments, hashes.
+    inventory : Inventory
+        The same as typed facts.
     config : dict
         Content of config.yaml.
     splits : tuple of str
@@ -67,27 +70,28 @@ class Dataset:
     def __init__(self, storage: Storage) -> None:
         self._storage = storage
         self.path: PurePath = storage.path
-        self.manifest: dict[str, Any] = read_manifest(storage)
-        self._promises = Promises(storage, self.manifest)
+        self.inventory: Inventory = read_manifest(storage)
+        self.manifest: dict[str, Any] = self.inventory.content
+        self._promises = Promises(storage, self.inventory)
         self._promises.check_sizes()
         self.config: dict[str, Any] = self._read_config()
-        self.splits: tuple[str, ...] = tuple(s for s in ("train", "validation", "test") if s in self.manifest["splits"])
-        self.channels: tuple[Channel, ...] = tuple(Channel(**channel) for channel in self.manifest["channels"])
-        self.fs_hz: float = self.manifest["fs_hz"]
-        self.duration_s: float = self.manifest["duration_s"]
+        self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
+        self.channels: tuple[Channel, ...] = self.inventory.channels
+        self.fs_hz: float = self.inventory.fs_hz
+        self.duration_s: float = self.inventory.duration_s
         self.internal_columns: tuple[Column, ...] = tuple(
-            Column(type=pa.float32(), **column) for column in self.manifest.get("internals", ())
+            Column(one.name, pa.float32(), one.unit, one.meaning) for one in self.inventory.internals
         )
 
     def __repr__(self) -> str:
-        rows = ", ".join(f"{split}: {self.manifest['splits'][split]['rows']}" for split in self.splits)
+        rows = ", ".join(f"{split}: {self.inventory.splits[split].rows}" for split in self.splits)
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
 
     @property
     def has_checksums(self) -> bool:
         """Whether signals and internal quantities are checked when they are read; see above."""
-        return self._promises.has_checksums
+        return self.inventory.has_checksums
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.
@@ -122,7 +126,7 @@ class Dataset:
         UsageError
             If the split or a column does not exist.
         """
-        yield from self._batches("file", split, columns, batch_rows)
+        yield from self._batches([shard.file for shard in self._shards(split)], columns, batch_rows)
 
     def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
         """Return the row groups of a split, or of all splits, in the order of the labels; `row_group` reads one.
@@ -134,9 +138,9 @@ class Dataset:
         """
         found = []
         for shard in self._shards(split):
-            with self._parquet(shard["file"]) as file:
+            with self._parquet(shard.file) as file:
                 footer = file.metadata
-                found += [RowGroup(shard["file"], k, footer.row_group(k).num_rows) for k in range(file.num_row_groups)]
+                found += [RowGroup(shard.file, k, footer.row_group(k).num_rows) for k in range(file.num_row_groups)]
         return tuple(found)
 
     def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
@@ -163,7 +167,7 @@ class Dataset:
             If the set stores none, or the split or a column does not exist.
         """
         self._check_internals()
-        yield from self._batches("internals", split, columns, batch_rows)
+        yield from self._batches([shard.internals or "" for shard in self._shards(split)], columns, batch_rows)
 
     def record_internals(self, record_id: int) -> dict[str, np.ndarray] | None:
         """Return name -> float32 (n,) of one record, or None if the set does not store those of this record.
@@ -175,8 +179,8 @@ class Dataset:
         """
         self._check_internals()
         for shard in self._shards(None):
-            if in_ranges(record_id, shard["records"]):
-                row = self._row(shard["internals"], record_id)
+            if shard.internals is not None and in_ranges(record_id, shard.records):
+                row = self._row(shard.internals, record_id)
                 return None if row is None else as_internals(row)
         return None
 
@@ -188,11 +192,11 @@ class Dataset:
             )
 
     def _batches(
-        self, kind: str, split: str | None, columns: Sequence[str] | None, batch_rows: int | None
+        self, names: Sequence[str], columns: Sequence[str] | None, batch_rows: int | None
     ) -> Iterator[pa.RecordBatch]:
-        """Yield the rows of all files of a kind, a row group at a time."""
-        for shard in self._shards(split):
-            with self._parquet(shard[kind]) as file:
+        """Yield the rows of all files, a row group at a time."""
+        for name in names:
+            with self._parquet(name) as file:
                 self._check_columns(file.schema_arrow, columns)
                 for group in range(file.num_row_groups):
                     table = file.read_row_group(group, columns=_as_list(columns), use_threads=False).combine_chunks()
@@ -209,26 +213,19 @@ class Dataset:
             If no row has this id; the message says whether the record failed or was never planned.
         """
         for shard in self._shards(None):
-            if in_ranges(record_id, shard["records"]) and (row := self._row(shard["file"], record_id)) is not None:
+            if in_ranges(record_id, shard.records) and (row := self._row(shard.file, record_id)) is not None:
                 return as_record(row)
         raise UsageError(self._why_no_record(record_id))
 
     def _row(self, name: str, record_id: int) -> pa.Table | None:
         with self._parquet(name) as file:
-            for group in range(file.num_row_groups):
-                # column 0 is record_id, for which every row group has statistics
-                statistics = file.metadata.row_group(group).column(0).statistics
-                if statistics.min <= record_id <= statistics.max:
-                    table = file.read_row_group(group, use_threads=False)
-                    row = table.filter(pc.equal(table["record_id"], record_id))
-                    return row if row.num_rows else None
-        return None
+            return row_of(file, record_id)
 
     def _why_no_record(self, record_id: int) -> str:
-        for failure in self.manifest["failures"]:
-            if failure["record_id"] == record_id:
-                return f"record {record_id} could not be simulated: {failure['status']} ({failure['reason']})"
-        planned = [id_range for shard in self._shards(None) for id_range in shard["records"]]
+        for failure in self.inventory.failures:
+            if failure.record_id == record_id:
+                return f"record {record_id} could not be simulated: {failure.status} ({failure.reason})"
+        planned = [id_range for shard in self._shards(None) for id_range in shard.records]
         last = max((last for _, last in planned), default=-1)
         return f"{self.path} has no record {record_id}; it has records 0 to {last}"
 
@@ -251,20 +248,36 @@ class Dataset:
             raise UsageError(f"{self.path} has no split {split!r}; it has {', '.join(self.splits)}")
         return (split,)
 
-    def _shards(self, split: str | None) -> Iterator[dict[str, Any]]:
+    def _shards(self, split: str | None) -> Iterator[ListedShard]:
         for name in self._splits(split):
-            yield from (shard for shard in self.manifest["shards"] if shard["split"] == name)
+            yield from (shard for shard in self.inventory.shards if shard.split == name)
 
     def _check_columns(self, schema: pa.Schema, columns: Sequence[str] | None) -> None:
         unknown = [column for column in columns or () if column not in schema.names]
         if unknown:
             raise UsageError(f"{self.path} has no columns {unknown}; it has {', '.join(schema.names)}")
 
+    def card(self) -> str:
+        """Return README.md, which says in words what the set is."""
+        return self._promises.content(CARD).decode("utf-8", "replace")
+
     def _read_config(self) -> dict[str, Any]:
         try:
             return dict(yaml.load(self._promises.content(CONFIG), _Loader))
         except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
+
+
+def row_of(file: pq.ParquetFile, record_id: int) -> pa.Table | None:
+    """Return the row of a record in a table whose first column is `record_id`; None if there is none."""
+    for group in range(file.num_row_groups):
+        statistics = file.metadata.row_group(group).column(0).statistics
+        if statistics is None or not statistics.has_min_max or statistics.min <= record_id <= statistics.max:
+            table = file.read_row_group(group, use_threads=False)
+            row = table.filter(pc.equal(table["record_id"], record_id))
+            if row.num_rows:
+                return row
+    return None
 
 
 def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:

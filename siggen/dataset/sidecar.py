@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 from siggen.columns.record import RecordFailure
-from siggen.columns.versions import FIRST_SIMULATION_VERSION, SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
 from siggen.dataset.checked_file import Checksums, checksums
+from siggen.dataset.gate import sidecar_facts
 from siggen.dataset.id_ranges import Range
-from siggen.dataset.seal import sealed, unsealed
+from siggen.dataset.inventory import SidecarTable
+from siggen.dataset.object_name import sidecar_name
+from siggen.dataset.seal import sealed
 from siggen.dataset.shard import FileFacts
 from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
-
-FOLDER = "shards"
-DATA_FOLDER = "data"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +64,6 @@ class Sidecar:
         return replace(self, data=data, internals=internals, specimens=specimens, records=records)
 
 
-def data_name(shard: str) -> str:
-    """Return the object name of a shard's rows."""
-    return f"{DATA_FOLDER}/{shard}.parquet"
-
-
-def sidecar_name(shard: str) -> str:
-    """Return the object name of a shard's sidecar."""
-    return f"{FOLDER}/{shard}.json"
-
-
 def put_sidecar(storage: Storage, sidecar: Sidecar) -> None:
     """Commit a shard whose rows are already stored."""
     ranges = {"specimens": list(sidecar.specimens), "records": list(sidecar.records)}
@@ -90,49 +79,64 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
     Raises
     ------
     DatasetError
-        If the file was changed, or is not a sidecar of this schema version.
+        If the file is missing or was changed, or is not a sidecar of this schema version.
     """
     name = sidecar_name(shard)
     try:
-        stored = storage.get(name)
-        content = json.loads(stored)
-        versions = (content["schema_version"], content.get("simulation_version", FIRST_SIMULATION_VERSION))
-        if versions != (SCHEMA_VERSION, SIMULATION_VERSION):
-            raise DatasetError(
-                f"{name}: received schema version {versions[0]} and simulation version {versions[1]}; "
-                f"allowed are {SCHEMA_VERSION} and {SIMULATION_VERSION}, which this siggen writes"
-            )
-        content = unsealed(name, stored)
-        return Sidecar(
-            shard=content["shard"],
-            split=content["split"],
-            identity=content["identity"],
-            data=FileFacts(**content["data"]),
-            specimens=tuple((first, last) for first, last in content["specimens"]),
-            records=tuple((first, last) for first, last in content["records"]),
-            rows_per_state=content["rows_per_state"],
-            failures=tuple(RecordFailure(**failure) for failure in content["failures"]),
-            environment=content["environment"],
-            internals=FileFacts(**content["internals"]) if "internals" in content else None,
+        facts = sidecar_facts(name, storage.get(name))
+    except VerificationError as error:
+        raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error})") from error
+    versions = (facts.schema_version, facts.simulation_version)
+    if versions != (SCHEMA_VERSION, SIMULATION_VERSION):
+        raise DatasetError(
+            f"{name}: received schema version {versions[0][:20]} and simulation version {versions[1]}; "
+            f"allowed are {SCHEMA_VERSION} and {SIMULATION_VERSION}, which this siggen writes"
         )
-    except (VerificationError, ValueError, KeyError, TypeError) as error:
-        raise DatasetError(f"{storage.location}/{name} is not a sidecar of siggen ({error!r})") from error
+    return Sidecar(
+        shard=facts.shard,
+        split=facts.split,
+        identity=facts.identity,
+        data=file_facts(facts.data),
+        specimens=facts.specimens,
+        records=facts.records,
+        rows_per_state=facts.rows_per_state,
+        failures=facts.failures,
+        environment=facts.environment,
+        internals=None if facts.internals is None else file_facts(facts.internals),
+    )
 
 
-def committed(storage: Storage, shard: str, identity: str, specimens: Sequence[Range]) -> Sidecar | None:
-    """Return the sidecar of a shard that an earlier run finished, or None if the shard has to be made.
+def file_facts(table: SidecarTable) -> FileFacts:
+    """Return what a sidecar promises of a file; no checksums of blocks where it has none."""
+    return FileFacts(table.name, table.bytes, table.sha256, table.crc32_per_64_kib or "", table.rows)
+
+
+def promised_shard(storage: Storage, shard: str, identity: str, specimens: Sequence[Range]) -> Sidecar | str:
+    """Return the sidecar of a shard of this very set, or why it cannot be used; empty if there is none.
+
+    Its files are not read.
+    """
+    if not storage.exists(sidecar_name(shard)):
+        return ""
+    try:
+        sidecar = read_sidecar(storage, shard)
+    except DatasetError as error:
+        return str(error)
+    is_planned = (sidecar.shard, sidecar.identity, sidecar.specimens) == (shard, identity, specimens)
+    return sidecar if is_planned else f"{storage.location}/{sidecar.name} is of another set"
+
+
+def committed(storage: Storage, shard: str, identity: str, specimens: Sequence[Range]) -> Sidecar | str:
+    """Return the sidecar of a shard that an earlier run finished, or why it has to be made; empty if nothing is there.
 
     The rows are read once and hashed, so that a file damaged between two runs is made again instead of being taken
     over; a set is hashed nowhere else before its manifest promises the hashes.
     """
-    if not (storage.exists(sidecar_name(shard)) and storage.exists(data_name(shard))):
-        return None
-    try:
-        sidecar = read_sidecar(storage, shard)
-    except DatasetError:
-        return None
-    is_planned = (sidecar.shard, sidecar.identity, sidecar.specimens) == (shard, identity, specimens)
-    return sidecar if is_planned and all(_is_whole(storage, facts) for facts in sidecar.files) else None
+    found = promised_shard(storage, shard, identity, specimens)
+    if isinstance(found, str):
+        return found
+    broken = [facts.name for facts in found.files if not _is_whole(storage, facts)]
+    return f"{storage.location}/{broken[0]} is missing or damaged" if broken else found
 
 
 def _is_whole(storage: Storage, facts: FileFacts) -> bool:

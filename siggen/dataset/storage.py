@@ -6,12 +6,13 @@ import errno
 import hashlib
 import os
 import secrets
-import shutil
+import stat
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path, PurePath
 from typing import BinaryIO, Protocol
 
+from siggen.dataset.object_name import check_below
 from siggen.errors import DatasetError
 
 LEFTOVER_SUFFIX = ".siggen-part"
@@ -81,10 +82,25 @@ def file_sha256(file: BinaryIO) -> str:
     return digest.hexdigest()
 
 
-def copy_object(source: Storage, name: str, target: Storage) -> None:
-    """Copy an object into another storage, under the same name."""
-    with source.open(name) as file, target.draft(name) as draft, draft.open("wb") as copy:
-        shutil.copyfileobj(file, copy, READ_BYTES)
+def copy_object(source: Storage, name: str, target: Storage, promised_sha256: str) -> None:
+    """Copy an object into another storage under the same name, if it is the one that is promised.
+
+    Raises
+    ------
+    DatasetError
+        If it is missing, or its SHA-256 is another one; then nothing is stored.
+    """
+    digest = hashlib.sha256()
+    with source.open(name) as file, target.draft(name) as draft:
+        with draft.open("wb") as copy:
+            while piece := file.read(READ_BYTES):
+                digest.update(piece)
+                copy.write(piece)
+        if digest.hexdigest() != promised_sha256:
+            raise DatasetError(
+                f"{source.location}/{name} is not the file that is promised (SHA-256 differs), and was not copied; "
+                f"`siggen verify {source.location}` finds all damaged files"
+            )
 
 
 class LocalFolder:
@@ -107,6 +123,7 @@ class LocalFolder:
     def draft(self, name: str) -> Iterator[Path]:
         """Yield a hidden path in the target's folder; flushed to disk and renamed when the block ends."""
         target = self._file(name)
+        self._check_links(target.parent)
         target.parent.mkdir(parents=True, exist_ok=True)
         part = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
         try:
@@ -128,12 +145,18 @@ class LocalFolder:
         Raises
         ------
         DatasetError
-            If there is no such file.
+            If there is no such file, it cannot be read, is no regular file, or a link leads out of the folder.
         """
+        path = self._file(name)
+        self._check_links(path)
         try:
-            return self._file(name).open("rb")
+            if not stat.S_ISREG(path.stat().st_mode):  # a pipe would wait for ever, a device give without end
+                raise DatasetError(f"{path} is no regular file; a set has no others")
+            return path.open("rb")
         except FileNotFoundError as error:
-            raise DatasetError(f"{self._file(name)} is missing; generating the same set again restores it") from error
+            raise DatasetError(f"{path} is missing; generating the same set again restores it") from error
+        except OSError as error:
+            raise DatasetError(f"{path} cannot be read ({error.strerror})") from error
 
     def size(self, name: str) -> int:
         """Return the file's size in bytes."""
@@ -149,7 +172,8 @@ class LocalFolder:
 
     def sizes(self, folder: str = "") -> dict[str, int]:
         """Return POSIX name -> bytes of all files below a folder, by name, without leftovers."""
-        files = (path for path in self._file(folder).rglob("*") if not path.is_dir() and path.suffix != LEFTOVER_SUFFIX)
+        root = self._file(folder) if folder else self.path
+        files = (path for path in root.rglob("*") if not path.is_dir() and path.suffix != LEFTOVER_SUFFIX)
         # not followed: a link that leads nowhere is a stranger, too
         found = {path.relative_to(self.path).as_posix(): path.stat().st_size if path.exists() else 0 for path in files}
         return {name: found[name] for name in sorted(found)}
@@ -204,7 +228,23 @@ class LocalFolder:
                 os.close(lock)
 
     def _file(self, name: str) -> Path:
+        check_below(name, self.location)
         return self.path / name
+
+    def _check_links(self, path: Path) -> None:
+        """Refuse a path that a link leads out of the folder: a stranger's set is to show and to change nothing else."""
+        steps = [path, *path.parents]
+        below = steps[: steps.index(self.path)]
+        if any(step.is_symlink() for step in below) and not _real(path).is_relative_to(_real(self.path)):
+            raise DatasetError(
+                f"{path} leads out of {self.path} by a link; a set has all its files in its own folder: "
+                "copy the set with what its links lead to (cp -rL), and read the copy"
+            )
+
+
+def _real(path: Path) -> Path:
+    """Return where links lead; a circle of them leads to itself."""
+    return Path(os.path.realpath(path))
 
 
 def _flush(path: Path) -> None:

@@ -79,16 +79,16 @@ def publication(
     DatasetError
         If the set is not finished, or its configuration is not one of this version.
     """
-    if (Path(path) / INJECTED).exists():
-        raise UsageError(f"{path}: holds your recordings with injected damage; it is no set that siggen publishes")
     dataset = open_set(path)
+    if INJECTED in dataset.inventory.files:
+        raise UsageError(f"{path}: holds your recordings with injected damage; it is no set that siggen publishes")
     facts = _facts(Path(path), facts_file)
     found = _audit_file(Path(path), audit)
     config = _config(dataset)
     _check_recordings(path, config, with_recordings=with_recordings)
-    files = dataset.manifest["files"]
+    files = dataset.inventory.files
     copied = tuple(name for name in files if name not in (CARD, CROISSANT, DATACITE) and not name.startswith(PREVIEWS))
-    size = sum(int(files[name]["bytes"]) for name in copied)
+    size = sum(files[name].bytes for name in copied)
     return Publication(_texts(dataset, config, facts, found, size), copied, size, found)
 
 
@@ -128,7 +128,7 @@ def publish(
     dataset = open_set(path)
     with target.writing():
         for name in made.copied:
-            copy_object(source, name, target)
+            copy_object(source, name, target, dataset.inventory.files[name].sha256)
         own = {**made.texts, **_previews(dataset)}
         for name, content in own.items():
             target.put(name, content)
@@ -163,7 +163,7 @@ def _config(dataset: Dataset) -> Config:
     parsed = parse(dataset.config)
     if parsed.config is None:
         raise ConfigError(parsed.problems, f"{dataset.path}/config.yaml")
-    if parsed.config.identity != dataset.manifest["identity"]:
+    if parsed.config.identity != dataset.inventory.identity:
         raise DatasetError(
             f"{dataset.path}: this version of siggen reads its configuration otherwise; publish with its own"
         )
@@ -173,7 +173,7 @@ def _config(dataset: Dataset) -> Config:
 def _texts(
     dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None, size: int
 ) -> dict[str, bytes]:
-    rows = dataset.manifest["rows"]
+    rows = dataset.inventory.rows
     description = (
         f"{counted(rows, 'labelled acceleration record')} of a simulated spur gear pair with tooth pitting, "
         f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "
@@ -182,9 +182,7 @@ def _texts(
     limits = "Simulated: a model trained on it has to be tested on measurements before it is trusted on them."
     schemas = _schemas(dataset)
     info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
-    card = published_card(
-        storage_at(dataset.path).get(CARD).decode(), config, facts, info, audit_section(config.identity, audit)
-    )
+    card = published_card(dataset.card(), config, facts, info, audit_section(config.identity, audit))
     return {
         CARD: card.encode(),
         CROISSANT: _json(croissant(facts, description, TAGS, schemas, limits)),
@@ -194,12 +192,12 @@ def _texts(
 
 
 def _signal_files(dataset: Dataset) -> list[str]:
-    return [str(shard["file"]) for shard in dataset.manifest["shards"]]
+    return [shard.file for shard in dataset.inventory.shards]
 
 
 def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:
     """Return the columns of each view as they are in the files, which may be of an earlier version."""
-    if not dataset.manifest["rows"]:
+    if not dataset.inventory.rows:
         raise DatasetError(f"{dataset.path} has no rows: there is nothing to publish")
     found = {
         "signals": next(dataset.records(batch_rows=1)).schema,
@@ -217,7 +215,7 @@ def _counts(dataset: Dataset, views: tuple[str, ...]) -> dict[str, dict[str, tup
         found[view] = {}
         for split in dataset.splits:
             begin = (f"{FOLDERS[view]}/{split}.", f"{FOLDERS[view]}/{split}-")
-            size = sum(int(file["bytes"]) for name, file in dataset.manifest["files"].items() if name.startswith(begin))
+            size = sum(file.bytes for name, file in dataset.inventory.files.items() if name.startswith(begin))
             found[view][split] = (_rows(dataset, view, split), size)
     return found
 
@@ -227,7 +225,7 @@ def _rows(dataset: Dataset, view: str, split: str) -> int:
         return int(dataset.damage(split).num_rows)
     if view == "internals":
         return sum(batch.num_rows for batch in dataset.internals(split, ["record_id"]))
-    return int(dataset.manifest["splits"][split]["rows"])
+    return dataset.inventory.splits[split].rows
 
 
 def _previews(dataset: Dataset) -> dict[str, bytes]:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from siggen.columns.versions import SIMULATION_VERSION
+from siggen.dataset.environment import version_text
 from siggen.dataset.extensions import put_extensions, read_extensions
-from siggen.dataset.manifest import CONFIG, read_manifest, simulation_version
-from siggen.dataset.promises import has_checksums
+from siggen.dataset.manifest import CONFIG, read_manifest
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
@@ -65,13 +65,13 @@ def extend(
     read_manifest(storage)  # a folder without a set must not be created by the lock
     with storage.writing():
         manifest = read_manifest(storage)
-        there = int(manifest["specimens"])
+        there = manifest.specimens
         wanted = _wanted(specimens, there)
         _check_begun(storage, there, wanted)
-        if not has_checksums(manifest) or simulation_version(manifest) != SIMULATION_VERSION:
+        if not manifest.has_checksums or manifest.simulation_version != SIMULATION_VERSION:
             raise _of_earlier_version(storage, wanted)
         config = _config(storage, wanted)
-        if config.identity != manifest["identity"]:
+        if config.identity != manifest.identity:
             raise DatasetError(f"{storage.location}/{CONFIG} is not the configuration of this set; nothing was changed")
         storage.delete_leftovers()
         earlier = [*(count for count in read_extensions(storage) if count < there), there]
@@ -119,10 +119,12 @@ def _check_shards(run: SetRun, there: int) -> None:
     run.take_over(old)
     if lost := [shard.key for shard in old if shard.key not in run.sidecars]:
         where = run.storage.location
+        why = "; ".join(note.partition("; they are")[0].replace(" is made again", "") for note in run.notes[:3])
         raise DatasetError(
             f"{where}: {len(lost)} of its {len(old)} shards are missing, damaged or of another version of siggen "
-            f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}); `siggen verify {where}` names what is wrong. "
-            "Only whole sets of this version are extended"
+            f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}). {why or 'no file is there'}. This is "
+            f"{version_text(run.environment)}: only whole sets whose records it makes to the bit are extended. "
+            f"`siggen verify {where}` compares all files; extend with the version that made the set"
         )
 
 

@@ -11,19 +11,23 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.manifest import CONFIG
-from siggen.dataset.sidecar import read_sidecar, sidecar_name
+from siggen.dataset.sidecar import Sidecar, promised_shard
 from siggen.dataset.storage import Storage, copy_object
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.planning.plan import ShardPlan
+from siggen.sets.earlier_shards import Again, StoredShard, verdicts
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
+from siggen.sets.shard_making import ranges
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -120,11 +124,39 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
         with Interruption() as interruption:
             run = set_run(config, target, SerialEngine(), progress, interruption)
             target.put(CONFIG, config_bytes(config))
+            run.trusted = _one_version(run, [target, *sources])
             run.take_over(run.planned)
             _copy_missing(run, sources, target)
-            run.take_over(run.planned)
             _check_complete(run)
             return run.finish()
+
+
+def _one_version(run: SetRun, storages: Sequence[Storage]) -> frozenset[str]:
+    """Return the fingerprints of all shards, which have to be of one version, or equal to the bit.
+
+    Raises
+    ------
+    DatasetError
+        If they are not; nothing has been copied then.
+    """
+    found: dict[str, StoredShard] = {}
+    for shard, storage in ((shard, storage) for shard in run.planned for storage in storages):
+        run.interruption.check()
+        sidecar = _promised(run, storage, shard)
+        if shard.key not in found and sidecar is not None:
+            found[shard.key] = StoredShard(storage, sidecar)
+    environments = {fingerprint(one.sidecar.environment): one.sidecar.environment for one in found.values()}
+    same_sources = {made_in.get("sources") for made_in in environments.values()} == {run.environment["sources"]}
+    if len(environments) > 1 or not same_sources:
+        again = Again(run.config, run.physics, run.quantities, run.engine)
+        unlike = [str(v) for v in verdicts(list(found.values()), run.environment, again) if v.difference]
+        if unlike:
+            raise DatasetError(
+                f"{run.storage.location}: parts of other versions are not mixed; this is "
+                f"{version_text(run.environment)}. {'. '.join(unlike[:3])}. Make these parts again with the version "
+                "and the kind of processor that made the others, or merge with the version that made all of them"
+            )
+    return frozenset(environments)
 
 
 def _common_config(sources: Sequence[Storage]) -> Config:
@@ -147,15 +179,31 @@ def _common_config(sources: Sequence[Storage]) -> Config:
 
 
 def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> None:
-    """Copy the shards that the target has not, the sidecar last; what was copied is hashed afterwards."""
-    for shard in run.planned:
-        run.interruption.check()
-        source = next((one for one in sources if one.exists(sidecar_name(shard.key))), None)
-        if shard.key in run.sidecars or source is None:
-            continue
-        sidecar = read_sidecar(source, shard.key)
-        for name in (*(file.name for file in sidecar.files), sidecar.name):
-            copy_object(source, name, target)
+    """Copy the shards that the target has not, hashed on the way, the sidecar last; from the first whole copy."""
+    for shard in (shard for shard in run.planned if shard.key not in run.sidecars):
+        for source in sources:
+            run.interruption.check()
+            sidecar = _promised(run, source, shard)
+            if sidecar is not None and _is_copied(source, sidecar, target):
+                run.accept(sidecar.without_bulk(*ranges(shard)))
+                break
+
+
+def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
+    found = promised_shard(storage, shard.key, run.config.identity, ranges(shard)[0])
+    return None if isinstance(found, str) else found
+
+
+def _is_copied(source: Storage, sidecar: Sidecar, target: Storage) -> bool:
+    """Copy a shard; tell whether it was whole."""
+    content = source.get(sidecar.name)
+    try:
+        for file in sidecar.files:
+            copy_object(source, file.name, target, file.sha256)
+    except DatasetError:
+        return False
+    target.put(sidecar.name, content)
+    return True
 
 
 def _check_complete(run: SetRun) -> None:

@@ -156,7 +156,7 @@ def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[
     """Return id -> state of records spread evenly over all states, in an order that follows from the identity."""
     labels = dataset.labels(columns=["record_id", "state"])
     pairs = sorted(zip(labels["record_id"].to_pylist(), labels["state"].to_pylist(), strict=True))
-    Random(dataset.manifest["identity"]).shuffle(pairs)
+    Random(dataset.inventory.identity).shuffle(pairs)
     by_state = [[pair for pair in pairs if pair[1] == state] for state in states]
     in_turn = [pair for turn in zip_longest(*by_state) for pair in turn if pair is not None]
     return dict(in_turn[:count])

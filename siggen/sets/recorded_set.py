@@ -30,9 +30,10 @@ from siggen.dataset.manifest import (
     SPLITS,
     build_manifest,
 )
+from siggen.dataset.object_name import data_name
 from siggen.dataset.seal import json_bytes, sealed
 from siggen.dataset.shard import FileFacts, write_table
-from siggen.dataset.sidecar import Sidecar, data_name, put_sidecar
+from siggen.dataset.sidecar import Sidecar, put_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 

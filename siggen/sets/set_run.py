@@ -12,19 +12,21 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
 from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.card import card
-from siggen.dataset.environment import environment
+from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.extensions import EXTENSIONS
 from siggen.dataset.folder import config_bytes
 from siggen.dataset.label_tables import write_damage, write_metadata
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
+from siggen.dataset.object_name import sidecar_name
 from siggen.dataset.pieces import Maker, Pieces
 from siggen.dataset.seal import sealed
-from siggen.dataset.sidecar import Sidecar, committed, sidecar_name
+from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.planning.plan import ShardPlan, shards
 from siggen.sets import physics as contents
+from siggen.sets.earlier_shards import Again, EarlierShards
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
 from siggen.sets.manifest_facts import manifest_facts
@@ -57,6 +59,8 @@ class Generation:
         The set was there already; nothing was written.
     rows, failures
         Of the whole set.
+    notes
+        Sentences on shards that another version made, and on damaged ones.
     """
 
     path: PurePath
@@ -66,6 +70,7 @@ class Generation:
     shards_taken_over: int = 0
     seconds: float = 0.0
     was_finished: bool = False
+    notes: tuple[str, ...] = ()
 
 
 def _silent(done: int, total: int) -> None:
@@ -89,6 +94,7 @@ def set_run(
         quantities = physics.stored(config)
         planned = planned_shards(config, earlier)
     run = SetRun(config, storage, engine, physics, quantities, progress or _silent, interruption, planned, journal)
+    run.trusted = frozenset({fingerprint(run.environment)})
     run.total = sum(shard.record_count for shard in planned)
     journal.start(config, str(storage.location), engine, run.total, len(planned))
     return run
@@ -107,6 +113,10 @@ class SetRun:
     ----------
     planned
         All shards of the set.
+    trusted
+        Fingerprints of versions whose shards are taken over as they are.
+    notes
+        Sentences on shards that another version made.
     """
 
     config: Config
@@ -126,11 +136,11 @@ class SetRun:
     made: int = 0
     shards_made: int = 0
     total: int = 0
+    trusted: frozenset[str] = frozenset()
+    notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        from siggen.compiled import compiled_sources as bytes_fingerprint  # numba takes long to import
-
-        maker = Maker(self.config.identity, bytes_fingerprint(), self.environment)
+        maker = Maker(self.config.identity, fingerprint(self.environment), self.environment)
         inner = internals_schema(self.config, self.quantities) if self.quantities else None
         self.pieces = Pieces(self.storage, maker, (record_schema(self.config), inner))
         shared = (self.config, self.storage, self.engine, self.physics, self.quantities, self.interruption)
@@ -164,6 +174,7 @@ class SetRun:
             records_made=self.made,
             shards_taken_over=taken_over,
             seconds=self.journal.seconds,
+            notes=tuple(self.notes),
         )
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
@@ -189,18 +200,22 @@ class SetRun:
             records_made=self.made,
             shards_taken_over=taken_over,
             seconds=self.journal.seconds,
+            notes=tuple(self.notes),
         )
 
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:
-        """Find the shards that earlier runs committed."""
-        for shard in (shard for shard in wanted if shard.key not in self.sidecars):
-            self.interruption.check()
-            specimens, records = ranges(shard)
-            sidecar = committed(self.storage, shard.key, self.config.identity, specimens)
-            if sidecar is not None:
-                self.sidecars[shard.key] = sidecar.without_bulk(specimens, records)
-                self._advance(sum(last - first + 1 for first, last in sidecar.records))
-                self.journal.taken_over(sidecar, self.done, self.total)
+        """Find the shards that earlier runs committed, and whose records this version would make to the bit."""
+        missing = [shard for shard in wanted if shard.key not in self.sidecars]
+        again = Again(self.config, self.physics, self.quantities, self.engine)
+        search = EarlierShards(self.storage, self.trusted, self.environment, again, self.notes)
+        for sidecar in search.usable(missing, self.interruption.check):
+            self.accept(sidecar)
+
+    def accept(self, sidecar: Sidecar) -> None:
+        """Take a shard over."""
+        self.sidecars[sidecar.shard] = sidecar
+        self._advance(sum(last - first + 1 for first, last in sidecar.records))
+        self.journal.taken_over(sidecar, self.done, self.total)
 
     def _committed(self, shard: ShardPlan, sidecar: Sidecar, seconds: float) -> None:
         self.sidecars[shard.key] = sidecar.without_bulk(*ranges(shard))
@@ -278,6 +293,5 @@ class SetRun:
 def unchanged(storage: Storage, events: Events | None = None) -> Generation:
     """Return what a call did that found the set finished."""
     manifest = read_manifest(storage)
-    failures = tuple(RecordFailure(**failure) for failure in manifest["failures"])
     RunJournal(events).end("finished before", "", 0, 0)
-    return Generation(storage.path, manifest["rows"], failures, was_finished=True)
+    return Generation(storage.path, manifest.rows, manifest.failures, was_finished=True)

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from siggen.columns.column import Column
-from siggen.columns.internals import internals_group_rows, internals_name, internals_schema
+from siggen.columns.internals import internals_group_rows, internals_schema
 from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
 from siggen.dataset.id_ranges import IdRanges
+from siggen.dataset.object_name import data_name, internals_name
 from siggen.dataset.pieces import Pieces
 from siggen.dataset.shard import TableFile, table_draft
-from siggen.dataset.sidecar import Sidecar, data_name, put_sidecar
+from siggen.dataset.sidecar import Sidecar, put_sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import DrainingEngine, Engine, Unfinished

@@ -6,16 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from siggen.columns.internals import FOLDER as INTERNALS_FOLDER
-from siggen.columns.record import signal_column
 from siggen.columns.versions import READ_VERSIONS, SIMULATION_VERSION
-from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation
-from siggen.dataset.environment import environment
+from siggen.dataset.chunk import Chunk, ChunkSimulation
+from siggen.dataset.environment import environment, fingerprint, version_text
+from siggen.dataset.gate import manifest_facts, sidecar_facts
 from siggen.dataset.id_ranges import in_ranges
+from siggen.dataset.inventory import HashedFiles, Inventory, PromisedFile
 from siggen.dataset.manifest import (
     CONFIG,
     DAMAGE_FOLDER,
@@ -25,19 +23,17 @@ from siggen.dataset.manifest import (
     PHYSICS,
     RUN,
     read_manifest,
-    simulation_version,
 )
-from siggen.dataset.promises import has_checksums
-from siggen.dataset.reading import Dataset, as_internals, as_record
+from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER, sidecar_name
+from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
-from siggen.dataset.sidecar import DATA_FOLDER
-from siggen.dataset.sidecar import FOLDER as SIDECAR_FOLDER
 from siggen.dataset.storage import Storage, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
 from siggen.sets import physics as contents
+from siggen.sets.record_comparison import result_difference
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -48,11 +44,6 @@ EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
 HASHES_ALONE = "hashes checked"
 """How the comparison begins of a set whose records another version of the simulation made."""
-
-LABEL_TOLERANCE = 1e-6
-"""Relative difference that other instructions and versions may make in a label: well above rounding, below meaning."""
-
-PULSE_TOLERANCE_S = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +68,10 @@ class Verification:
         How they were compared, or why none was.
     mismatches
         Empty for a set that is what it promises to be.
+    made_by
+        The versions that made the shards, each with its fingerprint.
+    here
+        The version that compared.
     has_checksums
         Whether a reader of signals checks every byte as well; sets made before there were checksums have none.
     """
@@ -88,6 +83,8 @@ class Verification:
     comparison: str
     mismatches: tuple[Mismatch, ...]
     has_checksums: bool = True
+    made_by: tuple[str, ...] = ()
+    here: str = ""
 
 
 def verify(
@@ -118,14 +115,16 @@ def verify(
     if not storage.exists(MANIFEST):
         read_manifest(storage)  # says what is there instead
     try:
-        manifest = unsealed(MANIFEST, storage.get(MANIFEST))
+        manifest = manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError as error:
         return Verification(storage.location, 1, storage.size(MANIFEST), (), "none", (Mismatch(MANIFEST, str(error)),))
     mismatches = [
-        *_file_mismatches(storage, manifest["files"]),
-        *_strangers(storage, manifest["files"]),
+        *_file_mismatches(storage, manifest.files),
+        *_strangers(storage, manifest.files),
         *_run(storage),
     ]
+    if not mismatches and isinstance(manifest, Inventory) and manifest.has_checksums:
+        mismatches += _sidecar_mismatches(storage, manifest)
     records: tuple[int, ...] = ()
     comparison = "none asked for"
     if sample and mismatches:
@@ -135,17 +134,19 @@ def verify(
     elif sample:
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
         mismatches += different
-    total = sum(facts["bytes"] for facts in manifest["files"].values())
-    count, checked = len(manifest["files"]) + 2, has_checksums(manifest)
-    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked)
+    total = sum(facts.bytes for facts in manifest.files.values())
+    count, checked = len(manifest.files) + 2, manifest.has_checksums
+    environments = manifest.environments if isinstance(manifest, Inventory) else ()
+    versions = tuple(dict.fromkeys(version_text(one) for one in environments)), version_text(environment())
+    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked, *versions)
 
 
-def why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
+def why_not_again(manifest: HashedFiles, sample: int) -> str:
     """Return why no record of a set can be compared with a new simulation, or an empty string."""
-    made_by, schema = simulation_version(manifest), manifest.get("schema_version")
-    if INJECTED in manifest.get("files", ()):
+    made_by, schema = manifest.simulation_version, manifest.schema_version[:20]
+    if INJECTED in manifest.files:
         return f"{HASHES_ALONE}: its rows hold recordings, which no simulation makes again"
-    head = f"{HASHES_ALONE}; {counted(min(sample, manifest.get('rows', sample)), 'record')} not simulated again: "
+    head = f"{HASHES_ALONE}; {counted(min(sample, manifest.rows), 'record')} not simulated again: "
     if schema not in READ_VERSIONS:
         return f"{head}its files have schema version {schema}, this siggen reads {' and '.join(READ_VERSIONS)}"
     if made_by != SIMULATION_VERSION:
@@ -153,15 +154,38 @@ def why_not_again(manifest: Mapping[str, Any], sample: int) -> str:
     return ""
 
 
-def _file_mismatches(storage: Storage, files: Mapping[str, Mapping[str, Any]]) -> Iterator[Mismatch]:
+def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Iterator[Mismatch]:
     sizes = storage.sizes()
     for name, facts in sorted(files.items()):
         if name not in sizes:
             yield Mismatch(name, "missing")
-        elif sizes[name] != facts["bytes"]:
-            yield Mismatch(name, f"{sizes[name]} bytes instead of {facts['bytes']}")
-        elif sha256(storage, name) != facts["sha256"]:
-            yield Mismatch(name, "content differs (SHA-256)")
+        elif sizes[name] != facts.bytes:
+            yield Mismatch(name, f"{sizes[name]} bytes instead of {facts.bytes}")
+        elif problem := _content_problem(storage, name, facts.sha256):
+            yield Mismatch(name, problem)
+
+
+def _sidecar_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
+    """Yield the sidecars that say something else than the manifest, which a stranger may have sealed around them."""
+    for shard in manifest.shards:
+        name = sidecar_name(shard.shard)
+        try:
+            facts = sidecar_facts(name, storage.get(name))
+        except (VerificationError, DatasetError) as error:
+            yield Mismatch(name, str(error))
+            continue
+        tables = {table.name: (table.bytes, table.sha256) for table in (facts.data, facts.internals) if table}
+        promised = {table: (manifest.files[table].bytes, manifest.files[table].sha256) for table in shard.tables}
+        listed = (shard.specimens, shard.records, shard.rows, manifest.environments[shard.environment])
+        if tables != promised or listed != (facts.specimens, facts.records, facts.data.rows, facts.environment):
+            yield Mismatch(name, "says something else than the manifest")
+
+
+def _content_problem(storage: Storage, name: str, promised: str) -> str:
+    try:
+        return "" if sha256(storage, name) == promised else "content differs (SHA-256)"
+    except DatasetError as error:  # a link out of the set, or no regular file
+        return str(error)
 
 
 def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismatch]:
@@ -184,31 +208,29 @@ def _simulate_again(
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
-        config = stored_config(storage, dataset.manifest)
+        config = stored_config(storage, dataset.inventory)
     except (ConfigError, DatasetError) as error:
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
     ids = _sample(dataset, sample)
-    here = environment()
-    exact = {record_id: _environment(dataset.manifest, record_id) == here for record_id in ids}
+    here = fingerprint(environment())
+    exact = {record_id: fingerprint(_environment(dataset.inventory, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
     function = ChunkSimulation(config, contents.physics().simulate, dataset.internal_columns)
     chosen = engine_of(engine, 1 if engine is None and workers is None else workers)
     with running(chosen, function, tasks) as results:
         for index, result in results:
-            record_id, batch = ids[index], result.batch()
-            if result.failures:
-                problem = f"now fails: {result.failures[0].status} ({result.failures[0].reason})"
-            else:
-                problem = _difference(config, dataset.record(record_id), as_record(batch), exact=exact[record_id])
-                problem = problem or _internal_difference(dataset, record_id, result, exact=exact[record_id])
+            record_id = ids[index]
+            stored = dataset.record(record_id)
+            internals = dataset.record_internals(record_id) if dataset.internal_columns else None
+            problem = result_difference(config, stored, internals, result, exact=exact[record_id])
             mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
     comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
-def stored_config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
+def stored_config(storage: Storage, manifest: HashedFiles) -> Config:
     """Return the set's configuration; its identity must be the one that this version computes, too.
 
     Raises
@@ -221,76 +243,19 @@ def stored_config(storage: Storage, manifest: Mapping[str, Any]) -> Config:
     parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG, STORED_NUMBERS))
     if parsed.config is None:
         raise ConfigError(parsed.problems, CONFIG)
-    if parsed.config.identity != manifest["identity"]:
+    if parsed.config.identity != manifest.identity:
         raise DatasetError("its identity differs")
     return parsed.config
 
 
 def _sample(dataset: Dataset, count: int) -> list[int]:
     ids = sorted(dataset.labels(columns=["record_id"])["record_id"].to_pylist())
-    return sorted(Random(dataset.manifest["identity"]).sample(ids, min(count, len(ids))))
+    return sorted(Random(dataset.inventory.identity).sample(ids, min(count, len(ids))))
 
 
-def _environment(manifest: Mapping[str, Any], record_id: int) -> Mapping[str, str] | None:
-    for shard in manifest["shards"]:
-        if in_ranges(record_id, shard["records"]):
-            found: Mapping[str, str] = manifest["environments"][shard["environment"]]
-            return found
-    return None
-
-
-def _difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, Any], *, exact: bool) -> str:
-    """Return in what two versions of a record differ, or an empty string."""
-    steps = {} if exact else _steps_m_s2(config)
-    for name, before in stored.items():
-        now = again[name]
-        if isinstance(before, np.ndarray):
-            tolerance = steps.get(name, 0.0 if exact else PULSE_TOLERANCE_S)
-            if before.shape != now.shape:
-                return f"{name} has {counted(len(now), 'value')} instead of {len(before)}"
-            largest = float(np.max(np.abs(before.astype(float) - now), initial=0.0))
-            if largest > tolerance or (exact and before.tobytes() != now.tobytes()):
-                return f"{name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
-        elif not _same_label(before, now, exact=exact):
-            return f"{name} is {now} instead of {before}"
-    return ""
-
-
-def _internal_difference(dataset: Dataset, record_id: int, result: ChunkResult, *, exact: bool) -> str:
-    """Return in which internal quantity two versions of a record differ, or an empty string."""
-    batch = result.internals_batch()
-    stored = dataset.record_internals(record_id) if dataset.internal_columns else None
-    again = as_internals(batch) if batch is not None and batch.num_rows else None
-    if stored is None or again is None:
-        return "" if stored is again else "its internal quantities are stored but not asked for, or missing"
-    for name, now in again.items():
-        before, after = stored[name].astype(float), now.astype(float)
-        apart = np.isnan(after)  # pairs that do not touch
-        if (np.isnan(before) != apart).any():
-            return f"internal quantity {name} differs in where it is NaN"
-        largest = float(np.abs(before - after)[~apart].max(initial=0.0))
-        tolerance = 0.0 if exact else LABEL_TOLERANCE * float(np.abs(after[~apart]).max(initial=0.0))
-        if largest > tolerance or (exact and stored[name].tobytes() != now.tobytes()):
-            return f"internal quantity {name} differs by up to {largest:.3g} (allowed {tolerance:.3g})"
-    return ""
-
-
-def _same_label(before: object, now: object, *, exact: bool) -> bool:
-    if exact or not isinstance(before, float) or not isinstance(now, float):
-        return before == now
-    return before == now or abs(before - now) <= LABEL_TOLERANCE * max(1.0, abs(before))
-
-
-def _steps_m_s2(config: Config) -> dict[str, float]:
-    """Return the converter's step of every signal column; without one, the rounding of float32 at full range."""
-    from siggen.sensing.measurement import power_of_two_from
-
-    steps: dict[str, float] = {}
-    for sensor in config.sensors:
-        bits = 24 if sensor.bits is None else sensor.bits
-        step = power_of_two_from(2.0 * sensor.range_m_s2 / 2.0**bits)
-        steps |= {signal_column(f"{sensor.name}_{axis}"): step for axis in sensor.axes}
-    return steps
+def _environment(manifest: Inventory, record_id: int) -> Mapping[str, str]:
+    owners = (shard for shard in manifest.shards if in_ranges(record_id, shard.records))
+    return next((manifest.environments[shard.environment] for shard in owners), {})
 
 
 def problem_lines(mismatches: Sequence[Mismatch]) -> list[str]:

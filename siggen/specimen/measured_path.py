@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.config import MeasuredPath
+from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.config.problems import received_text
 from siggen.errors import Problem
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
@@ -38,6 +39,9 @@ INPUTS = tuple(f"{place}/{axis}" for place in ("pinion_bearing", "gear_bearing")
 MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
+
+NUMBER_BYTES = 8
+"""Of a number in a file of numpy."""
 
 SINGLE = "f4;"
 """Before a response whose numbers are float32."""
@@ -139,10 +143,10 @@ def _read(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, str]:
     if not isinstance(name, str):
         raise ResponseRefusal(received_text(name), "allowed: the path of a CSV, Parquet or npz file")
     try:
-        content = (folder / name).read_bytes()
+        content = data_file_bytes(folder / name)
     except OSError as error:
         raise ResponseRefusal(
-            f"'{name}', which cannot be read ({error.strerror})", f"allowed: a file in {folder}"
+            f"'{shortened_path(name)}', which cannot be read ({error.strerror})", f"allowed: a file in {folder}"
         ) from None
     digest = hashlib.sha256(content).hexdigest()
     expected = path.get("sha256")
@@ -164,16 +168,26 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
     try:
         match ending:
             case ".npz":
+                # half as many as the bytes could be: names and headers count as well
+                _check_size(sum(one.file_size for one in zipfile.ZipFile(source).infolist()) // (2 * NUMBER_BYTES))
                 return {name: _numbers(name, values) for name, values in np.load(source, allow_pickle=False).items()}
             case ".csv":
                 table = pyarrow.csv.read_csv(source)
             case ".parquet":
+                extent = pyarrow.parquet.read_metadata(source)
+                _check_size(extent.num_rows * extent.num_columns)
                 table = pyarrow.parquet.read_table(source)
             case _:
                 raise ResponseRefusal(f"the ending '{ending}'", "allowed: .csv, .parquet, .npz")
     except (pa.ArrowInvalid, ValueError, OSError, zipfile.BadZipFile) as error:
         raise ResponseRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
     return {name: _numbers(name, table[name].to_numpy()) for name in table.column_names}
+
+
+def _check_size(numbers: int) -> None:
+    """Refuse more numbers than a response may have; before they are unpacked, a small file can hold very many."""
+    if numbers > MOST_NUMBERS:
+        raise ResponseRefusal(f"{numbers} numbers", f"allowed: at most {MOST_NUMBERS}")
 
 
 def _own(columns: dict[str, FloatArray], sensor: str) -> dict[str, FloatArray]:
@@ -194,8 +208,7 @@ def _numbers(name: str, values: NDArray[Any]) -> FloatArray:
 def _response(columns: Mapping[str, FloatArray]) -> FrequencyResponse:
     if FREQUENCY not in columns:
         raise ResponseRefusal(f"the columns {', '.join(columns)}"[:200], f"allowed: a column {FREQUENCY}")
-    if sum(values.size for values in columns.values()) > MOST_NUMBERS:
-        raise ResponseRefusal(f"{sum(v.size for v in columns.values())} numbers", f"allowed: at most {MOST_NUMBERS}")
+    _check_size(sum(values.size for values in columns.values()))
     parts: dict[tuple[str, str], dict[str, FloatArray]] = {}
     for name, values in columns.items():
         if name == FREQUENCY:

@@ -45,7 +45,7 @@ def test_added_or_missing_bytes_break_the_seal() -> None:
 
 def test_the_manifest_promises_every_other_file_but_run_json(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
-    manifest = read_manifest(LocalFolder(tmp_path))
+    manifest = read_manifest(LocalFolder(tmp_path)).content
     on_disk = sorted(p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file())
     assert on_disk == FAKE_FILES
     assert sorted(manifest["files"]) == [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")]
@@ -57,7 +57,7 @@ def test_the_manifest_promises_every_other_file_but_run_json(tmp_path: Path) -> 
 
 def test_counts_are_per_split_and_state_and_failures_are_listed(tmp_path: Path) -> None:
     write_fake_set(tmp_path, simulation=simulate_with_failures)
-    manifest = read_manifest(LocalFolder(tmp_path))
+    manifest = read_manifest(LocalFolder(tmp_path)).content
     assert manifest["identity"] == fake_config().identity
     assert manifest["rows"] == 27
     assert [failure["record_id"] for failure in manifest["failures"]] == [3, 8, 10]

@@ -126,7 +126,7 @@ def test_reading_loads_neither_physics_nor_the_configuration_model(folder: Path)
 import sys, siggen
 dataset = siggen.open(sys.argv[1])
 dataset.labels(), dataset.damage(), dataset.record(0), next(dataset.records())
-slow = {"numba", "scipy", "pydantic", "matplotlib", "torch", "siggen.config", "siggen.planning.plan"}
+slow = {"numba", "scipy", "matplotlib", "torch", "siggen.config", "siggen.planning.plan"}
 print(sorted(slow & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)

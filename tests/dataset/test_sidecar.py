@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dataset.id_ranges import IdRanges, id_ranges, in_ranges
-from siggen.dataset.sidecar import committed, read_sidecar
+from siggen.dataset.sidecar import Sidecar, committed, read_sidecar
 from siggen.dataset.storage import LocalFolder
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
@@ -63,10 +63,10 @@ def first_specimen(storage: LocalFolder) -> int:
 
 def test_a_whole_shard_of_the_same_set_is_taken_over(storage: LocalFolder) -> None:
     first = first_specimen(storage)
-    assert committed(storage, "train-00000", IDENTITY, ((first, first),)) is not None
-    assert committed(storage, "train-00000", "0" * 64, ((first, first),)) is None
-    assert committed(storage, "train-00000", IDENTITY, ((first, first + 1),)) is None
-    assert committed(storage, "train-00009", IDENTITY, ((first, first),)) is None
+    assert isinstance(committed(storage, "train-00000", IDENTITY, ((first, first),)), Sidecar)
+    assert "another set" in str(committed(storage, "train-00000", "0" * 64, ((first, first),)))
+    assert "another set" in str(committed(storage, "train-00000", IDENTITY, ((first, first + 1),)))
+    assert committed(storage, "train-00009", IDENTITY, ((first, first),)) == ""
 
 
 @pytest.mark.parametrize("damage", ["flip", "truncate", "delete rows", "delete sidecar", "break sidecar"])
@@ -86,4 +86,6 @@ def test_a_damaged_shard_is_not_taken_over(storage: LocalFolder, damage: str) ->
             sidecar.unlink()
         case "break sidecar":
             sidecar.write_text(sidecar.read_text()[:-20])
-    assert committed(storage, "train-00000", IDENTITY, ((first, first),)) is None
+    found = committed(storage, "train-00000", IDENTITY, ((first, first),))
+    assert isinstance(found, str)
+    assert ("train-00000" in found) == (damage != "delete sidecar"), "an absent shard needs no reason"

@@ -57,7 +57,7 @@ def test_the_error_is_found_in_every_state_and_the_set_stays_as_it_is(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = file_bytes(folder)
-    assert read_manifest(LocalFolder(folder))["integration_tolerance"] == 1e-3
+    assert read_manifest(LocalFolder(folder)).content["integration_tolerance"] == 1e-3
     result = measured(folder, monkeypatch, 5e-4, "--json")
     assert result.exit_code == 0
     found = json.loads(result.stdout)["physics"]

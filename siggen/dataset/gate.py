@@ -1,0 +1,135 @@
+"""The gate through which every manifest and sidecar comes, whoever wrote it: sealed JSON in, typed facts out.
+
+A seal shows accidents, not intent: anybody can change a manifest and seal it again. So types, ranges and names are
+checked before anything is done with them, and how they fit together. What the files hold is checked when one is read;
+nothing here touches them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache, partial
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from siggen.columns.versions import READ_VERSIONS
+from siggen.dataset.inventory import HashedFiles, Inventory, ListedShard, SidecarFacts
+from siggen.dataset.object_name import data_name, internals_name, sidecar_name
+from siggen.dataset.seal import DIGEST, check_seal
+from siggen.errors import VerificationError
+
+SHOWN_PROBLEMS = 3
+SHOWN_CHARACTERS = 60
+MOST_SAMPLES = 2**31
+
+Facts = TypeVar("Facts", HashedFiles, Inventory, SidecarFacts)
+ADAPTERS: Mapping[type, Callable[[], TypeAdapter[Any]]] = {
+    kind: cache(partial(TypeAdapter, kind)) for kind in (HashedFiles, Inventory, SidecarFacts)
+}
+"""Each is built when the first of its files is read."""
+
+
+def manifest_facts(name: str, stored: bytes) -> HashedFiles:
+    """Return what a manifest says: an Inventory if files of its version are read here, else what every version says.
+
+    Raises
+    ------
+    VerificationError
+        If it was changed after it was sealed, or says what no set can be.
+    """
+    check_seal(name, stored)
+    facts = _typed(HashedFiles, name, stored)
+    if facts.schema_version in READ_VERSIONS:
+        facts = _typed(Inventory, name, stored)
+        _refuse(name, list(_unfit(facts)))
+    try:
+        content = json.loads(stored)
+    except (ValueError, RecursionError) as error:
+        raise VerificationError(f"{name} is not readable as JSON ({error})") from error
+    del content[DIGEST]
+    return replace(facts, content=content)
+
+
+def sidecar_facts(name: str, stored: bytes) -> SidecarFacts:
+    """Return what the sidecar of this object name says.
+
+    Raises
+    ------
+    VerificationError
+        If it was changed after it was sealed, or says what no shard can be.
+    """
+    check_seal(name, stored)
+    facts = _typed(SidecarFacts, name, stored)
+    internals = "" if facts.internals is None else facts.internals.name
+    _refuse(name, list(_unfit_shard(facts.shard, facts.split, facts.data.name, internals)))
+    if sidecar_name(facts.shard) != name:
+        raise VerificationError(f"{name}: shard: received {facts.shard}; allowed: the shard that the file is named by")
+    return facts
+
+
+def _typed(kind: type[Facts], name: str, stored: bytes) -> Facts:
+    try:
+        typed: Facts = ADAPTERS[kind]().validate_json(stored, strict=True)
+        return typed
+    except ValidationError as error:
+        problems = [
+            f"{'.'.join(str(part)[:SHOWN_CHARACTERS] for part in one['loc']) or 'the whole'}: received "
+            f"{repr(one['input'])[:SHOWN_CHARACTERS]}; {_allowed(one['msg'])}"
+            for one in error.errors(include_url=False)
+        ]
+    _refuse(name, problems)
+    raise AssertionError("pydantic names at least one problem")
+
+
+def _allowed(message: str) -> str:
+    """Return what pydantic says in the words of siggen."""
+    return message.removeprefix("Value error, ").replace("Input should be ", "allowed: ")
+
+
+def _refuse(name: str, problems: list[str]) -> None:
+    if problems:
+        more = f"; and {len(problems) - SHOWN_PROBLEMS} more" if len(problems) > SHOWN_PROBLEMS else ""
+        raise VerificationError(f"{name}: {'; '.join(problems[:SHOWN_PROBLEMS])}{more}")
+
+
+def _unfit(facts: Inventory) -> Iterator[str]:
+    """Yield how a manifest contradicts itself."""
+    for shard in facts.shards:
+        yield from _unfit_listing(facts, shard)
+    if len({shard.shard for shard in facts.shards}) != len(facts.shards):
+        yield "shards: received one twice; allowed: every shard once"
+    for split in sorted({*facts.splits, *(shard.split for shard in facts.shards)}):
+        listed = sum(shard.rows for shard in facts.shards if shard.split == split)
+        counted = facts.splits[split].rows if split in facts.splits else "no split"
+        if listed != counted:
+            yield f"splits.{split}: received {counted}; allowed: {listed} rows, as in its shards"
+    if not facts.shards or sum(shard.rows for shard in facts.shards) != facts.rows:
+        yield f"rows: received {facts.rows}; allowed: those of all shards, of which there is at least one"
+    if not facts.channels or len({channel.column for channel in facts.channels}) != len(facts.channels):
+        yield "channels: received none, or two of one column; allowed: every channel once"
+    if facts.fs_hz * facts.duration_s > MOST_SAMPLES:
+        yield f"duration_s: received {facts.duration_s:g}; allowed: at most {MOST_SAMPLES} samples"
+
+
+def _unfit_listing(facts: Inventory, shard: ListedShard) -> Iterator[str]:
+    yield from _unfit_shard(shard.shard, shard.split, shard.file, shard.internals or "")
+    if bool(shard.internals) != bool(facts.internals):
+        yield f"{shard.shard}: internals: allowed: in all shards, with the quantities named in the manifest, or in none"
+    if shard.environment >= len(facts.environments):
+        yield f"{shard.shard}: environment: received {shard.environment}; allowed: below {len(facts.environments)}"
+    for file in filter(None, (shard.file, shard.internals, sidecar_name(shard.shard))):
+        if file not in facts.files:
+            yield f"files: received none named {file}; allowed: every file of a shard"
+
+
+def _unfit_shard(shard: str, split: str, data: str, internals: str) -> Iterator[str]:
+    """Yield how the files of a shard are not where its name says."""
+    if shard.rpartition("-")[0] != split:
+        yield f"{shard}: split: received {split}; allowed: the one in its name"
+    if data != data_name(shard):
+        yield f"{shard}: received the file {data[:SHOWN_CHARACTERS]}; allowed: {data_name(shard)}"
+    if internals and internals != internals_name(shard):
+        yield f"{shard}: received the file {internals[:SHOWN_CHARACTERS]}; allowed: {internals_name(shard)}"

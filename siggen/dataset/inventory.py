@@ -1,0 +1,150 @@
+"""What a manifest and a sidecar say: the types, ranges and names that `gate` lets through."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field, SkipValidation
+
+from siggen.columns.record import Channel, RecordFailure
+from siggen.columns.versions import FIRST_SIMULATION_VERSION
+from siggen.dataset.id_ranges import Range
+from siggen.dataset.object_name import object_name
+
+LARGEST = 2**53
+
+
+def _ascending(ranges: tuple[Range, ...]) -> tuple[Range, ...]:
+    last = -1
+    for first, end in ranges:
+        if not last < first <= end:
+            raise ValueError("allowed: ascending ranges of ids, first and last one of each")
+        last = end
+    return ranges
+
+
+Count = Annotated[int, Field(ge=0, le=LARGEST)]
+Quantity = Annotated[float, Field(gt=0, le=1e12, allow_inf_nan=False)]
+Text = Annotated[str, Field(max_length=20_000)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,219}$")]
+ColumnName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,499}$")]
+Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+Blocks = Annotated[str, Field(pattern=r"^([0-9a-f]{8})*$")]
+ObjectName = Annotated[str, AfterValidator(object_name)]
+Split = Annotated[str, Field(pattern=r"^(train|validation|test)$")]
+ShardName = Annotated[str, Field(pattern=r"^(train|validation|test)-[0-9]{5,12}$")]
+Ranges = Annotated[tuple[tuple[Count, Count], ...], AfterValidator(_ascending)]
+Environment = dict[Name, Text]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PromisedFile:
+    """Size and hash of a file of a set; `crc32_per_64_kib` as `checked_file` has it, for tables alone."""
+
+    bytes: Count
+    sha256: Sha256
+    crc32_per_64_kib: Blocks | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListedShard:
+    """A shard of a finished set: its files, its inclusive ranges of ids, the number of its environment."""
+
+    shard: ShardName
+    split: Split
+    file: ObjectName
+    rows: Count
+    specimens: Ranges
+    records: Ranges
+    environment: Count
+    internals: ObjectName | None = None
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The files of rows."""
+        return (self.file,) if self.internals is None else (self.file, self.internals)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListedSplit:
+    """Counts of a split."""
+
+    specimens: Count
+    rows: Count
+    failed: Count
+    states: dict[Name, Count]
+    shards: Count
+    bytes: Count
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListedQuantity:
+    """An internal quantity that a set stores."""
+
+    name: ColumnName
+    unit: Text
+    meaning: Text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SidecarTable:
+    """A file that a sidecar commits; `crc32_per_64_kib` is None in sets from before there were checksums."""
+
+    name: ObjectName
+    bytes: Count
+    sha256: Sha256
+    rows: Count
+    crc32_per_64_kib: Blocks | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SidecarFacts:
+    """Content of a sidecar, whatever version wrote it."""
+
+    schema_version: Text
+    shard: ShardName
+    split: Split
+    identity: Sha256
+    data: SidecarTable
+    specimens: Ranges
+    records: Ranges
+    rows_per_state: dict[Name, Count]
+    failures: tuple[RecordFailure, ...]
+    environment: Environment
+    internals: SidecarTable | None = None
+    simulation_version: Count = FIRST_SIMULATION_VERSION
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HashedFiles:
+    """What the manifest of every version says; `content` is all of it, as JSON has it."""
+
+    schema_version: Text
+    files: dict[ObjectName, PromisedFile]
+    identity: Sha256
+    rows: Count
+    simulation_version: Count = FIRST_SIMULATION_VERSION
+    content: Annotated[dict[str, Any], SkipValidation] = field(default_factory=dict)
+
+    @property
+    def has_checksums(self) -> bool:
+        """Whether files have checksums of their blocks; tables and shards were given them together."""
+        return any(facts.crc32_per_64_kib is not None for facts in self.files.values())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inventory(HashedFiles):
+    """What the manifest of a set of a version that is read here says beside."""
+
+    name: Name
+    seed: int
+    specimens: Count
+    fs_hz: Quantity
+    duration_s: Quantity
+    splits: dict[Split, ListedSplit]
+    channels: tuple[Channel, ...]
+    shards: tuple[ListedShard, ...]
+    environments: tuple[Environment, ...]
+    failures: tuple[RecordFailure, ...]
+    internals: tuple[ListedQuantity, ...] = ()

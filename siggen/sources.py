@@ -1,0 +1,20 @@
+"""Digest of source files of this package: the same in a checkout and in a wheel of the same sources."""
+
+from __future__ import annotations
+
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent
+CHARACTERS = 16
+
+
+@cache
+def sources_digest(patterns: tuple[str, ...]) -> str:
+    """Return 16 hexadecimal digits of the names and contents of the files of the package that match."""
+    digest = sha256()
+    for path in sorted({path for pattern in patterns for path in PACKAGE.glob(pattern)}):
+        name = path.relative_to(PACKAGE).as_posix()
+        digest.update(f"{name} ".encode() + sha256(path.read_bytes()).digest())
+    return digest.hexdigest()[:CHARACTERS]
