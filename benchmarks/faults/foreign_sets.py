@@ -6,8 +6,6 @@ The stranger knows where a file beside the set is, and everything in it: names, 
 from __future__ import annotations
 
 import contextlib
-import json
-import os
 import shutil
 import signal
 import sys
@@ -19,36 +17,19 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
-from typing import Any
 
 import yaml
 
 import siggen
-from benchmarks.faults.mutated_configurations import VALUES
+from benchmarks.faults.changed_sets import SECRET, change
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import QUICKSTART, shipped
-from siggen.dataset.checked_file import checksums
-from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, SiggenError, VerificationError
 
 COUNT, QUICK_COUNT = 2_000, 40
 LIMIT_S = 120
 SAID_EVERY = 50
 OVERRIDES = ("specimens=6", "repeats=1", "duration_s=0.4", "internals={quantities: [mesh_force_n]}")
-SECRET = b"canary: nobody has read this\n" * 40
-NAMES = (
-    *("../canary/secret.txt", "data/../../canary/secret.txt", "./config.yaml", "data//x", "/etc/passwd", "..", "", "."),
-    *(
-        "data/train-00000.parquet/..",
-        "..\\canary\\secret.txt",
-        "C:/secret.txt",
-        "data/\0",
-        "x" * 300,
-        "a/" * 2000 + "x",
-    ),
-    *("data/train-00000.parquet", "config.yaml", "README.md", "manifest.json", "run.json", ".bashrc", "data"),
-    *("\ud800", "\u202etxt", "data/train-00000.json", "shards/train-00000.json", "internals/train-00000.parquet"),
-)
 FACTS = {
     "license": "cc-by-4.0",
     "title": "A set",
@@ -236,117 +217,3 @@ class _TooLong(BaseException):
 
 def _too_long(_number: int, _frame: object) -> None:
     raise _TooLong
-
-
-def change(folder: Path, chance: Random) -> None:
-    """Change a set in one to three places, and seal it again."""
-    manifest = unsealed("manifest.json", (folder / "manifest.json").read_bytes())
-    for _ in range(chance.randint(1, 3)):
-        kind = chance.random()
-        if kind < 0.55:
-            _other_value(manifest, chance)
-        elif kind < 0.75:
-            _other_sidecar(folder, chance)
-        elif kind < 0.88:
-            _other_name(manifest, chance)
-        else:
-            _other_file(folder, chance)
-    _seal(folder, manifest, fitting=chance.random() < 0.8)
-
-
-def _other_value(tree: Any, chance: Random) -> None:
-    """Change one value or key somewhere in a tree."""
-    while True:
-        keys = list(tree) if isinstance(tree, dict) else list(range(len(tree)))
-        if not keys:
-            return
-        key = chance.choice(keys)
-        if isinstance(tree[key], (dict, list)) and tree[key] and chance.random() < 0.8:
-            tree = tree[key]
-            continue
-        break
-    match chance.randrange(5):
-        case 0:
-            del tree[key]
-        case 1 if isinstance(tree, dict):
-            tree[chance.choice(NAMES) if chance.random() < 0.5 else f"{key}_"] = tree.pop(key)
-        case 2 if isinstance(tree[key], (int, float)):
-            tree[key] = tree[key] * chance.choice((-1, 0, 0.5, 2, 1e300)) + chance.choice((0, 1, -1))
-        case 3 if isinstance(tree[key], str):
-            tree[key] = chance.choice(NAMES)
-        case _:
-            tree[key] = chance.choice(VALUES)
-
-
-def _other_sidecar(folder: Path, chance: Random) -> None:
-    file = chance.choice(sorted((folder / "shards").glob("*.json")))
-    with contextlib.suppress(OSError, VerificationError):
-        content = unsealed(file.name, file.read_bytes())
-        _other_value(content, chance)
-        file.write_bytes(_sealed(content))
-
-
-def _other_name(manifest: dict[str, Any], chance: Random) -> None:
-    """Add a file, or give a shard another one, with the hash of the canary where that is meant."""
-    name = chance.choice(NAMES)
-    if isinstance(manifest.get("files"), dict):
-        manifest["files"][name] = {"bytes": len(SECRET), "sha256": _facts(SECRET)}
-    shards = manifest.get("shards")
-    if isinstance(shards, list) and shards and chance.random() < 0.5:
-        shard = chance.choice(shards)
-        if isinstance(shard, dict):
-            shard[chance.choice(("file", "internals", "shard"))] = name
-
-
-def _other_file(folder: Path, chance: Random) -> None:
-    """Put a link, a pipe or a folder in the place of a file or folder."""
-    places = [path for path in sorted(folder.rglob("*")) if path.name != "manifest.json"]
-    path = chance.choice(places)
-    if not path.exists() or path.is_symlink():
-        return
-    kind = chance.randrange(6)
-    if path.is_dir():
-        shutil.rmtree(path)
-        path.symlink_to(folder.parent / "canary")
-        return
-    path.unlink()
-    match kind:
-        case 0 | 1:
-            path.symlink_to(Path(os.path.relpath(folder.parent / "canary" / "secret.txt", path.parent)))
-        case 2:
-            path.symlink_to(path.name)
-        case 3:
-            os.mkfifo(path)
-        case 4:
-            path.mkdir()
-        case _:
-            path.symlink_to("/dev/zero")
-
-
-def _seal(folder: Path, manifest: dict[str, Any], *, fitting: bool) -> None:
-    """Write the manifest, with sizes and hashes of what is there now if they are to fit."""
-    files = manifest.get("files")
-    for name in list(files) if fitting and isinstance(files, dict) else ():
-        path = folder / name if "\0" not in name and len(name) < 200 else folder / "nothing"
-        with contextlib.suppress(OSError, ValueError):
-            if path.is_file() and isinstance(files[name], dict):
-                with path.open("rb") as file:
-                    sums = checksums(file)
-                files[name] |= {"bytes": path.stat().st_size, "sha256": sums.sha256}
-                if "crc32_per_64_kib" in files[name]:
-                    files[name]["crc32_per_64_kib"] = sums.crc32_per_64_kib
-    (folder / "manifest.json").write_bytes(_sealed(manifest))
-
-
-def _facts(content: bytes) -> str:
-    import hashlib
-
-    return hashlib.sha256(content).hexdigest()
-
-
-def _sealed(content: dict[str, Any]) -> bytes:
-    """Seal what a stranger wrote, lone surrogates and all."""
-    try:
-        return sealed(content)
-    except (UnicodeEncodeError, TypeError):
-        return json.dumps(content).encode()

@@ -124,7 +124,13 @@ class LocalFolder:
         """Yield a hidden path in the target's folder; flushed to disk and renamed when the block ends."""
         target = self._file(name)
         self._check_links(target.parent)
-        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            is_taken = target.is_dir() and not target.is_symlink()
+        except (FileExistsError, NotADirectoryError):
+            is_taken = True
+        if is_taken:
+            raise DatasetError(f"{target}: a folder stands where a file belongs, or a file in its way; remove it")
         part = target.with_name(f".{target.name}.{secrets.token_hex(4)}{LEFTOVER_SUFFIX}")
         try:
             yield part
@@ -181,8 +187,7 @@ class LocalFolder:
     def delete(self, name: str) -> None:
         """Delete the file if it is there, and its folders that are empty then."""
         file = self._file(name)
-        if not file.parent.resolve().is_relative_to(self.path.resolve()):
-            raise DatasetError(f"{file} leads out of {self.path} by a link; nothing was deleted")
+        self._check_links(file.parent)
         file.unlink(missing_ok=True)
         for folder in file.parents:
             if folder == self.path or not folder.is_dir() or any(folder.iterdir()):
@@ -191,7 +196,9 @@ class LocalFolder:
 
     def delete_leftovers(self) -> list[str]:
         """Delete half-written files; call it only while holding `writing()`."""
-        parts = sorted(self.path.rglob(f".*{LEFTOVER_SUFFIX}"))
+        parts = sorted(
+            path for path in self.path.rglob(f".*{LEFTOVER_SUFFIX}") if path.is_symlink() or not path.is_dir()
+        )
         for part in parts:
             part.unlink(missing_ok=True)
         return [part.relative_to(self.path).as_posix() for part in parts]

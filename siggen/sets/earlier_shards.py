@@ -18,7 +18,7 @@ from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.reading import as_internals, as_record, row_of
 from siggen.dataset.shard import FileFacts
-from siggen.dataset.sidecar import Sidecar, committed
+from siggen.dataset.sidecar import Sidecar, committed, promised_shard
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
@@ -89,6 +89,7 @@ class EarlierShards:
             check()
             specimens, records = ranges(shard)
             found = committed(self.storage, shard.key, self.again.config.identity, specimens)
+            found = found if isinstance(found, str) else _fitting(self.again.config, shard, found)
             if isinstance(found, str):
                 self.notes.extend([f"{shard.key} is made again: {found}"] if found else [])
             elif fingerprint(found.environment) in self.trusted:
@@ -99,6 +100,22 @@ class EarlierShards:
             check()
             self.notes.append(f"{verdict}; they are {'made again' if verdict.difference else 'taken over'}")
             yield from (others[key] for key in verdict.shards if not verdict.difference)
+
+
+def promised(config: Config, storage: Storage, shard: ShardPlan) -> Sidecar | str:
+    """Return the sidecar of a planned shard, or why it cannot be used; its files are not read."""
+    found = promised_shard(storage, shard.key, config.identity, ranges(shard)[0])
+    return found if isinstance(found, str) else _fitting(config, shard, found)
+
+
+def _fitting(config: Config, shard: ShardPlan, sidecar: Sidecar) -> Sidecar | str:
+    """Return a sidecar whose counts can be those of the shard, or why they cannot."""
+    states = {state.name for state in config.states}
+    rows = sum(sidecar.rows_per_state.values())
+    counts = (rows, rows + len(sidecar.failures), set(sidecar.rows_per_state), sidecar.records)
+    if counts != (sidecar.data.rows, shard.record_count, states, tuple(ranges(shard)[1])):
+        return f"{sidecar.name} counts other records than the shard has"
+    return sidecar
 
 
 def verdicts(stored: Sequence[StoredShard], here: Mapping[str, str], again: Again) -> list[Verdict]:

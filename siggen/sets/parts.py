@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.folder import config_bytes, is_finished
 from siggen.dataset.manifest import CONFIG
-from siggen.dataset.sidecar import Sidecar, promised_shard
+from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage, copy_object
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
@@ -22,7 +22,7 @@ from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.planning.plan import ShardPlan
-from siggen.sets.earlier_shards import Again, StoredShard, verdicts
+from siggen.sets.earlier_shards import Again, StoredShard, promised, verdicts
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
@@ -190,7 +190,7 @@ def _copy_missing(run: SetRun, sources: Sequence[Storage], target: Storage) -> N
 
 
 def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
-    found = promised_shard(storage, shard.key, run.config.identity, ranges(shard)[0])
+    found = promised(run.config, storage, shard)
     return None if isinstance(found, str) else found
 
 

@@ -108,7 +108,7 @@ def shifted(config: Config, ids: Sequence[int], by_m_s2: float) -> list[Record |
 
 
 def elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(siggen.sets.verification, "environment", lambda: {**environment(), "cpu": "another"})
+    monkeypatch.setattr(siggen.sets.verification, "environment", lambda: {**environment(), "fingerprint": "another"})
 
 
 def test_here_a_single_sample_that_differs_by_one_step_is_a_mismatch(reference: Path) -> None:
