@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from siggen.checks.loading import load_config
     from siggen.dataset.card_section import write_card_section
     from siggen.dataset.reading import open
+    from siggen.dataset.spreadsheet import write_csv
     from siggen.planning.plan import plan
     from siggen.record.simulation import simulate
     from siggen.sets.extension import extend
@@ -33,6 +34,7 @@ __all__ = [
     "plan",
     "simulate",
     "write_card_section",
+    "write_csv",
     "write_recorded_set",
 ]
 
@@ -48,6 +50,7 @@ _HOMES = {
     "plan": ("siggen.planning.plan", "plan"),
     "simulate": ("siggen.record.simulation", "simulate"),
     "write_card_section": ("siggen.dataset.card_section", "write_card_section"),
+    "write_csv": ("siggen.dataset.spreadsheet", "write_csv"),
     "write_recorded_set": ("siggen.sets.recorded_set", "write_recorded_set"),
 }
 

@@ -18,6 +18,7 @@ from diagnostics.explore.payload import page_payload, set_source
 from diagnostics.explore.predictions import predicted_labels, seen_sentence
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
+from diagnostics.page.security_policy import security_policy
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
 
@@ -161,10 +162,18 @@ def _columns(
 def explorer_page(facts: dict[str, Any], payload: dict[str, Any]) -> str:
     """Return the page; every text of the set is escaped, in the markup by Jinja, in the data as JSON escapes."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from markupsafe import Markup
 
+    scripts = _files(SCRIPTS)
+    policy = Markup(security_policy([str(scripts)], asks_its_server=bool(facts["served"])))
     environment = Environment(loader=FileSystemLoader(PAGE), autoescape=True, undefined=StrictUndefined)
     return environment.get_template("explorer.html").render(
-        facts=facts, payload=payload, data=script_json(payload), scripts=_files(SCRIPTS), styles=_files(STYLES)
+        facts=facts,
+        payload=payload,
+        data=script_json(payload),
+        policy=policy,
+        scripts=scripts,
+        styles=_files(STYLES),
     )
 
 

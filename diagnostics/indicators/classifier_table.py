@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
+import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
@@ -140,9 +141,7 @@ def write_table(table: pa.Table, path: Path) -> None:
     check_suffix(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".csv":
-        from pyarrow import csv
-
-        csv.write_csv(table, path)
+        siggen.write_csv(table, path)
         return
     from pyarrow import parquet
 

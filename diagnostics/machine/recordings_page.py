@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+import siggen
 from diagnostics.machine.recording_indicators import RecordingIndicators, indicator_matrix, indicator_title
 from diagnostics.page import html
 from diagnostics.page.style import png_bytes, styled
@@ -19,12 +20,11 @@ TABLE, PAGE = "indicators.csv", "indicators.html"
 def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path:
     """Write `indicators.csv`, one row per recording and channel, and `indicators.html`; return the page's path."""
     import pyarrow as pa
-    from pyarrow import csv
 
     folder.mkdir(parents=True, exist_ok=True)
     rows = [_row(one, channel) for one in found for channel in one.recording.channels]
     columns = list(dict.fromkeys(name for row in rows for name in row))
-    csv.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
+    siggen.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
     parts = [html.heading("Indicators of recordings", 1), _overview(found)]
     for one in found:
         parts += _section(one)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from html import escape
 
 from diagnostics.page.scripts import HINT_SCRIPT, SORT_SCRIPT
+from diagnostics.page.security_policy import security_policy
 from diagnostics.page.style_sheet import style_sheet
 
 PRINTED_ROWS = 20
@@ -59,12 +60,14 @@ class Cell:
 
 def page(title: str, parts: Sequence[str]) -> str:
     """Return the whole page, its figures and tables numbered."""
+    script = HINT_SCRIPT + SORT_SCRIPT
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"{security_policy([script])}"
         f"<title>{without_turns(escape(title))}</title><style>{style_sheet(PRINTED_ROWS)}</style></head>\n<body><main>\n"
         + numbered("\n".join(parts))
-        + f"\n</main><script>{HINT_SCRIPT}{SORT_SCRIPT}</script></body></html>\n"
+        + f"\n</main><script>{script}</script></body></html>\n"
     )
 
 

@@ -24,7 +24,6 @@ TAGS = (
     "synthetic",
     "vibration",
     "gearbox",
-    "gear-pitting",
     "condition-monitoring",
     "predictive-maintenance",
     "time-series",
@@ -71,11 +70,27 @@ def card(config: Config, sidecars: Sequence[Sidecar], quantities: Sequence[Colum
     return "\n".join(section for section in sections if section)
 
 
+def faults(config: Config) -> tuple[str, ...]:
+    """Return the kinds of fault of a set, in the order of its states; none of a set of healthy gearboxes."""
+    return tuple(dict.fromkeys(state.fault for state in config.states if state.damage is not None))
+
+
+def tags(config: Config) -> tuple[str, ...]:
+    """Return the words by which repositories find a set."""
+    return (*TAGS, *(f"gear-{fault}" for fault in faults(config)))
+
+
+def faults_text(config: Config) -> str:
+    """Return the kinds of fault as the words of a title."""
+    *first, last = faults(config) or ("healthy gears alone",)
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def _front_matter(config: Config, splits: Sequence[str], rows: int, *, with_internals: bool) -> str:
     internals = [_view("internals", {split: f"internals/{split}-*.parquet" for split in splits})]
     facts = {
-        "pretty_name": f"{config.name}: synthetic gearbox vibration with tooth pitting",
-        "tags": list(TAGS),
+        "pretty_name": f"{config.name}: synthetic gearbox vibration, {faults_text(config)}",
+        "tags": list(tags(config)),
         "size_categories": [next((size for limit, size in SIZE_LIMITS if rows < limit), LARGEST_SIZE)],
         "configs": [
             _view("signals", {split: f"data/{split}-*.parquet" for split in splits}, default=True),

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.parquet
 
+from siggen.dataset.spreadsheet import write_csv
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import UsageError
 
-WRITERS = {".csv": pyarrow.csv.write_csv, ".parquet": pyarrow.parquet.write_table}
+WRITERS = {".csv": write_csv, ".parquet": pyarrow.parquet.write_table}
 
 
 def check_table_file(path: Path) -> Path:

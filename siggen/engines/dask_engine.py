@@ -81,11 +81,11 @@ class DaskEngine:
             with Client(self.address) as client:
                 yield client
             return
-        options = {"threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50, "env": dict(ONE_THREAD)}
+        options = {"host": "127.0.0.1", "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
         with ExitStack() as stack:
             stack.enter_context(ending_with_this())  # to the end: those that die are replaced
             try:
-                cluster = stack.enter_context(LocalCluster(n_workers=self.workers, **options))
+                cluster = stack.enter_context(LocalCluster(n_workers=self.workers, env=dict(ONE_THREAD), **options))
                 client = stack.enter_context(Client(cluster))
             except (RuntimeError, OSError, TimeoutError) as error:
                 raise EngineError(

@@ -102,7 +102,7 @@ class RayEngine:
         if self.address is None:
             memory = RESULT_BYTES * max(2, self.workers)
             local = {"num_cpus": self.workers, "include_dashboard": False, "object_store_memory": memory}
-            options |= {"address": "local", **local}
+            options |= {"address": "local", "_node_ip_address": "127.0.0.1", **local}
             if sys.platform == "linux":  # elsewhere nothing of it outlives the start of another program
                 options["runtime_env"]["py_executable"] = BOUND_PYTHON
             options["_system_config"] = LOOKS
@@ -111,7 +111,7 @@ class RayEngine:
         logging.getLogger("ray").setLevel(logging.ERROR)
         # Ray prints what befalls its workers to stdout, where a command's result stands alone
         with redirect_stdout(sys.stderr):
-            with _own_signals():
+            with _own_signals(), _loopback():
                 try:
                     ray.init(log_to_driver=False, configure_logging=False, **options)
                 except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
@@ -120,6 +120,27 @@ class RayEngine:
                 yield ray
             finally:
                 ray.shutdown()
+
+
+@contextmanager
+def _loopback() -> Iterator[None]:
+    """Let Ray keep the loopback address that it is given.
+
+    Its processes listen on all interfaces unless that is their address. Ray turns it into the machine's own, so that
+    others can reach it: here nobody shall. Where a later Ray has no such function, its default stays.
+    """
+    from ray._private import services
+
+    name = "resolve_ip_for_localhost"
+    before = getattr(services, name, None)
+    if before is None:
+        yield
+        return
+    setattr(services, name, lambda host: host)
+    try:
+        yield
+    finally:
+        setattr(services, name, before)
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa
 
 from siggen.config.path import MeasuredPath
-from siggen.dataset.card import TAGS
+from siggen.dataset.card import faults_text, tags
 from siggen.dataset.manifest import CARD, INJECTED, MANIFEST
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
@@ -175,7 +175,7 @@ def _texts(
 ) -> dict[str, bytes]:
     rows = dataset.inventory.rows
     description = (
-        f"{counted(rows, 'labelled acceleration record')} of a simulated spur gear pair with tooth pitting, "
+        f"{counted(rows, 'labelled acceleration record')} of a simulated spur gear pair, {faults_text(config)}, "
         f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "
         "Computed by siggen, not measured."
     )
@@ -185,8 +185,8 @@ def _texts(
     card = published_card(dataset.card(), config, facts, info, audit_section(config.identity, audit))
     return {
         CARD: card.encode(),
-        CROISSANT: _json(croissant(facts, description, TAGS, schemas, limits)),
-        DATACITE: _json(datacite_fields(facts, description, TAGS, size)),
+        CROISSANT: _json(croissant(facts, description, tags(config), schemas, limits)),
+        DATACITE: _json(datacite_fields(facts, description, tags(config), size)),
         ISA_PHM: _json(isa_phm(config, facts, description, dataset.manifest["channels"], _signal_files(dataset))),
     }
 

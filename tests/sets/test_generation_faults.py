@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -100,10 +101,9 @@ def test_a_signal_ends_with_130_committed_shards_and_a_hint(
     assert process.returncode == EXIT_INTERRUPTED
     kept = len(sidecars(tmp_path))
     # nothing but the one message: no traceback of a worker, no complaint of the interpreter
-    assert (
-        said
-        == f"stopped: {kept} of 5 shards of {tmp_path} are finished and stay; the same command continues from there\n"
-    )
+    form = rf"stopped: {kept} of 5 shards of {tmp_path} are finished and stay(, and \d+ records of others)?; "
+    lost = r"(nothing is lost|lost is what was under way, \d+ s of work \(of one worker \d+ s at most\))"
+    assert re.fullmatch(rf"{form}{lost}; the same command continues from there\n", said)
     assert 1 <= kept < 5
     assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
     assert write_fake_set(tmp_path).shards_taken_over == kept

@@ -14,6 +14,7 @@ from PIL import Image
 
 from diagnostics.page import html
 from diagnostics.page.html import Cell
+from diagnostics.page.security_policy import security_policy
 from diagnostics.page.style import (
     FAULT_COLOURS,
     WIDTH_IN,
@@ -126,11 +127,18 @@ def opened(page: str, tmp_path: Path, width: int = 1200) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
 
 
+def with_script(page: str, script: str) -> str:
+    """Add a script of the test to a page and to its policy; the page's own scripts stay under it."""
+    own = security_policy([script]).split("script-src ")[1].split(";")[0]
+    page = page.replace("script-src ", f"script-src {own} ", 1)
+    return page.replace("</body>", f"<script>{script}</script></body>")
+
+
 def sorted_names(clicks: str, tmp_path: Path) -> tuple[list[str], list[str]]:
     """Return the names of the rows and the states of the heads after clicks on heads."""
     page = html.page("x", [html.table(HEAD, ROWS, sortable=True)])
     clicked = f"var heads=document.querySelectorAll('thead button');[{clicks}].forEach(k=>heads[k].click())"
-    dom = opened(page.replace("</body>", f"<script>{clicked}</script></body>"), tmp_path)
+    dom = opened(with_script(page, clicked), tmp_path)
     names = re.findall(r'<th scope="row">(.*?)</th>', dom)
     return [name.replace("<wbr>", "") for name in names], re.findall(r'aria-sort="(\w+)"', dom)
 
@@ -152,7 +160,7 @@ def test_on_a_phone_wide_tables_scroll_in_their_own_box_and_the_page_does_not(tm
         "var root=document.documentElement,box=document.querySelector('.scroll');"
         "document.title=[root.scrollWidth<=window.innerWidth,box.scrollWidth>box.clientWidth,window.innerWidth]"
     )
-    page = html.page("x", [*parts, html.figure_grid([figure])]).replace("</body>", f"<script>{script}</script></body>")
+    page = with_script(html.page("x", [*parts, html.figure_grid([figure])]), script)
     found = re.search(r"<title>(.*?)</title>", opened(page, tmp_path, width=390))
     assert found is not None
     fits, scrolls, width = found.group(1).split(",")

@@ -1,0 +1,26 @@
+"""Pages run their own scripts alone: every script that stands in a page has its hash in the page's policy."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+
+from diagnostics.page.html import page
+from diagnostics.page.security_policy import security_policy
+
+
+def test_a_page_allows_its_own_scripts_and_no_network() -> None:
+    text = page("Title", ["<p>One</p>"])
+    (policy,) = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', text)
+    rules = dict(rule.split(" ", 1) for rule in policy.split("; "))
+    assert rules["default-src"] == "'none'"
+    assert "connect-src" not in rules
+    scripts = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+    assert rules["script-src"].split() == [f"'sha256-{found}'" for found in hashes]
+    assert text.index("Content-Security-Policy") < text.index("<style>")
+
+
+def test_a_page_with_a_server_may_ask_it_alone() -> None:
+    assert "connect-src 'self'" in security_policy(["let a;"], asks_its_server=True)
