@@ -43,6 +43,7 @@ MOST_NUMBERS = 400_000
 NUMBER_BYTES = 8
 """Of a number in a file of numpy."""
 
+
 SINGLE = "f4;"
 """Before a response whose numbers are float32."""
 
@@ -170,11 +171,12 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
             case ".npz":
                 # half as many as the bytes could be: names and headers count as well
                 _check_size(sum(one.file_size for one in zipfile.ZipFile(source).infolist()) // (2 * NUMBER_BYTES))
+                source.seek(0)
                 return {name: _numbers(name, values) for name, values in np.load(source, allow_pickle=False).items()}
             case ".csv":
                 table = pyarrow.csv.read_csv(source)
             case ".parquet":
-                extent = pyarrow.parquet.read_metadata(source)
+                extent = pyarrow.parquet.read_metadata(io.BytesIO(content))
                 _check_size(extent.num_rows * extent.num_columns)
                 table = pyarrow.parquet.read_table(source)
             case _:
