@@ -73,7 +73,12 @@ def _other_value(tree: Any, chance: Random) -> None:
 
 
 def _other_sidecar(folder: Path, chance: Random) -> None:
-    file = chance.choice(sorted((folder / "shards").glob("*.json")))
+    files = sorted((folder / "shards").glob("*.json"))
+    if (folder / "shards").is_symlink() or not files:
+        return
+    file = chance.choice(files)
+    if file.is_symlink() or not file.is_file():
+        return
     with contextlib.suppress(OSError, VerificationError):
         content = unsealed(file.name, file.read_bytes())
         _other_value(content, chance)
