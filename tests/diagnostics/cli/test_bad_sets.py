@@ -155,7 +155,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
         column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ALL,
     ),
     "too few teeth": (column("teeth_pinion", 2, ("data", "metadata")), ("received 2, 47", "from 3 on"), ALL),
-    "no rate": (at_no_rate, ("sampling rate: received None", "fs_hz"), ALL),
+    "no rate": (at_no_rate, ("fs_hz: received None", "a valid number"), ALL),
     "truncated shard": (truncated, ("data/test-00000.parquet is not the file", "siggen verify"), ALL),
     "missing shard": (lambda folder: first_shard(folder).unlink(), ("test-00000.parquet is missing",), ALL),
     "no manifest": (lambda folder: (folder / "manifest.json").unlink(), ("not finished", "siggen generate"), ALL),
