@@ -1,4 +1,4 @@
-"""A set of an earlier version, published, and what siggen reads of it."""
+"""A small set, published, and what siggen reads of it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import pytest
 import yaml
 
 import siggen
+from siggen.checks.loading import load_config
 from siggen.publication.publish import publish
 
-KEPT = Path(__file__).parents[1] / "sets" / "schema_2"
+CONFIG = Path(__file__).parents[1] / "sets" / "schema_2" / "config.yaml"
+"""Two gearboxes in two states, with internals, of 0.1 s."""
 SIGNAL = "accel_lid_vertical_m_s2"
 FACTS: dict[str, Any] = {
     "license": "cc-by-4.0",
@@ -32,17 +34,27 @@ def facts_file(folder: Path, **changes: Any) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("published")
-    publish(KEPT, folder / "set", facts_file(folder))
+@pytest.fixture(scope="session")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a set of this version."""
+    raw = yaml.safe_load(CONFIG.read_text(encoding="utf-8"))
+    del raw["dynamics"]["integrator"]  # the law chooses
+    folder = tmp_path_factory.mktemp("kept")
+    siggen.generate(load_config(raw), folder / "set", workers=1)
     return folder / "set"
 
 
 @pytest.fixture(scope="module")
-def expected() -> dict[str, Any]:
+def published(kept: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("published")
+    publish(kept, folder / "set", facts_file(folder))
+    return folder / "set"
+
+
+@pytest.fixture(scope="module")
+def expected(kept: Path) -> dict[str, Any]:
     """Return what siggen reads of the set itself: signals (n, samples), record ids, states."""
-    records = [siggen.open(KEPT).record(i) for i in range(4)]
+    records = [siggen.open(kept).record(i) for i in range(4)]
     return {
         "signals": np.stack([record[SIGNAL] for record in records]),
         "state": [record["state"] for record in records],

@@ -17,15 +17,15 @@ from siggen.publication.publication_facts import TEMPLATE, read_publication_fact
 from siggen.publication.publish import publish
 from siggen.publication.spdx_licence import _identifiers
 from siggen.sets.verification import verify
-from tests.publication.conftest import KEPT, facts_file
+from tests.publication.conftest import facts_file
 
 
-def test_without_the_authors_nothing_is_published(tmp_path: Path) -> None:
+def test_without_the_authors_nothing_is_published(kept: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"(?s)license is unset.*license: unset .*authors:"):
-        publish(KEPT, tmp_path / "set", None)
+        publish(kept, tmp_path / "set", None)
     (tmp_path / "publication.yaml").write_text(TEMPLATE)
     with pytest.raises(ConfigError) as caught:
-        publish(KEPT, tmp_path / "set", tmp_path / "publication.yaml")
+        publish(kept, tmp_path / "set", tmp_path / "publication.yaml")
     unset = {problem.path for problem in caught.value.problems if problem.received == "unset"}
     assert unset == {"license", "title", "published", "publisher", "url", "citation", "authors.0.name"}
     assert not (tmp_path / "set").exists()
@@ -87,27 +87,27 @@ def test_the_list_of_licences_is_that_of_an_independent_library() -> None:
     assert all(canonicalize_license_expression(lower) == name for lower, name in names.items())
 
 
-def test_a_published_folder_is_a_set_that_opens_and_verifies(published: Path) -> None:
+def test_a_published_folder_is_a_set_that_opens_and_verifies(kept: Path, published: Path) -> None:
     found = verify(published, 0)
     assert found.mismatches == ()
     names = set(siggen.open(published).manifest["files"])
     made = {"croissant.json", "datacite.json", "i_investigation.json", "README.md"}
     assert names > {*made, "previews/healthy.png", "previews/severe.png"}
     for name in ("data/train-00000.parquet", "config.yaml", "shards/train-00001.json"):
-        assert (published / name).read_bytes() == (KEPT / name).read_bytes()
+        assert (published / name).read_bytes() == (kept / name).read_bytes()
     (published / "croissant.json").write_bytes((published / "croissant.json").read_bytes() + b" ")
     assert [mismatch.what for mismatch in verify(published, 0).mismatches] == ["croissant.json"]
     (published / "croissant.json").write_bytes((published / "croissant.json").read_bytes()[:-1])
 
 
-def test_a_dry_run_writes_nothing_and_a_folder_in_use_is_refused(tmp_path: Path) -> None:
+def test_a_dry_run_writes_nothing_and_a_folder_in_use_is_refused(kept: Path, tmp_path: Path) -> None:
     facts = str(facts_file(tmp_path))
-    result = CliRunner().invoke(app, ["publish", str(KEPT), "--dry-run", "--facts", facts])
+    result = CliRunner().invoke(app, ["publish", str(kept), "--dry-run", "--facts", facts])
     assert (result.exit_code, result.stdout) == (0, "nothing was written\n")
     assert "there is no audit" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["publication.yaml"]
     with pytest.raises(UsageError, match="is not empty"):
-        publish(KEPT, tmp_path, Path(facts))
+        publish(kept, tmp_path, Path(facts))
 
 
 def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Path) -> None:
@@ -125,29 +125,29 @@ def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Pa
     assert "under the licence `cc-by-4.0`" in card
 
 
-def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(tmp_path: Path) -> None:
+def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(kept: Path, tmp_path: Path) -> None:
     best = {
         "slight": {"indicator": "rms__x", "tried": 40, "auc_chosen_on_other_gearboxes": 0.71},
         "severe": {"indicator": "fm4__x", "tried": 40, "auc_chosen_on_other_gearboxes": 0.98},
     }
-    identity = siggen.open(KEPT).manifest["identity"]
+    identity = siggen.open(kept).manifest["identity"]
     verdict = "1 trap was found."  # as the audit writes it: the summary opens with it
     audit = {"identity": identity, "verdict": verdict, "summary": [verdict, "More."], "best_single_indicator": best}
     (tmp_path / "audit.json").write_text(json.dumps(audit))
-    publish(KEPT, tmp_path / "set", facts_file(tmp_path), tmp_path)
+    publish(kept, tmp_path / "set", facts_file(tmp_path), tmp_path)
     card = (tmp_path / "set/README.md").read_text()
     assert "## Audit\n\nVerdict: 1 trap was found. More.\n\n" in card
     assert "| severe | `fm4__x` | 0.980 | 40 |\n| slight | `rms__x` | 0.710 | 40 |" in card
     entry = {"state": "severe", "chosen": "a band", "tried": 410, "auc": {"value": 0.99}}
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "strongest": {"alone": {"states": [entry]}}}))
-    publish(KEPT, tmp_path / "again", facts_file(tmp_path), tmp_path)
+    publish(kept, tmp_path / "again", facts_file(tmp_path), tmp_path)
     assert "| alone | severe | a band | 0.990 | 410 |" in (tmp_path / "again/README.md").read_text()
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "too_few_gearboxes": True}))
-    publish(KEPT, tmp_path / "few", facts_file(tmp_path), tmp_path)
+    publish(kept, tmp_path / "few", facts_file(tmp_path), tmp_path)
     assert "0.980" not in (tmp_path / "few/README.md").read_text()
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "identity": "0" * 64}))
     with pytest.raises(UsageError, match="audit of another set"):
-        publish(KEPT, tmp_path / "other", facts_file(tmp_path), tmp_path)
+        publish(kept, tmp_path / "other", facts_file(tmp_path), tmp_path)
 
 
 def test_datacite_has_its_mandatory_properties(published: Path) -> None:
@@ -158,10 +158,10 @@ def test_datacite_has_its_mandatory_properties(published: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_the_header_has_the_features_that_datasets_would_write(published: Path) -> None:
+def test_the_header_has_the_features_that_datasets_would_write(kept: Path, published: Path) -> None:
     datasets = pytest.importorskip("datasets")
     header = yaml.safe_load((published / "README.md").read_text().split("---\n")[1])
-    schema = next(siggen.open(KEPT).records()).schema
+    schema = next(siggen.open(kept).records()).schema
     features = datasets.Features.from_arrow_schema(schema)
     for name in ("state", "fault", "severity", "faulty_gear"):
         own = next(f for f in header["dataset_info"][0]["features"] if f["name"] == name)

@@ -202,7 +202,9 @@ def test_a_simulated_record_charges_the_stages_of_the_physics() -> None:
     from siggen.checks.loading import load_config
     from siggen.record.simulation import simulate_specimen
 
-    config = load_config(ROOT / "tests/sets/schema_2/config.yaml")
+    config = load_config(
+        ROOT / "configs" / "quickstart.yaml", ["duration_s=0.1", "internals={quantities: [mesh_force_n]}"]
+    )
     with collected("other") as times:
         list(simulate_specimen(config, [0]))
     assert set(times.seconds) == set(WORKERS) - {"rows"}
