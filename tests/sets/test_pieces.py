@@ -17,7 +17,7 @@ import pytest
 
 from siggen.columns.record import record_schema
 from siggen.dataset.chunk import Chunk, ChunkSimulation
-from siggen.dataset.environment import environment
+from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.pieces import FOLDER, Maker, Pieces
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
@@ -184,19 +184,15 @@ def test_a_piece_that_is_not_of_this_set_and_code_or_not_whole_is_made_again(
     elif change == "text":
         piece.write_bytes(b'{"digest": []}\0')
     elif change == "other rows":  # a stranger's piece in which everything fits but the records
-        maker = Maker(CONFIG.identity, "", environment())
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("siggen.compiled.compiled_sources", str)
-            storage = LocalFolder(tmp_path)
-            held = Pieces(storage, maker, (record_schema(CONFIG), None))
-            other = ChunkSimulation(CONFIG, simulate)(Chunk("train-00000", range(6, 12)))
-            held.add(replace(other, chunk=Chunk("train-00000", range(6))))
-            held.keep()
-            assert finished(tmp_path).records_made == 120
-        assert file_bytes(tmp_path) == reference
-        return
+        here = environment()
+        held = Pieces(
+            LocalFolder(tmp_path), Maker(CONFIG.identity, fingerprint(here), here), (record_schema(CONFIG), None)
+        )
+        other = ChunkSimulation(CONFIG, simulate)(Chunk("train-00000", range(6, 12)))
+        held.add(replace(other, chunk=Chunk("train-00000", range(6))))
+        held.keep()
     else:
-        monkeypatch.setattr("siggen.compiled.compiled_sources", lambda: "of other sources")
+        monkeypatch.setattr("siggen.sets.set_run.fingerprint", lambda _: "of other sources")
     assert finished(tmp_path).records_made == 120
     assert file_bytes(tmp_path) == reference
     assert not (tmp_path / FOLDER).exists()
