@@ -95,9 +95,12 @@ def settle_s(config: Config) -> float:
 
 
 def history_s(config: Config) -> float:
-    """Return the history that the instrument needs [s]; it does not change the records of plain channels."""
-    filtered = any(s.mounting or s.resonance or s.high_pass_hz is not None for s in config.sensors)
-    return max(settle_s(config), CHAIN_HISTORY_S if filtered else 0.0)
+    """Return the history that the instrument needs [s].
+
+    The longest memory of a filter counts whatever the sensors are: the motion begins before it. Otherwise a sensor
+    that is added would move all others by what is left of the start.
+    """
+    return max(settle_s(config), CHAIN_HISTORY_S)
 
 
 def needs_forces(config: Config) -> bool:

@@ -126,7 +126,7 @@ MISTAKES = {
     "half a number": (lambda v: {n: x for n, x in v.items() if n != FIRST}, "real and imag"),
     "no force": (lambda v: {n: x for n, x in v.items() if "gear_bearing_vertical" not in n}, "two columns for every"),
     "other axis": (lambda v: renamed(v, "vertical_from", "axial_from"), "no columns vertical_from"),
-    "not a number": (lambda v: {**v, FIRST: np.where(v["frequency_hz"] == 640.0, np.nan, v[FIRST])}, "not finite"),
+    "not a number": (lambda v: {**v, FIRST: np.where(np.arange(v[FIRST].size) == 40, np.nan, v[FIRST])}, "not finite"),
     "too narrow": (lambda v: {n: x[:1000] for n, x in v.items()}, "0.45 fs_hz"),
     "not causal": (lambda v: {n: -x if "_imag_" in n else x for n, x in v.items()}, "before time 0"),
     "too coarse": (lambda v: {n: x[::64] for n, x in v.items()}, "impulse response"),

@@ -23,6 +23,8 @@ from diagnostics.calibration.injection import (
     simulated_differences,
 )
 from diagnostics.page.provenance import origin_sentence
+from siggen.errors import UsageError
+from siggen.publication.publish import publication
 from siggen.sets.verification import verify
 
 SPEED_HZ, FS_HZ = 34.0, 25_600.0
@@ -147,9 +149,8 @@ def test_two_recordings_train_and_the_last_is_the_test(recordings: int) -> None:
 def test_publishing_injected_recordings_is_refused(
     mine: Path, simulated: tuple[Block, Difference], tmp_path: Path
 ) -> None:
-    from siggen.errors import UsageError
-    from siggen.publication.publish import publication
-
-    (tmp_path / "injected.json").write_text("{}")
+    block, _ = simulated
+    blocks = HealthyBlocks((block,), tuple(block.channels), FS_HZ)
+    folder = write_injected(blocks, mine, 1, tmp_path / "set", 0, lambda: None)
     with pytest.raises(UsageError, match="your recordings"):
-        publication(tmp_path, None)
+        publication(folder, None)
