@@ -77,8 +77,17 @@ def compared(numbers: dict[str, Any]) -> Iterator[Moved]:
 
 
 def write(found: dict[str, Any]) -> None:
-    """Keep what the records of these presets are now; others stay as they were kept."""
-    presets = {**json.loads(KEPT.read_text(encoding="utf-8"))["presets"], **found} if KEPT.exists() else found
+    """Keep what the records of these presets are now; others stay as they were kept.
+
+    Raises
+    ------
+    ValueError
+        If others were kept on another kind of processor: one file holds the numbers of one kind.
+    """
+    before = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {"presets": {}}
+    presets = {**before["presets"], **found}
+    if len(presets) > len(found) and before["processor"] != processor():
+        raise ValueError(f"kept on {before['processor']}, this is {processor()}: write all presets, not some")
     kept = {"simulation_version": SIMULATION_VERSION, "processor": processor(), "presets": presets}
     KEPT.write_text(_text(kept), encoding="utf-8")
 

@@ -13,7 +13,7 @@ import pytest
 
 import siggen
 from siggen.dataset.object_store import ObjectStore
-from siggen.dataset.storage import LocalFolder, copy_object
+from siggen.dataset.storage import LocalFolder, copy_object, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, EngineError
 from siggen.planning import plan
@@ -116,7 +116,7 @@ def test_parts_are_merged_and_a_set_is_extended_there(tmp_path: Path) -> None:
 def upload(folder: Path, place: str) -> str:
     source, target = LocalFolder(folder), storage_at(place)
     for name in source.names():
-        copy_object(source, name, target)
+        copy_object(source, name, target, sha256(source, name))
     return place
 
 

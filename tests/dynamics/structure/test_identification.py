@@ -1,9 +1,5 @@
 from __future__ import annotations
 
-import contextlib
-import io
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,7 +13,6 @@ from siggen.dynamics.structure.identification import (
     series_inertia,
 )
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "understand" / "identification.md"
 RATIOS = st.floats(0.002, 0.2)
 
 
@@ -54,13 +49,6 @@ def test_the_support_gives_back_the_resonance() -> None:
     assert speed / (2.0 * np.pi) == pytest.approx(2250.8, rel=1e-12)
     assert 2.0 * support.damping_n_s_per_m / (2.0 * speed * 1.0) == pytest.approx(0.03, rel=1e-12)
     assert series_inertia(4e-3, 1.6e-4) == pytest.approx(1.0 / (1.0 / 4e-3 + 1.0 / 1.6e-4), rel=1e-12)
-
-
-def test_the_worked_example_prints_what_the_page_says() -> None:
-    code, printed = PAGE.read_text().split("```python\n")[1].split("```")[0], io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(code, {})
-    assert printed.getvalue() == PAGE.read_text().split("```text\n")[1].split("```")[0]
 
 
 def test_what_is_no_resonance_is_refused() -> None:
