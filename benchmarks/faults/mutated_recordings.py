@@ -37,11 +37,12 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 def channels() -> dict[str, np.ndarray]:
-    """Return two channels: mesh lines with sidebands and a line of the shaft, and noise."""
+    """Return two channels: mesh lines with sidebands, lines of both shafts, and noise."""
     rng, time_s = np.random.default_rng(5), np.arange(SAMPLES) / FS_HZ
     turns = 2 * np.pi * 20.0 * time_s
     mesh = sum(np.sin(20 * k * turns) * (1 + 0.3 * np.cos(turns)) / k for k in (1, 2, 3)) + 0.5 * np.cos(turns)
-    first, second = 0.1 * rng.standard_normal((2, SAMPLES)) + mesh
+    shafts = (np.cos(k * turns * ratio + rng.uniform(0.0, 6.0)) for ratio in (1.0, 2.0 / 3.0) for k in range(1, 91))
+    first, second = 0.1 * rng.standard_normal((2, SAMPLES)) + mesh + 0.05 * sum(shafts)
     return {"a": first, "b": second}
 
 

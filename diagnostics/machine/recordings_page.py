@@ -45,7 +45,7 @@ def _overview(found: Sequence[RecordingIndicators]) -> str:
             html.Cell(f"{one.pulses.speed_hz:.4f}"),
             html.Cell(f"{one.mesh_hz:.2f}"),
             html.Cell(f"{one.revolutions[0]} and {one.revolutions[1]}"),
-            html.Cell("tacho" if one.pulses.source == "tacho" else f"mesh lines of {one.pulses.source}"),
+            html.Cell(one.pulses.origin),
             html.Cell(f"{one.recording.duration_s:.3g}"),
         ]
         for one in found

@@ -41,6 +41,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
         "pinion_speed_hz": found.pulses.speed_hz,
         "mesh_frequency_hz": found.pulses.speed_hz * found.teeth[0],
         "speed_from": found.pulses.source,
+        "speed_certainty": found.pulses.certainty,
         "teeth": list(found.teeth),
         "pieces": len(found.pieces.values),
         "revolutions_per_piece": found.pieces.revolutions,
@@ -79,13 +80,12 @@ def _nearness(found: Nearness) -> dict[str, Any]:
 def prediction_rows(found: Prediction) -> list[tuple[str, str]]:
     """Return what the terminal and the page show first: label and text."""
     pulses = found.pulses
-    source = "tacho" if pulses.source == "tacho" else f"mesh lines of {pulses.source}"
     pieces = counted(len(found.pieces.values), "piece")
     own = found.own_state
     rows = [
         *([] if own is None else [("against its own healthy state", f"{own.verdict} ({own.reason})")]),
         ("answer", found.state),
-        ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({source}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
+        ("pinion speed", f"{pulses.speed_hz:.4f} Hz ({pulses.origin}); mesh {pulses.speed_hz * found.teeth[0]:.2f} Hz"),
         ("averaged", f"{pieces} of {found.pieces.revolutions} or more pinion revolutions"),
     ]
     for vote in found.votes:

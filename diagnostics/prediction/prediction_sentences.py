@@ -24,7 +24,6 @@ def prediction_summary(found: Prediction) -> list[str]:
     near = found.nearness
     side = "beyond" if near.outside else "within"
     speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
-    source = "the tacho" if found.pulses.source == "tacho" else f"the mesh lines of {found.pulses.source}"
     if found.reasons:
         reasons = [f"{capitalised(reason.rstrip('.'))}." for reason in found.reasons]
         answer = f"The models give no answer for this recording. {' '.join(reasons)}"
@@ -41,7 +40,7 @@ def prediction_summary(found: Prediction) -> list[str]:
         *([f"The most probable state is {joined(votes)}.{withheld}"] if votes else []),
         f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
         f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
-        f"revolutions. The pinion speed is {speed}, from {source}.",
+        f"revolutions. The pinion speed is {speed}, from the {found.pulses.origin}.",
     ]
 
 

@@ -17,6 +17,9 @@ COMMENTS = ("#", "%")
 UNIT = re.compile(r"[\[(].*[\])]|(m/s(2|²|\^2|\*\*2)|g|[mµu]?V|[mµun]?s|sec|k?Hz|-|)", re.IGNORECASE)
 """Cell of a row of units: anything in brackets, or one of the units that an acceleration or its time comes in."""
 
+TIME_UNIT = re.compile(r"[mµu]?s|sec", re.IGNORECASE)
+"""Units of columns of acceleration are the user's to say: a row of units often stands over columns it is not of."""
+
 
 def read_csv(path: Path) -> Columns:
     """Read a text file; with semicolons or tabs a comma is a decimal comma.
@@ -59,7 +62,9 @@ def read_csv(path: Path) -> Columns:
             f"above the names begins with {' or '.join(COMMENTS)}"
         ) from error
     filled = (np.asarray(column.to_numpy(), dtype=np.float64) for column in table.columns)
-    return Columns(dict(zip(names, filled, strict=True)))
+    units = {name: unit.strip("[]() ") for name, unit in zip(names, rows[1], strict=True)} if above == 2 else {}
+    columns = dict(zip(names, filled, strict=True))
+    return Columns(columns, units={name: unit for name, unit in units.items() if TIME_UNIT.fullmatch(unit)})
 
 
 def _first_lines(path: Path) -> list[tuple[int, str]]:

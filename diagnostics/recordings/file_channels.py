@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from diagnostics.recordings.columns import read_columns
-from diagnostics.recordings.measured_recording import OWN_COLUMN, OWN_TACHO
-from diagnostics.recordings.signal_problem import LARGEST
+from diagnostics.recordings.measured_recording import OWN_COLUMN
+from diagnostics.recordings.recorded_columns import OWN_TACHO
 from siggen.errors import UsageError
 
 MOST_CHANNELS = 32
@@ -31,20 +29,12 @@ def file_channels(path: Path, tacho: str | None = None, row: int | None = None) 
     UsageError
         If the file cannot be read, or holds no such column, or very many.
     """
-    values = read_columns(path, row).values
-    own = [name for name in values if name.startswith(PREFIX) and name.endswith(SUFFIX)]
-    names = own or [name for name, column in values.items() if name not in {tacho, OWN_TACHO} and not _is_time(column)]
+    found = read_columns(path, row)
+    own = [name for name in found.values if name.startswith(PREFIX) and name.endswith(SUFFIX)]
+    names = own or [name for name in found.values if name not in {tacho, OWN_TACHO, *found.clocks}]
     if not 1 <= len(names) <= MOST_CHANNELS:
         raise UsageError(
             f"{path}: {len(names)} columns that could be vibration; allowed: 1 to {MOST_CHANNELS}. Name those that you "
             "mean: --channel NAME=COLUMN"
         )
     return tuple(name.removeprefix(PREFIX).removesuffix(SUFFIX) if name in own else name for name in names)
-
-
-def _is_time(column: np.ndarray) -> bool:
-    """Return whether a column rises by equal steps."""
-    if not np.isfinite(column).all() or np.abs(column).max(initial=0.0) > LARGEST:
-        return False
-    steps = np.diff(column)
-    return bool(steps.size and steps[0] > 0.0 and np.allclose(steps, steps.mean(), rtol=0.0, atol=0.01 * steps.mean()))

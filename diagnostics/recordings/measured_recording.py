@@ -11,12 +11,13 @@ import numpy as np
 from diagnostics.recordings.channel_factor import ASSUMED, channel_factor
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.pulse_edges import pulse_edges
-from diagnostics.recordings.recorded_columns import Columns
+from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
 from diagnostics.recordings.signal_problem import signal_problem
 from siggen.errors import UsageError
 
 OWN_COLUMN = "accel_{}_m_s2"
-OWN_TACHO = "tacho_s"
+RATES_ALIKE = 1e-5
+"""A rate that a time column states is as exact as its digits: 1e-6 s in 0.1 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +109,7 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
 
 
 def _rate(path: Path, found: Columns, said: float | None) -> float:
-    if found.fs_hz and said and abs(said / found.fs_hz - 1.0) > 1e-6:
+    if found.fs_hz and said and abs(said / found.fs_hz - 1.0) > RATES_ALIKE:
         raise UsageError(
             f"{path}: states {found.fs_hz:g} Hz, received --fs {said:g}; leave --fs out or correct the file"
         )
@@ -131,6 +132,10 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
             f"{path}: no column {', '.join(missing)}; wanted are the channels {', '.join(names)}, the file holds "
             f"{', '.join(list(found.values)[:20])}. Say which is which: {example}. They have to be the same sensors in "
             "the same directions."
+        )
+    if timed := [name for name, column in chosen.items() if column in found.clocks]:
+        raise UsageError(
+            f"{path}: column {chosen[timed[0]]} rises by equal steps: it is a time, not channel {timed[0]}"
         )
     if len(set(chosen.values())) < len(chosen):
         raise UsageError(f"{path}: one column was named for several channels ({chosen}); each needs its own sensor")

@@ -11,6 +11,9 @@ import numpy as np
 
 from siggen.errors import UsageError
 
+OWN_TACHO = "tacho_s"
+"""Column of pulse times of a shaft, as siggen's own records have it."""
+
 MOST_COLUMNS = 4_000
 """Of a file: no recorder has as many channels, and every column costs time wherever it is looked at."""
 
@@ -31,6 +34,8 @@ class Columns:
         Whether the file says that siggen wrote it.
     units : mapping of str to str
         Unit of columns where the file states it, as spelled there.
+    clocks : mapping of str to float or None
+        Columns that are no signals: times, with the rate [Hz] that they state, and counters of samples, with None.
     """
 
     values: Mapping[str, np.ndarray]
@@ -38,6 +43,7 @@ class Columns:
     full_scale: bool = False
     simulated: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    clocks: Mapping[str, float | None] = field(default_factory=dict)
 
 
 def numbered(array: np.ndarray, prefix: str = "") -> dict[str, np.ndarray]:

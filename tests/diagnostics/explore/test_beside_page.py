@@ -25,9 +25,10 @@ def recorded(
     folder: Path, name: str, speed_hz: float, channels: tuple[str, ...] = ("ch1", "ch2")
 ) -> RecordingIndicators:
     rng = np.random.default_rng(7)
-    signal, _ = shaft_record(rng, 0.0, speed_hz=speed_hz)
-    np.savez(folder / name, **{channel: (k + 1.0) * signal for k, channel in enumerate(channels)})
-    return recording_indicators(folder / name, TEETH, RecordingFacts(fs_hz=FS_HZ), (20.0, 40.0))
+    signal, pulses = shaft_record(rng, 0.0, speed_hz=speed_hz)
+    signals = {channel: (k + 1.0) * signal for k, channel in enumerate(channels)}
+    np.savez(folder / name, **signals, tacho_s=pulses)
+    return recording_indicators(folder / name, TEETH, RecordingFacts(fs_hz=FS_HZ, tacho="tacho_s"))
 
 
 def with_speeds(dataset: MemoryDataset, speeds: list[float]) -> MemoryDataset:

@@ -55,7 +55,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
 def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
     for arguments, told in (
         ([str(recording)], "teeth unknown"),
-        ([str(recording), "--teeth", "20,31"], "sampling rate"),
+        ([str(recording), "--teeth", "20,31"], "neither tacho nor speed"),
         ([str(recording), "--teeth", "20,31", "--state", "severe"], "--state: for sets only"),
         ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
         ([str(tmp_path), str(tmp_path)], "a second argument"),

@@ -40,7 +40,7 @@ def folder(dataset: Any, features: Any, tmp_path_factory: pytest.TempPathFactory
 def save(path: Path, dataset: Any, record: int, gain: float = 1.0) -> Path:
     row = dataset.record(record)
     signals = {name: gain * row[f"accel_{name}_m_s2"] for name in ("bearing_vertical", "bearing_horizontal")}
-    np.savez(path, **signals)
+    np.savez(path, **signals, tacho_s=row["tacho_s"])
     return path
 
 
@@ -98,12 +98,12 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
     folder: Path, dataset: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = save(tmp_path / "run.npz", dataset, 0, gain=300.0)
-    assert run(monkeypatch, str(folder), str(file), *options()) == 0
+    assert run(monkeypatch, str(folder), str(file), "--fs", "12800", "--teeth", "18,47", "--tacho", "tacho_s") == 0
     found = capsys.readouterr().out
     assert "answer:               abstains" in found
     assert "unlike the training records" in found
     file = save(tmp_path / "run.npz", dataset, 0)
-    assert run(monkeypatch, str(folder), str(file), *options("--teeth", "18,31")) == 0
+    assert run(monkeypatch, str(folder), str(file), "--fs", "12800", "--teeth", "18,31", "--tacho", "tacho_s") == 0
     assert "18/31 teeth, training covers 18/47 only" in capsys.readouterr().out
 
 

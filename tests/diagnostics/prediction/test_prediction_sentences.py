@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnostics.prediction.prediction import Nearness, Vote
 from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
+from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.statistics.evaluation import Interval
 
 
@@ -27,7 +28,7 @@ def prediction(distance: float, reasons: tuple[str, ...] = (), pieces: int = 1) 
         reasons=reasons,
         state="abstains" if reasons else "severe",
         pieces=SimpleNamespace(values=np.zeros((pieces, 3)), revolutions=53),
-        pulses=SimpleNamespace(speed_hz=36.325, source="tacho"),
+        pulses=ShaftPulses(np.arange(4) / 36.325, "tacho"),
     )
 
 

@@ -147,12 +147,16 @@ def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
 def predict(
     monkeypatch: pytest.MonkeyPatch, folder: Path, file: Path, out: Path, *more: str
 ) -> tuple[int, dict[str, Any]]:
-    arguments = ("--fs", str(FS_HZ), "--teeth", "18,47", "--speed-range", "20,50", "--out", str(out), *more)
+    arguments = ("--fs", str(FS_HZ), "--teeth", "18,47", "--tacho", "tacho_s", "--out", str(out), *more)
     monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), str(file), *arguments])
     with pytest.raises(SystemExit) as stop:
         main()
     page = out / "prediction.json"
     return int(stop.value.code or 0), json.loads(page.read_text()) if page.is_file() else {}
+
+
+def pulses(dataset: Any, record: int) -> np.ndarray:
+    return np.asarray(dataset.record(record)["tacho_s"])
 
 
 def channels(dataset: Any, row: int, ratio: tuple[int, int] = (1, 1)) -> dict[str, np.ndarray]:
@@ -258,7 +262,7 @@ def test_references_at_another_rate_are_brought_to_that_of_the_model(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, file = trained
-    np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)))
+    np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)), tacho_s=pulses(other, 0))
     reference = ("--reference", str(tmp_path / "fast.npz"), "--reference-fs", str(2 * FS_HZ))
     code, found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)
     assert code == 0
@@ -274,14 +278,16 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, file = trained
-    np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)))
+    np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)), tacho_s=pulses(other, 0))
     reference = ("--reference", str(tmp_path / "slow.npz"), "--reference-fs", str(FS_HZ * 3 // 4))
     found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)[1]
     assert found["state"] == "abstains"
     assert any(
         text.startswith("reference slow.npz: the sampling rate is 9600 Hz") for text in found["reasons_to_abstain"]
     )
-    np.savez(tmp_path / "hurried.npz", **channels(other, 0, (5, 6)))  # read at the old rate: 6/5 of the speed
+    np.savez(
+        tmp_path / "hurried.npz", **channels(other, 0, (5, 6)), tacho_s=5.0 / 6.0 * pulses(other, 0)
+    )  # read at the old rate: 6/5 of the speed
     found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(tmp_path / "hurried.npz"))[1]
     assert found["state"] == "abstains"
     assert any("reference hurried.npz: the pinion speed is 36" in text for text in found["reasons_to_abstain"])
@@ -292,7 +298,9 @@ def test_the_recording_is_no_reference_to_itself(
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     folder, file = trained
-    np.savez(tmp_path / "copy.npz", **channels(other, 2))  # the same samples under another name and format
+    np.savez(
+        tmp_path / "copy.npz", **channels(other, 2), tacho_s=pulses(other, 2)
+    )  # the same samples under another name and format
     for said in (f"{file}:0,2", str(tmp_path / "copy.npz")):
         assert predict(monkeypatch, folder, file, tmp_path / "out", "--row", "2", "--reference", said)[0] == 2
         message = " ".join(capsys.readouterr().err.split())
@@ -319,8 +327,8 @@ def test_the_change_comes_first_and_no_state_is_named_against_it(
     folder, _ = trained
     again = [make_dataset(("test",) * 2, seed=40 + k) for k in range(9)]
     for k, found in enumerate(again):
-        np.savez(tmp_path / f"healthy_{k}.npz", **channels(found, 0))
-    np.savez(tmp_path / "severe.npz", **channels(again[0], 2))
+        np.savez(tmp_path / f"healthy_{k}.npz", **channels(found, 0), tacho_s=pulses(found, 0))
+    np.savez(tmp_path / "severe.npz", **channels(again[0], 2), tacho_s=pulses(again[0], 2))
     references = [text for k in range(1, 9) for text in ("--reference", str(tmp_path / f"healthy_{k}.npz"))]
     severe = predict(monkeypatch, folder, tmp_path / "severe.npz", tmp_path / "a", *references)[1]
     healthy = predict(monkeypatch, folder, tmp_path / "healthy_0.npz", tmp_path / "b", *references)[1]

@@ -21,15 +21,16 @@ from diagnostics.recordings.stated_signals import rate_from_increment
 from siggen.errors import UsageError
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # of pyuff, when it writes binary
-FS_HZ, SAMPLES, NAMES = 51_200, 20_480, ("vertical", "horizontal")
+FS_HZ, SAMPLES, NAMES = 51_200, 40_960, ("vertical", "horizontal")
 STANDARD_GRAVITY_M_S2 = 9.80665
 
 
 def signals() -> np.ndarray:
-    """Return mesh lines of 20 teeth at 25 Hz in noise, of two channels, in g, with the digits that type 58 keeps."""
-    time_s = np.arange(SAMPLES) / FS_HZ
+    """Return lines of 20 and 30 teeth at 25 Hz in noise, of two channels, in g, with the digits that type 58 keeps."""
+    time_s, rng = np.arange(SAMPLES) / FS_HZ, np.random.default_rng(8)
     mesh = sum(np.sin(2 * np.pi * 500.0 * k * time_s) / k for k in (1, 2, 3))
-    both = mesh + 0.1 * np.random.default_rng(8).standard_normal((2, SAMPLES))
+    shafts = (np.cos(2 * np.pi * (k * hz * time_s + rng.uniform())) for hz in (25.0, 50.0 / 3.0) for k in range(1, 121))
+    both = mesh + 0.05 * sum(shafts) + 0.02 * rng.standard_normal((2, SAMPLES))
     return np.vectorize(lambda value: float(f"{value:.11e}"))(both)
 
 

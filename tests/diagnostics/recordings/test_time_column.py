@@ -1,0 +1,69 @@
+"""A column of times is no channel: it states the rate, which may not contradict what the user says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.file_channels import file_channels
+from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from siggen.errors import UsageError
+
+FS_HZ, SAMPLES = 25_600, 5_000
+TIMES_S = 3.0 + np.arange(SAMPLES) / FS_HZ
+
+
+def write(folder: Path, time: list[str], header: str = "time;lid", separator: str = ";") -> Path:
+    values = np.random.default_rng(0).standard_normal(SAMPLES)
+    rows = (separator.join((at, f"{value:.5f}")) for at, value in zip(time, values, strict=True))
+    file = folder / "run.csv"
+    file.write_text(f"{header}\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("header", "scale", "digits"),
+    [
+        ("time;lid", 1.0, 6),
+        ("time;lid", 1.0, 9),
+        ("t [ms];lid", 1e3, 3),
+        ("zeit_us;lid", 1e6, 0),
+        ("time;lid\nms;g", 1e3, 4),
+        ("x;lid", 1.0, 5),
+    ],
+)
+def test_the_rate_comes_from_the_times_however_they_are_rounded(
+    tmp_path: Path, header: str, scale: float, digits: int
+) -> None:
+    file = write(tmp_path, [f"{scale * at:.{digits}f}" for at in TIMES_S], header)
+    assert file_channels(file) == ("lid",)
+    found = read_recording(file, ("lid",), RecordingFacts(unit="g"))
+    # five digits behind the point leave the rate open by 1e-5 s in 0.2 s
+    assert found.fs_hz == (FS_HZ if digits > 5 or scale > 1.0 else pytest.approx(FS_HZ, rel=1e-4))
+
+
+def test_a_counter_of_samples_is_no_channel_and_states_no_rate(tmp_path: Path) -> None:
+    file = write(tmp_path, [str(k) for k in range(SAMPLES)], "sample;lid")
+    assert file_channels(file) == ("lid",)
+    assert read_columns(file).fs_hz is None
+    with pytest.raises(UsageError, match="--fs 51200"):
+        read_recording(file, ("lid",), RecordingFacts(unit="g"))
+
+
+def test_a_rate_that_contradicts_the_times_is_refused_and_so_is_a_time_as_a_channel(tmp_path: Path) -> None:
+    file = write(tmp_path, [f"{at:.6f}" for at in TIMES_S])
+    with pytest.raises(UsageError, match=r"states 25600 Hz, received --fs 51200"):
+        read_recording(file, ("lid",), RecordingFacts(fs_hz=51_200.0))
+    assert read_recording(file, ("lid",), RecordingFacts(fs_hz=25_600.0)).fs_hz == FS_HZ
+    with pytest.raises(UsageError, match="column time rises by equal steps: it is a time, not channel lid"):
+        read_recording(file, ("lid",), RecordingFacts(columns={"lid": "time"}))
+    assert file_channels(file, row=None) == ("lid",)
+
+
+def test_a_signal_that_rises_now_and_then_and_pulses_of_a_tacho_are_no_times(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    np.savez(tmp_path / "run.npz", ramp=TIMES_S + 3e-5 * rng.standard_normal(SAMPLES), tacho_s=np.arange(60) / 30.0)
+    assert read_columns(tmp_path / "run.npz").clocks == {}
