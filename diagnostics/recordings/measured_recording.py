@@ -124,7 +124,9 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
     unknown = sorted(set(said) - set(names))
     if unknown:
         raise UsageError(f"{path}: no channel {', '.join(unknown)} is wanted; wanted are {', '.join(names)}")
-    chosen = {name: _column(found, name, said.get(name)) for name in names}
+    signals = [column for column in found.values if column not in found.clocks]
+    alone = signals[0] if len(names) == len(signals) == 1 else None  # as of a recorder with one channel, unnamed
+    chosen = {name: _column(found, name, said.get(name)) or alone for name in names}
     missing = [said.get(name, name) for name, column in chosen.items() if not column]
     if missing:
         example = " ".join(f"--channel {name}=COLUMN" for name in names)

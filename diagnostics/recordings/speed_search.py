@@ -44,6 +44,9 @@ SAME_SPEED = 1e-3
 LOBE_CELLS = 2.0
 """Half the width of a line: speeds at which the first mesh line lies in it are one; its phase tells them apart."""
 
+SLIPPED = 0.008
+"""Relative error of the speed that a slip of a few teeth leaves."""
+
 SCALE = 20.0
 """A likelihood ratio e^L counts as (1 + L / SCALE)^SCALE: as it is while it is small; where thousands of lines speak,
 which are neither independent nor exponential, by the share of them that a rival has too."""
@@ -109,6 +112,7 @@ def speed_search(
 
 def weighed(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> SpeedFound:
     """Return the speed in the range that most speaks for, its certainty and its rivals."""
+    tried = _sharpest(tried, speed_range_hz)
     lines = max(tried, key=_evidence).curve.lines
     distinct = _distinct(tried, max(SAME_SPEED, LOBE_CELLS / (lines.revolutions * lines.teeth[0])))
     best = next(one for one in distinct if _inside(one, speed_range_hz))
@@ -121,6 +125,18 @@ def weighed(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> Spee
     rivals = [(one.speed_hz, float(s)) for one, s in zip(distinct, share, strict=True) if one is not best]
     first = tuple(sorted(rivals, key=lambda rival: -rival[1])[:3])
     return SpeedFound(best.speed_hz, float(share[distinct.index(best)]), best.evidence, first, best.curve)
+
+
+def _sharpest(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> list[Tried]:
+    """Return what was tried, near the best speed only over the curve over which its mesh lines are sharpest.
+
+    A curve that slipped by a tooth, as where a sideband led for a moment, is off by a little, and what the slip smears
+    passes for lines of the gear.
+    """
+    best = max((one for one in tried if _inside(one, speed_range_hz)), key=_evidence)
+    near = [one for one in tried if abs(one.speed_hz / best.speed_hz - 1.0) < SLIPPED]
+    curve = max(near, key=lambda one: one.curve.lines.sharpness(one.speed_hz)).curve
+    return [one for one in tried if one.curve is curve or one not in near]
 
 
 def pulses_of(recording: MeasuredRecording, teeth: tuple[int, int], found: SpeedFound) -> tuple[str, np.ndarray]:

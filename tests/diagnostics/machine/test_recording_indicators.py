@@ -44,7 +44,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
     facts = ["--fs", "8000", "--teeth", "20,31", "--speed-range", "20,30", "--out", str(tmp_path / "found")]
     result = CliRunner().invoke(app, ["indicators", str(recording), *facts], catch_exceptions=False)
     assert result.exit_code == 0
-    assert "mesh 500.0" in result.output
+    assert "mesh 500." in result.output
     with (tmp_path / "found" / "indicators.csv").open() as file:
         (row,) = csv.DictReader(file)
     called = recording_indicators(recording, (20, 31), RecordingFacts(FS_HZ), (20.0, 30.0))
