@@ -95,7 +95,7 @@ def speed_search(
     Raises
     ------
     UsageError
-        If the recording is too short or sampled too slowly for any part of the range.
+        If the recording is too short or sampled too slowly for a part of the range.
     """
     searched = _searched(recording, teeth, speed_range_hz[0])
     highest_hz = min(MESH_HARMONICS * teeth[0] * speed_range_hz[1], 0.42 * recording.fs_hz)
@@ -105,14 +105,16 @@ def speed_search(
         for curve in _ridges(sight, range_parts(speed_range_hz, part_ratio))
         for one in _tried(curve, speed_range_hz)
     ]
+    if not tried:
+        raise UsageError(f"{FEWEST_TURNS} turns of the pinion or fewer were found; record longer, or give a tacho")
     for one in _distinct(tried)[:FOLLOWED]:
         tried += [again for curve in _followed(sight, one) for again in _tried(curve, speed_range_hz)]
-    return weighed([*tried, *_outside(max(tried, key=_evidence), speed_range_hz)], speed_range_hz)
+    sharp = _sharpest(tried)
+    return weighed([*sharp, *_outside(max(sharp, key=_evidence), speed_range_hz)], speed_range_hz)
 
 
 def weighed(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> SpeedFound:
     """Return the speed in the range that most speaks for, its certainty and its rivals."""
-    tried = _sharpest(tried, speed_range_hz)
     lines = max(tried, key=_evidence).curve.lines
     distinct = _distinct(tried, max(SAME_SPEED, LOBE_CELLS / (lines.revolutions * lines.teeth[0])))
     best = next(one for one in distinct if _inside(one, speed_range_hz))
@@ -127,13 +129,13 @@ def weighed(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> Spee
     return SpeedFound(best.speed_hz, float(share[distinct.index(best)]), best.evidence, first, best.curve)
 
 
-def _sharpest(tried: Sequence[Tried], speed_range_hz: tuple[float, float]) -> list[Tried]:
+def _sharpest(tried: Sequence[Tried]) -> list[Tried]:
     """Return what was tried, near the best speed only over the curve over which its mesh lines are sharpest.
 
     A curve that slipped by a tooth, as where a sideband led for a moment, is off by a little, and what the slip smears
     passes for lines of the gear.
     """
-    best = max((one for one in tried if _inside(one, speed_range_hz)), key=_evidence)
+    best = max(tried, key=_evidence)
     near = [one for one in tried if abs(one.speed_hz / best.speed_hz - 1.0) < SLIPPED]
     curve = max(near, key=lambda one: one.curve.lines.sharpness(one.speed_hz)).curve
     return [one for one in tried if one.curve is curve or one not in near]

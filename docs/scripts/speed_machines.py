@@ -10,6 +10,7 @@ rms. Some 20 minutes of CPU time.
 from __future__ import annotations
 
 import argparse
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -90,6 +91,7 @@ def main() -> None:
     asked = parser.parse_args()
     counts: dict[str, Counter[str]] = {name: Counter() for name in RANGES}
     for index in range(asked.machines):
+        print(f"machine {index + 1} of {asked.machines}", file=sys.stderr, flush=True)
         for recording, teeth, true_hz in recordings(index, asked.noise):
             for name, limits in RANGES.items():
                 counts[name][outcome(recording, teeth, limits, true_hz)] += 1

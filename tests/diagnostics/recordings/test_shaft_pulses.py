@@ -70,6 +70,28 @@ def test_the_shaft_itself_decides_where_even_mesh_lines_or_sidebands_rule(
     assert found.speed_hz == pytest.approx(speed_hz, rel=2e-3)
 
 
+def drifting(speed_hz: float, drift: float, load_steps: bool) -> tuple[MeasuredRecording, float]:
+    """Return lines of 24 and 60 teeth in noise, whose speed rises evenly and whose load may jump; and its mean."""
+    rng = np.random.default_rng(4)
+    time_s = np.arange(round(3.0 * FS_HZ)) / FS_HZ
+    turns = speed_hz * time_s * (1.0 + drift * (time_s / 3.0 - 1.0) / 2.0)
+    load = np.repeat([1.0, 1.6, 0.7], time_s.size // 3) if load_steps else 1.0
+    mesh = sum(np.cos(2 * np.pi * h * 24 * turns + h) / h for h in (1, 2, 3, 4))
+    both = (0.05 * np.cos(2 * np.pi * (k * turns * r + rng.uniform())) for r in (1.0, 0.4) for k in range(1, 120))
+    signal = load * (mesh + sum(both)) + 0.1 * rng.standard_normal(time_s.size)
+    return MeasuredRecording(Path("run.npz"), {"vertical": signal}, FS_HZ, None), (turns[-1] - turns[0]) / time_s[-1]
+
+
+@pytest.mark.parametrize("load_steps", [False, True])
+@pytest.mark.parametrize("drift", [0.0, 0.005, -0.005])
+@pytest.mark.parametrize("limits", [(28.5, 31.0), (20.0, 50.0)])
+def test_a_pair_of_2_5_to_1_that_drifts_while_its_load_jumps(
+    drift: float, load_steps: bool, limits: tuple[float, float]
+) -> None:
+    made, mean_hz = drifting(29.7, drift, load_steps)
+    assert shaft_pulses(made, (24, 60), limits).speed_hz == pytest.approx(mean_hz, abs=0.02)
+
+
 @pytest.mark.parametrize("limits", [(20.0, 28.0), (40.0, 60.0)])
 def test_a_range_that_misses_the_speed_gives_no_other_one(limits: tuple[float, float]) -> None:
     with pytest.raises(UsageError, match=r"run.npz: (the lines fit|speeds of|no lines)"):
