@@ -11,8 +11,8 @@ from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
 from diagnostics.recordings.time_column import clocks, say
 from siggen.errors import UsageError
 
-RATES_ALIKE = 1e-3
-"""Rates of two time columns of one file that are the same, rounded differently."""
+TIMES_ALIKE = 1e-3
+"""Rates of two time columns of one file that are the same, rounded differently; an angle that rises evenly is not."""
 
 
 def read_columns(path: Path, row: int | None = None) -> Columns:
@@ -41,18 +41,17 @@ def read_columns(path: Path, row: int | None = None) -> Columns:
     found = columns_read_apart(path, row)
     if not found.values:
         raise UsageError(f"{path}: holds no column of numbers")
-    return _with_clocks(path, found)
+    return _with_clocks(found)
 
 
-def _with_clocks(path: Path, found: Columns) -> Columns:
-    """Return what a file holds with its times and counters, and the rate that a time states where the file does not."""
+def _with_clocks(found: Columns) -> Columns:
+    """Return what a file holds with its times and counters, and the rate where times agree on one."""
     known = clocks(found.values, found.units, OWN_TACHO)
     rates = {name: rate for name, rate in known.items() if rate is not None}
     if found.fs_hz is not None or not rates:
         return replace(found, clocks=known)
-    if max(rates.values()) > min(rates.values()) * (1.0 + RATES_ALIKE):
-        listed = ", ".join(f"{name} ({rate:g} Hz)" for name, rate in rates.items())
-        raise UsageError(f"{path}: columns {listed} all look like times, of different rates; leave one in the file")
+    if max(rates.values()) > min(rates.values()) * (1.0 + TIMES_ALIKE):
+        return replace(found, clocks=known)
     name, rate = next(iter(rates.items()))
     say(name, rate)
     return replace(found, fs_hz=rate, clocks=known)

@@ -37,8 +37,7 @@ LEAST_SHARE = 0.1
 2 : 1, whose pinion has all lines and whose gear has none, would be as likely."""
 
 MESH_MOST = 20.0
-"""What lines of another stage may say: they fit as mesh lines at some speed (they gave 46 to 66), while those of its
-shafts do not."""
+"""What lines of another stage may say: they fit as mesh lines at some speed, while those of its shafts do not."""
 
 FEWEST_CELLS = 6.0
 """Of the spectrum between lines of the pair's common period; where they are nearer, they are not looked at."""
@@ -154,7 +153,7 @@ def line_evidence(
 
 
 def power_over_noise(amplitude: np.ndarray) -> np.ndarray:
-    """Return power over that of the noise around it; of mean one where there is no line."""
+    """Return power over that of the noise around it; of mean one or little less where there is no line."""
     from scipy.ndimage import median_filter
 
     power = np.square(amplitude)

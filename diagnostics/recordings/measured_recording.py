@@ -115,7 +115,9 @@ def _rate(path: Path, found: Columns, said: float | None) -> float:
         )
     rate = said or found.fs_hz
     if rate is None or not (np.isfinite(rate) and rate > 0.0):
-        raise UsageError(f"{path}: sampling rate: received {rate}; give the true one in Hz, e.g. --fs 51200")
+        rates = ", ".join(f"{name} {rate:g} Hz" for name, rate in found.clocks.items() if rate is not None)
+        against = f" (columns that rise evenly state {rates})" if rates else ""
+        raise UsageError(f"{path}: sampling rate: received {rate}{against}; give the true one in Hz, e.g. --fs 51200")
     return float(rate)
 
 
@@ -125,7 +127,8 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
     if unknown:
         raise UsageError(f"{path}: no channel {', '.join(unknown)} is wanted; wanted are {', '.join(names)}")
     signals = [column for column in found.values if column not in found.clocks]
-    alone = signals[0] if len(names) == len(signals) == 1 else None  # as of a recorder with one channel, unnamed
+    # a recorder of one channel gives it no name; a column that has one may be another than the user means
+    alone = signals[0] if len(names) == len(signals) == 1 and signals[0].isdigit() else None
     chosen = {name: _column(found, name, said.get(name)) or alone for name in names}
     missing = [said.get(name, name) for name, column in chosen.items() if not column]
     if missing:

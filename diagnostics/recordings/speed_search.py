@@ -4,7 +4,8 @@ Curves: in every part of the range the mesh ridge gives a speed over time (see `
 followed belongs to a shaft of the machine, so that all lines are sharp over its angle, though it may be a sideband or
 a line of another stage. Evidence: over each of these angles all speeds of the range are tried (see `line_evidence`).
 Certainty: what the best speed has of the weight of all that were tried, with noise alone and with speeds outside of
-the range that are known to be taken for it. Source: derived; SCALE is measured by docs/scripts/speed_machines.py.
+the range that are known to be taken for it. Source: derived; SCALE is chosen so that
+few lines are not taken for certain.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ LISTED = 12
 """Speeds of every curve that are looked at closely."""
 
 SAME_SPEED = 1e-3
-"""Speeds nearer than this are one; 0.02 Hz of 30 Hz."""
+"""Speeds nearer than this are one; the phase of a mesh line tells them apart afterwards."""
 
 LOBE_CELLS = 2.0
 """Half the width of a line: speeds at which the first mesh line lies in it are one; its phase tells them apart."""

@@ -67,3 +67,17 @@ def test_a_signal_that_rises_now_and_then_and_pulses_of_a_tacho_are_no_times(tmp
     rng = np.random.default_rng(1)
     np.savez(tmp_path / "run.npz", ramp=TIMES_S + 3e-5 * rng.standard_normal(SAMPLES), tacho_s=np.arange(60) / 30.0)
     assert read_columns(tmp_path / "run.npz").clocks == {}
+
+
+def test_an_angle_that_rises_evenly_beside_the_time_leaves_the_rate_to_the_user(tmp_path: Path) -> None:
+    rng = np.random.default_rng(2)
+    np.savez(tmp_path / "run.npz", time=TIMES_S, angle=0.7 * np.arange(SAMPLES), lid=rng.standard_normal(SAMPLES))
+    with pytest.raises(UsageError, match=r"columns that rise evenly state time 25600 Hz, angle .*--fs"):
+        read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts())
+    assert read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts(fs_hz=25_600.0)).fs_hz == FS_HZ
+
+
+def test_a_wrong_name_is_refused_where_the_only_signal_has_another(tmp_path: Path) -> None:
+    np.savez(tmp_path / "run.npz", time=TIMES_S, oil=np.random.default_rng(2).standard_normal(SAMPLES))
+    with pytest.raises(UsageError, match="no column lid"):
+        read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts())
