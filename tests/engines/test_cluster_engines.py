@@ -62,6 +62,16 @@ def test_nothing_runs_further_than_a_window_ahead_of_a_slow_task(name: str) -> N
     assert seen == set(range(40))
 
 
+def test_no_process_of_the_engine_listens_to_other_machines(name: str) -> None:
+    psutil = pytest.importorskip("psutil")
+    with closing(engine_of(name, 1).map(square, range(20))) as results:
+        next(iter(results))
+        tree = [psutil.Process(), *psutil.Process().children(recursive=True)]
+        ends = [end for process in tree for end in process.net_connections("tcp") if end.status == psutil.CONN_LISTEN]
+    assert ends
+    assert {end.laddr.ip.removeprefix("::ffff:") for end in ends} <= {"127.0.0.1", "::1"}
+
+
 def test_a_set_has_the_same_bytes(name: str, tmp_path: Path) -> None:
     with fake_physics():
         generate(fake_config(), tmp_path / name, 2, engine=name)
