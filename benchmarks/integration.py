@@ -13,12 +13,13 @@ from benchmarks.row import Row, cost_row, duration_text
 from benchmarks.shipped import PAPER_A, PAPER_B, shipped
 from benchmarks.solve_ivp import RELATIVE_TOLERANCE, Method, solve_ivp_integrators
 from benchmarks.timing import Candidate, medians
-from siggen.config import Config, constant
+from siggen.config import Config
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness, mesh_law
 from siggen.dynamics.time.equations import equations_of_motion, no_inputs
 from siggen.dynamics.time.linear_motion import INTEGRATORS
 from siggen.dynamics.time.response import simulate_response
 from siggen.dynamics.time.transient import transient_s
+from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad

@@ -11,6 +11,7 @@ import pytest
 
 from siggen.dataset.environment import MAKES_RECORDS
 from siggen.sources import PACKAGE, sources_digest
+from tests.house.source_tree import imports, modules
 
 SAY = "import sys; from siggen.sources import sources_digest; print(sources_digest(tuple(sys.argv[1:])))"
 
@@ -58,3 +59,16 @@ def test_what_can_change_a_record_counts_and_nothing_else(installed: Path, file:
 
 def test_every_pattern_matches_a_file() -> None:
     assert all(any(PACKAGE.glob(pattern)) for pattern in MAKES_RECORDS)
+
+
+def test_whatever_the_simulation_imports_counts() -> None:
+    tree = modules("siggen")
+    known = set(tree)
+    reached, left = set[str](), {"siggen.record.simulation"}
+    while left:
+        module = left.pop()
+        reached.add(module)
+        left |= (imports(tree[module], known) & known) - reached - {"siggen"}
+    counted = {path for pattern in MAKES_RECORDS for path in PACKAGE.glob(pattern)}
+    messages_and_clocks = {"siggen.errors", "siggen.stage_times", "siggen.sources"}
+    assert {m for m in reached if tree[m] not in counted} - messages_and_clocks == set()

@@ -6,12 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from siggen.config import Config, Friction, bounds, corners
+from siggen.config import Config, Friction
 from siggen.config.oil import oils_of
 from siggen.dynamics.friction.contact_kinematics import Values
 from siggen.dynamics.friction.lubrication import FilmGroups
 from siggen.dynamics.friction.lubrication_notes import lubrication_notes
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import corners
+from siggen.keys.number import bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import damage_is_geometry

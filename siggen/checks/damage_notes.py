@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from siggen.config import Config, bounds
+from siggen.config import Config
+from siggen.keys.number import bounds
 
 
 def damage_notes(config: Config) -> tuple[str, ...]:

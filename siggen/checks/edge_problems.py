@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from siggen.config import Dynamics, Number, bounds
+from siggen.config import Dynamics
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number, bounds
 from siggen.specimen.contact import solves_across_the_face
 
 LARGEST_SHARE = 1.0 / 7.0

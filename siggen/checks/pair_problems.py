@@ -7,9 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from siggen.config.problems import joined, section_problems
-from siggen.config.section import Section
 from siggen.errors import Problem
+from siggen.keys.problems import joined, section_problems
+from siggen.keys.section import Section
 from siggen.rig.carried_over import carried_over
 
 Check = Callable[[Mapping[str, Any]], Iterable[Problem]]

@@ -18,20 +18,14 @@ from siggen.checks.pair_problems import pair_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
-from siggen.config import (
-    DamageModel,
-    Dynamics,
-    Gears,
-    ParsedConfig,
-    Stiffness,
-    bounds,
-    corners,
-)
+from siggen.config import DamageModel, Dynamics, Gears, ParsedConfig, Stiffness
 from siggen.errors import Problem
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
+from siggen.keys.drawing import corners
+from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.damage import kind_of

@@ -10,9 +10,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from siggen.config import Config, Number, Sensor, bounds, corners
+from siggen.config import Config, Sensor
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import corners
+from siggen.keys.number import Number, bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
 from siggen.specimen.gears import gear_pair

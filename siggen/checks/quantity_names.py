@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import difflib
 
-from siggen.config import Config, by_reference, corners
+from siggen.config import Config, by_reference
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.keys.drawing import corners
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.specimen.gears import gear_pair, stiffness_options

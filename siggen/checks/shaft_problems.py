@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from siggen.config import Dynamics, Shaft, bounds
+from siggen.config import Dynamics, Shaft
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import bounds
 
 
 def shaft_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> list[Problem]:

@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.config import Dynamics, Rotor, Shaft, bounds
-from siggen.config.number import Number, at
+from siggen.config import Dynamics, Rotor, Shaft
 from siggen.dynamics.structure.tilting_shaft import Shaft as Beam
 from siggen.dynamics.structure.tilting_shaft import cantilever_compliance_m_per_n
 from siggen.errors import Problem
 from siggen.gears.contact.table_columns import largest_tilt_rad, table_solver
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number, at, bounds
 from siggen.specimen.contact import face_options, largest_force_n
 from siggen.specimen.gears import stiffness_options
 

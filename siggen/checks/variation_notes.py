@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config import Config, Number, bounds
+from siggen.config import Config
 from siggen.config.variation import RARE
+from siggen.keys.number import Number, bounds
 
 
 def variation_notes(config: Config) -> tuple[str, ...]:

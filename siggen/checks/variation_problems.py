@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from math import pi
 from typing import Any
 
-from siggen.config import Dynamics, OperatingRange, Variation, bounds
+from siggen.config import Dynamics, OperatingRange, Variation
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import bounds
 from siggen.specimen.structure import disc_inertia_kg_m2
 
 NEEDED = ("variation", "operating_points", "dynamics", "duration_s")

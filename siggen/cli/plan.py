@@ -180,7 +180,7 @@ def _of_every_pair(config: Config, notes: Callable[[Config], Sequence[str]]) -> 
 
 
 def _mesh_range_hz(config: Config) -> tuple[float, float]:
-    from siggen.config import bounds
+    from siggen.keys.number import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
     teeth, (slowest, fastest) = config.gears.teeth_of("pinion"), config.variation.speed_ratios

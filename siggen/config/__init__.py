@@ -5,8 +5,6 @@ from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
-from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
-from siggen.config.drawing import corners, draw
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
@@ -17,7 +15,6 @@ from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
 from siggen.config.manufacture import FlankWaves, Manufacture
 from siggen.config.mesh import Friction, Mesh
-from siggen.config.number import Number, at, bounds, constant
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
@@ -41,7 +38,6 @@ __all__ = [
     "Bursts",
     "Caps",
     "Casing",
-    "Choice",
     "ClusteredPits",
     "Config",
     "Coupling",
@@ -62,7 +58,6 @@ __all__ = [
     "ListedPit",
     "ListedPits",
     "ListedSpall",
-    "LogUniform",
     "Mains",
     "Manufacture",
     "MeasuredPath",
@@ -71,8 +66,6 @@ __all__ = [
     "NoiseFloor",
     "NoiseModulation",
     "NoiseRatio",
-    "Normal",
-    "Number",
     "OperatingRange",
     "ParsedConfig",
     "PinkNoise",
@@ -94,17 +87,11 @@ __all__ = [
     "TorqueVariation",
     "TransferPath",
     "Unbalance",
-    "Uniform",
     "Variation",
     "Wheel",
     "apply_overrides",
-    "at",
-    "bounds",
     "by_reference",
     "config_file",
-    "constant",
-    "corners",
-    "draw",
     "extended_files",
     "inherited",
     "parse",

@@ -11,9 +11,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from siggen.config.density import Density
-from siggen.config.distributions import LogUniform, Uniform
-from siggen.config.number import Number, Within
-from siggen.config.section import Section, Whole
+from siggen.keys.distributions import LogUniform, Uniform
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section, Whole
 
 
 class Base(Section):

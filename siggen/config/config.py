@@ -16,14 +16,14 @@ from siggen.config.housing import Housing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
 from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
-from siggen.config.problems import refusal
-from siggen.config.section import Real, Section, Whole
 from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section, Whole
+from siggen.keys.wording import AllowedText
 
 IDENTITY_VERSION = 2
 """Part of every identity; raising it changes all of them; see docs/develop/versions.md."""

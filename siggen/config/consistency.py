@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from siggen.config.damage import KINDS
-from siggen.config.number import bounds
 from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
-from siggen.config.teeth import most_teeth
 from siggen.errors import Problem
+from siggen.keys.number import bounds
+from siggen.keys.teeth import most_teeth
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""

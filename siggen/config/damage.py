@@ -13,14 +13,14 @@ from pydantic import Field, model_validator
 
 from siggen.config.damage_section import DamageSection, HitTeeth
 from siggen.config.irregular import IrregularSpalls
-from siggen.config.number import Number, Within
-from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
-from siggen.config.problems import refusal
-from siggen.config.section import Section, Whole
 from siggen.config.spall import ListedSpall, Spalls
-from siggen.config.teeth import DAMAGED_TEETH, Teeth
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within
+from siggen.keys.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.keys.problems import refusal
+from siggen.keys.section import Section, Whole
+from siggen.keys.teeth import DAMAGED_TEETH, Teeth
+from siggen.keys.wording import AllowedText
 
 
 class PitSize(Section):

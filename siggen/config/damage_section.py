@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias, get_args
 
-from siggen.config.problems import BRANCHES
-from siggen.config.section import Section
-from siggen.config.teeth import TeethValue
+from siggen.keys.problems import BRANCHES
+from siggen.keys.section import Section
+from siggen.keys.teeth import TeethValue
 
 HitTeeth: TypeAlias = Iterator[tuple[str, str, TeethValue]]
 """Keys that name teeth, the gear they belong to, and how many or which ones they name."""

@@ -6,10 +6,10 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from siggen.config.number import Number, Within
-from siggen.config.problems import refusal
-from siggen.config.section import Real, Section
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section
 
 MOST_LINES = 400
 

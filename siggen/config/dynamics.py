@@ -9,9 +9,9 @@ from pydantic import Field
 from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.mesh import Friction, Mesh
-from siggen.config.number import Number, Within
-from siggen.config.section import Section, Whole
 from siggen.config.shafts import Shafts
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section, Whole
 
 
 class Rotor(Section):

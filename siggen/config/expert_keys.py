@@ -9,8 +9,8 @@ from siggen.config.config import Config
 from siggen.config.inheritance import EXTENDS, inherited
 from siggen.config.parsing import parse
 from siggen.config.presets import presets
-from siggen.config.section import Section
 from siggen.config.yaml_source import read_yaml
+from siggen.keys.section import Section
 
 EXPERT = "x-expert"
 """What the JSON Schema says of such a key, beside its type and description."""

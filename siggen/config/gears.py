@@ -6,11 +6,11 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from siggen.config.number import Number, Within
 from siggen.config.pairs import PAIRS, Pairs
-from siggen.config.problems import refusal
-from siggen.config.section import Section, Whole
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within
+from siggen.keys.problems import refusal
+from siggen.keys.section import Section, Whole
 
 
 class Wheel(Section):

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from siggen.config.distributions import LogUniform, Uniform
-from siggen.config.number import Number, Within
-from siggen.config.section import Real, Section
+from siggen.keys.distributions import LogUniform, Uniform
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Real, Section
 
 
 class ForceNoise(Section):

@@ -8,9 +8,9 @@ from typing import Any
 
 from siggen.config.data_file import is_file
 from siggen.config.presets import config_file
-from siggen.config.problems import received_text
 from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
+from siggen.keys.problems import received_text
 
 EXTENDS = "extends"
 DEEPEST = 8

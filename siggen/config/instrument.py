@@ -9,8 +9,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from siggen.config.number import Number, Within
-from siggen.config.section import Section, Whole
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section, Whole
 
 
 class Resonance(Section):

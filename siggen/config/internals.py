@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.section import Section, Whole
-from siggen.config.wording import AllowedText
+from siggen.keys.section import Section, Whole
+from siggen.keys.wording import AllowedText
 
 ALL = "all"
 NAMES = AllowedText("[all], or a list of names such as mesh_force_n")

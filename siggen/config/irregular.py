@@ -13,13 +13,12 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from siggen.config.damage_section import DamageSection
-from siggen.config.distributions import Uniform
-from siggen.config.number import Number, Within, bounds
-from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, HeightReading, Length, PlaceOnFace
-from siggen.config.problems import MISSING, refusal
-from siggen.config.stages import STAGES, Stages, refuse_stages
-from siggen.config.teeth import DAMAGED_TEETH, Teeth
 from siggen.errors import Problem
+from siggen.keys.distributions import Uniform
+from siggen.keys.number import Number, Within, bounds
+from siggen.keys.places import DAMAGED_GEAR, READING, AnyGear, HeightReading, Length, PlaceOnFace
+from siggen.keys.problems import MISSING, refusal
+from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages
 
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch"))]

@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from siggen.config.distributions import Choice, LogUniform, Uniform
-from siggen.config.number import Number, Within, bounds
-from siggen.config.problems import refusal
-from siggen.config.section import Section
 from siggen.errors import Problem
+from siggen.keys.distributions import Choice, LogUniform, Uniform
+from siggen.keys.number import Number, Within, bounds
+from siggen.keys.problems import refusal
+from siggen.keys.section import Section
 
 
 class FlankWaves(Section):

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.number import Number, Within
 from siggen.config.oil import Oil
-from siggen.config.section import Section
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section
 
 
 class Mesh(Section):

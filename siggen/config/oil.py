@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal, TypeAlias, get_args
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from siggen.config.problems import nearest, received_text, refusal
 from siggen.errors import Problem
+from siggen.keys.problems import nearest, received_text, refusal
 
 OilName: TypeAlias = Literal[
     "ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "ISO VG 150", "ISO VG 220", "ISO VG 320", "ISO VG 460",

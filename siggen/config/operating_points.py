@@ -7,10 +7,10 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field, ValidationError
 
-from siggen.config.number import Number, Within
-from siggen.config.problems import refusal, section_problems
-from siggen.config.section import Section, Whole
-from siggen.config.wording import AllowedText
+from siggen.keys.number import Number, Within
+from siggen.keys.problems import refusal, section_problems
+from siggen.keys.section import Section, Whole
+from siggen.keys.wording import AllowedText
 
 
 class OperatingRange(Section):

@@ -6,9 +6,9 @@ import copy
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from siggen.config.problems import received_text
 from siggen.config.yaml_source import yaml_value
 from siggen.errors import ConfigError, Problem
+from siggen.keys.problems import received_text
 
 FORM = "allowed: a path and a value, such as gears.module_mm=3.5 or operating_points.0.speed_hz=25"
 

@@ -8,11 +8,11 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 
-from siggen.config.number import Number, Within, at
-from siggen.config.problems import refusal, section_problems
-from siggen.config.section import Real, Section, Whole
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within, at
+from siggen.keys.problems import refusal, section_problems
+from siggen.keys.section import Real, Section, Whole
+from siggen.keys.wording import AllowedText
 from siggen.seeding import Stage, named_uniforms
 
 ATTEMPTS = 100

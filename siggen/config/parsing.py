@@ -12,9 +12,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
-from siggen.config.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
-from siggen.config.wording import models_in
 from siggen.errors import Problem
+from siggen.keys.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
+from siggen.keys.wording import models_in
 
 LISTS = ("states", "sensors")
 """Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""

@@ -6,11 +6,11 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from siggen.config.number import Number, Within
-from siggen.config.problems import refusal
-from siggen.config.section import Section
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within
+from siggen.keys.problems import refusal
+from siggen.keys.section import Section
+from siggen.keys.wording import AllowedText
 
 
 class ModalPath(Section):

@@ -9,12 +9,12 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from siggen.config.density import LineTable, SensorDensity
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
-from siggen.config.number import Number, Within, at
 from siggen.config.path import PATH, ModalPath, TransferPath
-from siggen.config.problems import received_text, refusal
-from siggen.config.section import Real, Section, Whole
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within, at
+from siggen.keys.problems import received_text, refusal
+from siggen.keys.section import Real, Section, Whole
+from siggen.keys.wording import AllowedText
 
 POSITION = AllowedText(
     "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"

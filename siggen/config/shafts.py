@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from siggen.config.number import Number, Within
-from siggen.config.section import Section
+from siggen.keys.number import Number, Within
+from siggen.keys.section import Section
 
 
 class Shaft(Section):

@@ -12,13 +12,12 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import Field, model_validator
 
 from siggen.config.damage_section import DamageSection
-from siggen.config.number import Number, Within, bounds
-from siggen.config.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
-from siggen.config.problems import MISSING, refusal
-from siggen.config.section import Real, Section, Whole
-from siggen.config.stages import STAGES, Stages, refuse_stages
-from siggen.config.teeth import DAMAGED_TEETH, Teeth
 from siggen.errors import Problem, counted
+from siggen.keys.number import Number, Within, bounds
+from siggen.keys.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.keys.problems import MISSING, refusal
+from siggen.keys.section import Real, Section, Whole
+from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages
 
 Shape: TypeAlias = Literal["rectangle", "ellipse", "v", "polygon"]
 DepthLaw: TypeAlias = Literal["flat", "dish", "length_squared"]

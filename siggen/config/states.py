@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from siggen.config.damage import DAMAGE, KINDS, DamageModel
-from siggen.config.problems import MISSING, refusal
-from siggen.config.section import Section
-from siggen.config.wording import AllowedText
 from siggen.errors import Problem
+from siggen.keys.problems import MISSING, refusal
+from siggen.keys.section import Section
+from siggen.keys.wording import AllowedText
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
 RESERVED_NAMES = ("previous", "none")

@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from siggen.config.problems import refusal
-from siggen.config.section import Real, Section, Whole
 from siggen.errors import Problem
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section, Whole
 
 
 class Stiffness(Section):

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from siggen.config.number import Number, Within, bounds
-from siggen.config.section import Section
+from siggen.keys.number import Number, Within, bounds
+from siggen.keys.section import Section
 
 RARE = 4.0
 """Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""

@@ -15,8 +15,10 @@ from siggen.sources import CHARACTERS, sources_digest
 
 PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
 MAKES_RECORDS = (
-    *("arrays.py", "compiled.py", "lanes.py", "seeding.py", "config/**/*.py", "planning/**/*.py", "gears/**/*.py"),
-    *("dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py", "columns/**/*.py", "record/**/*.py"),
+    *("arrays.py", "compiled.py", "lanes.py", "seeding.py", "keys/**/*.py", "config/**/*.py", "rig/**/*.py"),
+    *("planning/**/*.py", "checks/quantity_names.py"),
+    *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),
+    *("columns/**/*.py", "record/**/*.py"),
     "dataset/chunk.py",
 )
 """Sources that can change a record of a configuration. What checks a configuration, writes files, distributes tasks or

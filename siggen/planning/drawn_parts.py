@@ -7,9 +7,9 @@ from functools import partial
 from typing import Any
 
 from siggen.config import Config, State
-from siggen.config.distributions import Choice
 from siggen.config.oil import oils_of
-from siggen.config.teeth import drawn_teeth, most_teeth
+from siggen.keys.distributions import Choice
+from siggen.keys.teeth import drawn_teeth, most_teeth
 from siggen.seeding import Stage, named_uniforms
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness, at, draw
+from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness
+from siggen.keys.drawing import draw
+from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
 from siggen.seeding import Stage, named_uniforms
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from siggen.config import Number, bounds
+from siggen.keys.number import Number, bounds
 from siggen.publication.publication_facts import Author, PublicationFacts
 
 if TYPE_CHECKING:

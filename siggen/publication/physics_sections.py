@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from siggen.config.section import Section
 from siggen.dataset.card_making import drive_text, friction_text
+from siggen.keys.section import Section
 
 if TYPE_CHECKING:
     from siggen.config import Config

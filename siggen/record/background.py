@@ -11,8 +11,10 @@ from math import pi, sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Background, Config, Floor, ForeignMesh, ShaftLines, constant, draw
+from siggen.config import Background, Config, Floor, ForeignMesh, ShaftLines
 from siggen.dynamics.drive.comb import Comb, turns_of
+from siggen.keys.drawing import draw
+from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, course_at

@@ -7,7 +7,8 @@ from functools import partial
 
 import numpy as np
 
-from siggen.config import Config, MeasuredPath, NoiseFloor, NoiseRatio, at
+from siggen.config import Config, MeasuredPath, NoiseFloor, NoiseRatio
+from siggen.keys.number import at
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import noise_levels
 from siggen.record.measured_disturbance import Draws

@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 from siggen.columns.damage_columns import has_drawn_edges
-from siggen.config import Config, constant
+from siggen.config import Config
 from siggen.gears.damage.tooth_damage import Damage
+from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.damage import state_damage

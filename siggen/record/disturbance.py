@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones, at
+from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones
+from siggen.keys.number import at
 from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines, Turning
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.pink_noise import PinkStream

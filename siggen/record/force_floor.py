@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from siggen.arrays import FloatArray
-from siggen.config import Floor, constant
+from siggen.config import Floor
+from siggen.keys.number import constant
 from siggen.record.background_course import Course
 from siggen.sensing.modulation import LevelCourse, shaft_course
 from siggen.specimen.background import MACHINES, SHAFTS

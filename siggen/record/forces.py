@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, ForceNoise, at
+from siggen.config import Config, ForceNoise
+from siggen.keys.number import at
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.background_course import noise_levels

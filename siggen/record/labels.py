@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from siggen.arrays import FloatArray
 from siggen.columns.gearbox_columns import drawn_places, draws_casing, draws_oil
-from siggen.config import Config, State, constant
+from siggen.config import Config, State
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
+from siggen.keys.number import constant
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.specimen.gears import gear_pair

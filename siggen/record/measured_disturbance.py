@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import LineTable, NoiseModulation, at
+from siggen.config import LineTable, NoiseModulation
 from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.keys.number import at
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
 
 

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
-from siggen.config import Background, Bursts, Rubbing, at, constant
+from siggen.config import Background, Bursts, Rubbing
 from siggen.dynamics.friction.rubbing_course import rubbing_course
+from siggen.keys.number import at, constant
 from siggen.record.background_course import Course
 from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course

@@ -11,7 +11,7 @@ from typing import Any
 
 from siggen.config import Gears
 from siggen.config.pairs import Pair
-from siggen.config.scaling import multiplied, scaled
+from siggen.keys.scaling import multiplied, scaled
 from siggen.rig.pair_scales import PairScales, pair_scales
 
 PROFILE_KEYS = (

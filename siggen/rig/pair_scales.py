@@ -10,8 +10,9 @@ from dataclasses import replace
 from math import ceil
 from typing import NamedTuple
 
-from siggen.config import Gears, Number, OperatingRange, at, bounds
+from siggen.config import Gears, OperatingRange
 from siggen.config.pairs import Pair
+from siggen.keys.number import Number, at, bounds
 from siggen.rig.rig import Rig
 from siggen.rig.rig_numbers import rig_numbers
 from siggen.rig.shafts import LARGEST_BORE, root_diameter_mm, shaft_end_mm

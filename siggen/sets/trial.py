@@ -81,7 +81,7 @@ def trial(config: Config, gearboxes: int, progress: Callable[[int, int], None] |
 
 def shortened(config: Config) -> Config:
     """Return a configuration whose records are short and hold no internal quantities."""
-    from siggen.config import bounds
+    from siggen.keys.number import bounds
 
     slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
     on_gear = any(getattr(state.damage, "gear", "pinion") != "pinion" for state in config.states)

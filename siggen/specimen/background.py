@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, Dynamics, ShaftLines, constant, draw
+from siggen.config import Background, Config, Dynamics, ShaftLines
 from siggen.config import Base as BaseSection
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
 from siggen.dynamics.structure.casing_structure import bolt_elements
@@ -23,6 +23,8 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.gears import gear_pair

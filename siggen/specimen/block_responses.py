@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Floor, constant
+from siggen.config import Floor
+from siggen.keys.number import constant
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, limited
 from siggen.sensing.force_density import rising_floor, tabulated
 from siggen.sensing.shaped_noise import FINER, least_phase

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics, OperatingRange, bounds, constant
+from siggen.config import Dynamics, OperatingRange
 from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
@@ -18,6 +18,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.keys.number import bounds, constant
 
 LEAST_LINE_LOAD_N_PER_M = 1e3
 """Where the configuration has next to no torque: a Hertz band of some 10 µm."""

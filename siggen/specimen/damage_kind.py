@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from siggen.config import Number, bounds
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number, bounds
 from siggen.specimen.gears import pit_height_m
 from siggen.specimen.growth import Growth
 

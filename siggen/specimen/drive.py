@@ -7,7 +7,7 @@ from math import gcd, pi
 
 import numpy as np
 
-from siggen.config import Config, SpeedVariation, Variation, constant, draw
+from siggen.config import Config, SpeedVariation, Variation
 from siggen.config import TorqueVariation as TorqueSection
 from siggen.dynamics.drive.drive import Drive, Rotation
 from siggen.dynamics.drive.excitation import Excitation, Source, SpeedDeviation
@@ -18,6 +18,8 @@ from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, generator, named_generator, named_uniforms

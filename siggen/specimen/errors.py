@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Manufacture, at
+from siggen.config import Config, Manufacture
 from siggen.gears.errors.error_shapes import Draws, error_shapes
 from siggen.gears.errors.gear_errors import FlankDeviations, GearErrors, deviations, gear_errors
 from siggen.gears.errors.helix import Helix, drawn_helix, straight_helix
@@ -17,6 +17,7 @@ from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
 from siggen.gears.errors.tooth_errors import with_errors
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.keys.number import at
 from siggen.seeding import Stage, named_generator
 
 

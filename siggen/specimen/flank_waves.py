@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.config import Config, FlankWaves, at
+from siggen.config import Config, FlankWaves
 from siggen.gears.errors.error_shapes import Draws
 from siggen.gears.errors.flank_waves import ORDERS, with_waves
 from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.keys.number import at
 from siggen.seeding import Stage, named_generator
 from siggen.specimen.contact import mean_line_load_n_per_m
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import hypot, pi
 
-from siggen.config import Friction, bounds, constant
+from siggen.config import Friction
 from siggen.dynamics.friction.asperity_table import asperity_table
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.friction.fluid_friction import fluid_friction
@@ -12,6 +12,7 @@ from siggen.dynamics.friction.friction import FrictionLaw, composite_friction, c
 from siggen.dynamics.friction.lubrication import LubricatedMesh
 from siggen.dynamics.friction.oil import MINERAL_OILS
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import bounds, constant
 from siggen.planning.specimen import OperatingPoint
 
 LARGEST_FORCE = 10.0

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
-from siggen.config import Config, Gears, Stiffness, Wheel, constant, corners
+from siggen.config import Config, Gears, Stiffness, Wheel
 from siggen.gears.damage.heights import axial_height
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.keys.drawing import corners
+from siggen.keys.number import constant
 
 
 def gear_pair(gears: Gears) -> GearPair:

@@ -13,10 +13,10 @@ from typing import Protocol
 import numpy as np
 
 from siggen.config import Config
-from siggen.config.teeth import TeethValue
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.keys.teeth import TeethValue
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
 
 MM = 1e-3

@@ -10,8 +10,9 @@ from math import cos, pi, sin
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, Floor, MeasuredPath, ModalPath, Number, Resonance, Sensor, at, constant
+from siggen.config import Config, Floor, MeasuredPath, ModalPath, Resonance, Sensor
 from siggen.dynamics.time.decimation import PASS_EDGE
+from siggen.keys.number import Number, at, constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BlockGrid, block_grid

@@ -11,10 +11,11 @@ from __future__ import annotations
 from math import ceil, pi, sqrt
 from typing import NamedTuple
 
-from siggen.config import Config, bounds
+from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import natural_modes
 from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.keys.number import bounds
 from siggen.planning.specimen import Specimen
 
 SMOOTH, KINKED = (1.4, 50.0), (1.1, 66.0)

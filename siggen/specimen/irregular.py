@@ -8,9 +8,7 @@ from math import sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Number, at, bounds, constant, draw
 from siggen.config.irregular import IrregularSpalls
-from siggen.config.stages import stage_of
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import single_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
@@ -26,6 +24,9 @@ from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import Number, at, bounds, constant
+from siggen.keys.teeth import stage_of
 from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
 from siggen.specimen.gears import pit_height_m
 from siggen.specimen.growth import MM, Growth

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from siggen.config import ListedPits, at, bounds, draw
+from siggen.config import ListedPits
 from siggen.errors import Problem
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import at, bounds
 from siggen.seeding import Stage, named_uniforms
 from siggen.specimen.damage_kind import DamageKind, heights_m
 from siggen.specimen.growth import MM, Growth

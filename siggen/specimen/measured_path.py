@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.config import MeasuredPath
 from siggen.config.data_file import data_file_bytes, shortened_path
-from siggen.config.problems import received_text
 from siggen.errors import Problem
+from siggen.keys.problems import received_text
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
 
 UNIT = "m_s2_per_n"

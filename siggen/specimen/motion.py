@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.config import Dynamics, constant
+from siggen.config import Dynamics
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
@@ -25,6 +25,7 @@ from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.drive import RecordDrive

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from siggen.config import ClusteredPits, LayeredPits, at, bounds
+from siggen.config import ClusteredPits, LayeredPits
 from siggen.errors import Problem
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.layouts import clustered_centres, layered_centres
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import at, bounds
 from siggen.specimen.damage_kind import DamageKind, heights_m
 from siggen.specimen.growth import MM, Growth
 from siggen.specimen.single_pits import PitPlace, drawn_height_m, drawn_pit, largest_pit, pit_place_problems

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from siggen.config import BearingTones, Config, constant
+from siggen.config import BearingTones, Config
 from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.external_forces import (
     Harmonic,
@@ -18,6 +18,7 @@ from siggen.dynamics.drive.slow_variation import slow_variation
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms

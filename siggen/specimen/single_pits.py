@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from siggen.config import ClusteredPits, LayeredPits, ListedPit, Number, at, bounds
+from siggen.config import ClusteredPits, LayeredPits, ListedPit
 from siggen.config.damage import PitSize
 from siggen.errors import Problem
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.pit import Pit
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number, at, bounds
 from siggen.specimen.damage_kind import PROBE_M, found_problems
 from siggen.specimen.gears import pit_height_m
 from siggen.specimen.growth import MM

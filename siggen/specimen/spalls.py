@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Spalls, SpallSize, at, bounds, constant, corners, draw
-from siggen.config.stages import stage_of
+from siggen.config import Spalls, SpallSize
 from siggen.errors import Problem
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.outlines import Ellipse, Outline, Polygon, rectangle, v_outline
@@ -18,6 +17,9 @@ from siggen.gears.damage.spall import Spall, length_squared_depth_m
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.keys.drawing import corners, draw
+from siggen.keys.number import at, bounds, constant
+from siggen.keys.teeth import stage_of
 from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
 from siggen.specimen.gears import pit_height_m
 from siggen.specimen.growth import MM, Growth

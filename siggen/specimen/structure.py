@@ -8,7 +8,7 @@ from math import pi
 from siggen.config import Caps as CapsSection
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Number, Rotor, Sensor, constant
+from siggen.config import Dynamics, Rotor, Sensor
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.structure.bearing_caps import Caps
 from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
@@ -17,6 +17,7 @@ from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.keys.number import Number, constant
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 
 CASING_GYRATION = 1.15

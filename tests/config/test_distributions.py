@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.config import Choice, LogUniform, Normal, Uniform, at, bounds, constant
+from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.keys.number import at, bounds, constant
 
 SHARES = st.floats(0.0, 1.0, exclude_max=True)
 SMALL = st.floats(-1e6, 1e6)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.config import Dynamics, Gears, Sensor, Uniform, bounds, corners, draw
-from siggen.config.number import Within
-from siggen.config.section import Section
+from siggen.config import Dynamics, Gears, Sensor
+from siggen.keys.distributions import Uniform
+from siggen.keys.drawing import corners, draw
+from siggen.keys.number import Within, bounds
+from siggen.keys.section import Section
 from siggen.seeding import Stage, named_uniforms
 from tests.config.minimal import config
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Manufacture, Uniform, parse
+from siggen.config import Manufacture, parse
 from siggen.errors import ConfigError
+from siggen.keys.distributions import Uniform
 from tests.config.minimal import config, minimal
 
 PAIRS = {"dynamics": {"mesh": {"law": "pairs"}}}

@@ -6,8 +6,8 @@ import pytest
 
 from siggen.config import parse
 from siggen.config.config import Config
-from siggen.config.problems import BRANCHES
-from siggen.config.wording import models_in
+from siggen.keys.problems import BRANCHES
+from siggen.keys.wording import models_in
 from tests.config.minimal import MINIMAL, minimal
 
 UNIFORM = {"kind": "uniform", "low": 3, "high": 4}

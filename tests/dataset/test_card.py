@@ -8,9 +8,10 @@ import pytest
 import yaml
 
 from siggen.checks.loading import load_config
-from siggen.config import Choice, Config, Manufacture
+from siggen.config import Config, Manufacture
 from siggen.dataset.card import _limits
 from siggen.dataset.card_making import background_text, damage_text, drive_text, making
+from siggen.keys.distributions import Choice
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
 

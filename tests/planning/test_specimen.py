@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.config import constant
+from siggen.keys.number import constant
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from tests.config.minimal import config
 

@@ -10,10 +10,10 @@ from typing import Annotated, Any, TypeAlias
 from pydantic import Field, GetCoreSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from siggen.config.distributions import KINDS, Choice, Distribution, LogUniform, Normal, Uniform
-from siggen.config.problems import MISSING, nearest, received_text, refusal, refused_problems, section_problems
-from siggen.config.wording import range_text
 from siggen.errors import Problem
+from siggen.keys.distributions import KINDS, Choice, Distribution, LogUniform, Normal, Uniform
+from siggen.keys.problems import MISSING, nearest, received_text, refusal, refused_problems, section_problems
+from siggen.keys.wording import range_text
 
 Number: TypeAlias = float | Uniform | LogUniform | Normal | Choice
 """A physical number as the YAML file gives it."""

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from siggen.config.wording import AllowedText
+from siggen.keys.wording import AllowedText
 
 
 class Section(BaseModel):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, TypeAlias
 
-from siggen.config.number import Number, Within
+from siggen.keys.number import Number, Within
 
 GearName: TypeAlias = Literal["pinion", "gear"]
 AnyGear: TypeAlias = Literal["pinion", "gear", "either"]

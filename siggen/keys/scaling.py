@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
-from siggen.config.section import Section
+from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
 

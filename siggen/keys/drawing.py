@@ -6,9 +6,9 @@ import itertools
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
-from siggen.config.distributions import Choice, LogUniform, Normal, Uniform
-from siggen.config.number import Within, at, bounds
-from siggen.config.section import Section
+from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.keys.number import Within, at, bounds
+from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
 

@@ -11,9 +11,9 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from siggen.config.problems import refusal
-from siggen.config.section import Real, Section
 from siggen.errors import Problem
+from siggen.keys.problems import refusal
+from siggen.keys.section import Real, Section
 
 LEAST_SHARE = 0.01
 """Share of a normal distribution that its bounds must enclose; less is a slip of the pen rather than a wish."""

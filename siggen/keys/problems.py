@@ -10,8 +10,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from siggen.config.wording import allowed_text, models_in
 from siggen.errors import Problem, counted
+from siggen.keys.wording import allowed_text, models_in
 
 REFUSAL = "refusal"
 MISSING = "nothing"

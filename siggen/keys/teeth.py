@@ -1,16 +1,20 @@
-"""Which teeth of a gear are damaged: a number of neighbours, drawn per gearbox if it is a choice, or their indices."""
+"""Which teeth of a gear are damaged, and how far: neighbours, drawn per gearbox if it is a choice, or their indices.
+
+Stages say how far the damage of each tooth has grown, over the sizes that a state gives.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeAlias
 
 from pydantic import Field, GetCoreSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, core_schema
 
-from siggen.config.distributions import Choice
-from siggen.config.problems import received_text, refusal, section_problems
-from siggen.errors import Problem
+from siggen.errors import Problem, counted
+from siggen.keys.distributions import Choice
+from siggen.keys.number import Number, Within
+from siggen.keys.problems import received_text, refusal, section_problems
 
 TeethValue = int | tuple[int, ...] | Choice
 DAMAGED_TEETH = (
@@ -73,3 +77,29 @@ def drawn_teeth(teeth: TeethValue, u: float) -> int | tuple[int, ...]:
 
 
 Teeth = Annotated[TeethValue, TeethParser()]
+
+Stages: TypeAlias = Annotated[Number | tuple[Number, ...], Within(above=0, most=1, many=True)]
+
+STAGES = (
+    "lengths and depth of a tooth's spall over those given here; a number or distribution, drawn for each tooth, or a "
+    "list with one for each tooth, in the order of their indices from the first on"
+)
+
+
+def stage_of(stages: Number | tuple[Number, ...], index: int) -> Number:
+    """Return the stage of the damaged tooth of this index, from 0."""
+    return stages[index] if isinstance(stages, tuple) else stages
+
+
+def refuse_stages(stages: Number | tuple[Number, ...], teeth: TeethValue) -> None:
+    """Raise a refusal of a list that has not one stage for each damaged tooth."""
+    if isinstance(teeth, Choice):
+        if isinstance(stages, tuple):
+            allowed = "allowed: one number or distribution where the number of teeth is drawn (teeth)"
+            raise refusal([Problem("stages", f"a list of {len(stages)}", allowed)])
+        return
+    count = teeth if isinstance(teeth, int) else len(teeth)
+    if isinstance(stages, tuple) and len(stages) != count:
+        hit = counted(count, "damaged tooth", "damaged teeth")
+        allowed = f"allowed: one for each of the {hit} (teeth), or one number"
+        raise refusal([Problem("stages", f"a list of {len(stages)}", allowed)])
