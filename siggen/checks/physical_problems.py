@@ -18,8 +18,10 @@ from siggen.checks.pair_problems import pair_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
-from siggen.config import DamageModel, Dynamics, Gears, ParsedConfig, Stiffness
+from siggen.config import Dynamics, Gears, ParsedConfig, Stiffness
 from siggen.errors import Problem
+from siggen.faults.fault import Fault
+from siggen.faults.flank_place import allowed_text, found_problems, in_mm
 from siggen.gears.errors.iso_1328 import outside_iso_1328
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
@@ -28,8 +30,6 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
 from siggen.specimen.contact import damage_is_geometry
-from siggen.specimen.damage import kind_of
-from siggen.specimen.damage_kind import allowed_text, found_problems, in_mm
 from siggen.specimen.friction import roughness_problem
 from siggen.specimen.gears import gear_pair, stiffness_options
 
@@ -133,11 +133,10 @@ def _located(problem: GeometryProblem) -> Problem:
     return Problem(f"{section}.{key}" if key else section, received, allowed_text(problem.allowed))
 
 
-def _state_problems(pairs: list[GearPair], damage: DamageModel, path: str, *, through_face: bool) -> Iterator[Problem]:
+def _state_problems(pairs: list[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
     """Yield what is wrong with the damage of a state; with `through_face` it may take the whole contact length."""
-    kind = kind_of(damage)
     for pair in pairs:
-        misplaced = [replace(problem, path=f"{path}.{problem.path}") for problem in kind.problems(pair, damage)]
+        misplaced = [replace(problem, path=f"{path}.{problem.path}") for problem in damage.place_problems(pair)]
         yield from misplaced
         if not misplaced and not through_face:
-            yield from found_problems(pair, kind.widest(pair, damage), path)
+            yield from found_problems(pair, damage.widest(pair), path)

@@ -3,7 +3,6 @@
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
 from siggen.config.casing import Bolts, Caps, Casing
 from siggen.config.config import BLOCK, Config, Splits
-from siggen.config.damage import ClusteredPits, DamageModel, LayeredPits, ListedPit, ListedPits
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
@@ -22,7 +21,6 @@ from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.presets import config_file
 from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
 from siggen.config.shafts import Shaft, Shafts
-from siggen.config.spall import ListedSpall, Spalls, SpallSize
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
@@ -38,10 +36,8 @@ __all__ = [
     "Bursts",
     "Caps",
     "Casing",
-    "ClusteredPits",
     "Config",
     "Coupling",
-    "DamageModel",
     "Density",
     "Dynamics",
     "FlankWaves",
@@ -53,11 +49,7 @@ __all__ = [
     "Housing",
     "Internals",
     "Inverter",
-    "LayeredPits",
     "LineTable",
-    "ListedPit",
-    "ListedPits",
-    "ListedSpall",
     "Mains",
     "Manufacture",
     "MeasuredPath",
@@ -77,8 +69,6 @@ __all__ = [
     "Shaft",
     "ShaftLines",
     "Shafts",
-    "SpallSize",
-    "Spalls",
     "SpeedVariation",
     "Splits",
     "State",

@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from siggen.config.damage import KINDS
 from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
+from siggen.faults.registry import HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.teeth import most_teeth
 
@@ -229,28 +229,19 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
 
 
 def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield labels that do not say what is on the flank: spalling needs a spall, here or before, and vice versa."""
+    """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
     states: Mapping[int, State] = sections.get("states", {})
     for index, state in states.items():
-        with_spalls = [i for i in states if i <= index and _has_spalls(states[i])]
-        if state.fault == "spalling" and not with_spalls:
-            spalls = " or ".join(
-                kind for kind, section in KINDS.items() if section.default_fault(_nothing) == "spalling"
-            )
-            allowed = (
-                f"allowed: pitting; spalling needs kind: {spalls}, or spalls in kind: list, here or in a milder state"
-            )
-            yield Problem(f"states.{index}.fault", "spalling, with pits alone", allowed)
-        if state.fault == "pitting" and state.damage is not None and not state.damage.may_be_pitting:
-            yield Problem(f"states.{index}.fault", "pitting, with a spall", "allowed: spalling")
-
-
-def _nothing(_: str) -> None:
-    """Stand for a section that says nothing but its kind."""
-
-
-def _has_spalls(state: State) -> bool:
-    return state.damage is not None and state.damage.has_spalls
+        if state.damage is None or state.fault == HEALTHY:
+            continue
+        before = [states[i].damage for i in states if i < index]
+        inherited = (word for damage in before if damage is not None for word in damage.own_words)
+        words = dict.fromkeys([*state.damage.own_words, *(w for w in inherited if w not in state.damage.outranked)])
+        if state.fault not in words:
+            kinds = " or ".join(kinds_called(state.fault))
+            allowed = f"allowed: {' or '.join(words)}; {state.fault} needs kind: {kinds}"
+            received = f"'{state.fault}', with damage of kind {state.damage.kind_word()}"
+            yield Problem(f"states.{index}.fault", received, f"{allowed}, here or in a milder state")
 
 
 def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
-from siggen.config.damage import DAMAGE, KINDS, DamageModel
 from siggen.errors import Problem
+from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSection, FaultWord, default_word
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
@@ -31,9 +31,8 @@ class State(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
         description="label of the state"
     )
-    fault: Literal["healthy", "pitting", "spalling"] = Field(
-        description="default: spalling with damage of kind spall or irregular or a list of spalls alone, pitting with "
-        "any other, healthy with none"
+    fault: FaultWord = Field(
+        description="default: what its kind of damage is called, a list of spalls alone spalling; healthy without"
     )
     severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
         description="default: the state's name if that is a severity; healthy without damage"
@@ -42,10 +41,7 @@ class State(Section):
         default="previous",
         description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
     )
-    damage: Annotated[
-        Annotated[DamageModel, Field(discriminator="kind")] | None,
-        DAMAGE,
-    ] = Field(default=None, description="null for a healthy state")
+    damage: Annotated[DamageSection | None, DAMAGE] = Field(default=None, description="null for a healthy state")
 
     @model_validator(mode="before")
     @classmethod
@@ -53,7 +49,7 @@ class State(Section):
         if not isinstance(value, Mapping):
             return value
         damaged = value.get("damage") is not None
-        labels = {"fault": _fault(value["damage"]) if damaged else "healthy"}
+        labels = {"fault": default_word(value["damage"]) if damaged else HEALTHY}
         name = value.get("name")
         if not damaged:
             labels["severity"] = "healthy"
@@ -82,7 +78,8 @@ class State(Section):
             received = f"{MISSING}, with fault {self.fault} and severity {self.severity}"
             problems.append(Problem("damage", received, "allowed: damage, or fault and severity both healthy"))
         if self.damage is not None and healthy_fault:
-            problems.append(Problem("fault", "healthy, with damage", "allowed: pitting or spalling, or no damage"))
+            allowed = f"allowed: {' or '.join(FAULT_WORDS[1:])}, or no damage"
+            problems.append(Problem("fault", "healthy, with damage", allowed))
         if self.damage is not None and healthy_severity:
             problems.append(
                 Problem("severity", "healthy, with damage", "allowed: slight, moderate or severe, or no damage")
@@ -102,13 +99,3 @@ def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
     if state.grows_from == "previous":
         return earlier[-1] if earlier else None
     return next(i for i in earlier if states[i].name == state.grows_from)
-
-
-def _fault(damage: object) -> str:
-    """Return the fault that a damage, raw or parsed, is by default."""
-    read: Callable[[str], object] = (
-        damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
-    )
-    kind = read("kind")
-    section = KINDS.get(kind) if isinstance(kind, str) else None
-    return "pitting" if section is None else section.default_fault(read)

@@ -15,7 +15,16 @@ from siggen.sources import CHARACTERS, sources_digest
 
 PACKAGES = ("siggen", "numpy", "scipy", "numba", "llvmlite", "pyarrow")
 MAKES_RECORDS = (
-    *("arrays.py", "compiled.py", "lanes.py", "seeding.py", "keys/**/*.py", "config/**/*.py", "rig/**/*.py"),
+    *(
+        "arrays.py",
+        "compiled.py",
+        "lanes.py",
+        "seeding.py",
+        "keys/**/*.py",
+        "faults/**/*.py",
+        "config/**/*.py",
+        "rig/**/*.py",
+    ),
     *("planning/**/*.py", "checks/quantity_names.py"),
     *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),
     *("columns/**/*.py", "record/**/*.py"),

@@ -7,34 +7,14 @@ spall hides is no damage of its own any more.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
-from siggen.config import ClusteredPits, Config, DamageModel, LayeredPits, ListedPits, Spalls
-from siggen.config.irregular import IrregularSpalls
+from siggen.config import Config
+from siggen.faults.growth import Growth
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
-from siggen.specimen.damage_kind import DamageKind
-from siggen.specimen.growth import Growth
-from siggen.specimen.irregular import IRREGULAR
-from siggen.specimen.listed import LISTED
-from siggen.specimen.pits import CLUSTERED, LAYERED
-from siggen.specimen.spalls import SPALLS
-
-KINDS: dict[type, DamageKind] = {
-    LayeredPits: LAYERED,
-    ClusteredPits: CLUSTERED,
-    Spalls: SPALLS,
-    ListedPits: LISTED,
-    IrregularSpalls: IRREGULAR,
-}
-"""Section of the configuration -> how it is drawn and checked; the one list of kinds behind `siggen.config.damage`."""
-
-
-def kind_of(model: DamageModel) -> DamageKind:
-    """Return the kind of a section of damage."""
-    return KINDS[type(model)]
 
 
 def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int) -> Damage:
@@ -62,10 +42,17 @@ def grown_damage(
     damage_model = config.states[state_id].damage
     if damage_model is None:
         return ()
-    milder = config.grown_from(state_id)
-    before = () if milder is None else milder_damage(milder)
-    growth = Growth(config, specimen_id, pair, state_id, before)
-    return _united(before, kind_of(damage_model).draw(damage_model, growth))
+    milder = tuple(_milder(config, state_id))
+    before = milder_damage(milder[0][0]) if milder else ()
+    return _united(before, damage_model.drawn(Growth(config.seed, specimen_id, state_id, pair, milder, before)))
+
+
+def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:
+    """Yield the states that a state has grown from with their sections of damage, the nearest first."""
+    older = config.grown_from(state_id)
+    while older is not None:
+        yield older, config.states[older].damage
+        older = config.grown_from(older)
 
 
 def _united(before: Damage, new: Damage) -> Damage:

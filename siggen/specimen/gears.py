@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from siggen.config import Config, Gears, Stiffness, Wheel
-from siggen.gears.damage.heights import axial_height
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -61,22 +60,3 @@ def _spur_gear(gears: Gears, wheel: Wheel) -> SpurGear:
         clearance_coefficient=constant(gears.clearance_coefficient),
         bore_radius_m=constant(wheel.bore_radius_mm) / 1e3,
     )
-
-
-def pit_height_m(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:
-    """Return the axial height above the base circle of a flank point given as in the configuration [m].
-
-    Parameters
-    ----------
-    pair : GearPair
-    which : str
-        'pinion' or 'gear'.
-    height_mm : float or str
-        Height as measured [mm], or 'pitch' for the pitch point of the mesh (roll angle tan(alpha_w), derived).
-    reading : str
-        'axial', 'radial' or 'arc'.
-    """
-    gear = pair.member(which)
-    if isinstance(height_mm, str):
-        return float(gear.height_m(math.tan(pair.working_pressure_angle_rad)))
-    return axial_height(gear, height_mm / 1e3, reading)

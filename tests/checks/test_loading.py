@@ -9,9 +9,10 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import yaml_text
 from siggen.errors import ConfigError, UsageError
+from siggen.faults.flank_place import height_m_of
 from siggen.gears.geometry.gear_pair import geometry_problems
 from siggen.planning.plan import plan
-from siggen.specimen.gears import gear_pair, pit_height_m
+from siggen.specimen.gears import gear_pair
 from tests.config.minimal import config, minimal
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
@@ -135,7 +136,7 @@ def test_heights_are_read_as_the_configuration_says():
     # Pitch point of 18 teeth of 3 mm above the base circle: axial 1.6579, radial (m z/2)(1 - cos 20) = 1.6283, arc
     # R_b tan^2(20)/2 = 1.6805 mm; the three are the same point (given to 4 decimals)
     heights = [
-        pit_height_m(pair, "pinion", height, reading)
+        height_m_of(pair, "pinion", height, reading)
         for height, reading in [("pitch", "axial"), (1.6579, "axial"), (1.6283, "radial"), (1.6805, "arc")]
     ]
     assert heights == pytest.approx([1.6579e-3] * 4, abs=1e-7)

@@ -13,8 +13,9 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "errors", "sources", "seeding", "arrays", "compiled", "lanes", "stage_times", "keys", "config", "rig", "planning",
+    "errors", "sources", "seeding", "arrays", "compiled", "lanes", "stage_times", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
+    "faults", "config", "rig", "planning",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
     "sensing", "specimen", "checks", "columns", "record", "dataset", "engines", "sets", "views",
     "publication", "cli",

@@ -1,4 +1,4 @@
-"""Spalls of a state: outline, place, lengths and depth; one on each damaged tooth, or listed one by one.
+"""One spall: outline, place, lengths and depth as a user writes them, and the spall on the flank of a drawn gear.
 
 Which keys a spall needs follows from its shape and its depth law; the others are refused, so that no key is without
 effect.
@@ -6,18 +6,35 @@ effect.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from siggen.config.damage_section import DamageSection
 from siggen.errors import Problem, counted
-from siggen.keys.number import Number, Within, bounds
-from siggen.keys.places import DAMAGED_GEAR, READING, AnyGear, GearName, Height, HeightReading, Length, PlaceOnFace
+from siggen.faults.flank_place import (
+    DAMAGED_GEAR,
+    MM,
+    PROBE_M,
+    AnyGear,
+    Height,
+    Length,
+    PlaceOnFace,
+    allowed_text,
+    axial_m,
+    height_m_of,
+    in_mm,
+    read_m,
+)
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.outlines import Ellipse, Outline, Polygon, rectangle, v_outline
+from siggen.gears.damage.spall import Spall, length_squared_depth_m
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import corners
+from siggen.keys.number import Number, Within, bounds, constant
 from siggen.keys.problems import MISSING, refusal
-from siggen.keys.section import Real, Section, Whole
-from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages
+from siggen.keys.section import Real, Section
 
 Shape: TypeAlias = Literal["rectangle", "ellipse", "v", "polygon"]
 DepthLaw: TypeAlias = Literal["flat", "dish", "length_squared"]
@@ -113,38 +130,90 @@ class SpallSize(Section):
             yield Problem("depth_coefficient_um_per_mm2", "a value", allowed)
 
 
-class Spalls(SpallSize, DamageSection):
-    """A spall on each damaged tooth."""
-
-    kind: Literal["spall"] = "spall"
-    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
-    stages: Stages = Field(default=1.0, description=f"{STAGES}; not of a polygon")
-
-    @model_validator(mode="after")
-    def _a_stage_for_each_tooth(self) -> Spalls:
-        refuse_stages(self.stages, self.teeth)
-        if self.shape == "polygon" and self.stages != 1.0:
-            raise refusal([Problem("stages", "a value", "allowed: nothing, a polygon is as large as its vertices say")])
-        return self
-
-    @classmethod
-    def default_fault(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003
-        """Return spalling."""
-        return "spalling"
-
-    @property
-    def has_spalls(self) -> bool:
-        """A spall it is."""
-        return True
-
-    def parallel_edges(self, face_width_mm: float) -> tuple[bool, bool]:
-        """Return whether it is a rectangle, and whether it may go through the face."""
-        return self.parallel(face_width_mm)
+SIZE_KEYS = ("face_length_mm", "profile_length_mm", "lower_width_mm", "upper_width_mm", "depth_mm")
+SPALL_KEYS = {
+    "height_m": "centre_height_mm",
+    "face_m": "face_centre_mm",
+    "depth_m": "depth_mm",
+    "vertices_m": "vertices",
+}
+"""Key of the configuration that a problem of a spall is about."""
 
 
-class ListedSpall(SpallSize):
-    """One spall at a given place."""
+def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+    """Return a drawn spall on one tooth.
 
-    gear: GearName = Field(default="pinion", description="damaged gear")
-    tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
+    Parameters
+    ----------
+    pair : GearPair
+    size : SpallSize
+        Without distributions.
+    reading : str
+        How its heights and its profile length are measured: 'axial', 'radial' or 'arc'.
+    tooth : int
+
+    Raises
+    ------
+    TypeError
+        If a number is still a distribution.
+    """
+    gear = pair.member(size.gear)
+    outline = _outline(pair, size, reading)
+    if size.depth_law == "length_squared":
+        # um/mm^2 is 1/m.
+        depth_m = length_squared_depth_m(gear, outline, constant(size.depth_coefficient_um_per_mm2))
+    else:
+        depth_m = MM * _given(size.depth_mm)
+    return Spall(size.gear, tooth, outline, depth_m, size.depth_law)
+
+
+def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
+    gear = pair.member(size.gear)
+    if size.shape == "polygon":
+        vertices = [(axial_m(gear, MM * v.height_mm, reading), MM * v.face_mm) for v in size.vertices]
+        return Polygon(tuple(vertices))
+    centre = size.centre_height_mm
+    middle = height_m_of(pair, size.gear, centre if isinstance(centre, str) else constant(centre), reading)
+    along = read_m(gear, middle, reading)
+    half = 0.5 * MM * _given(size.profile_length_mm)
+    heights = axial_m(gear, along - half, reading), axial_m(gear, along + half, reading)
+    face = 0.5 * pair.face_width_m if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
+    if size.shape == "v":
+        return v_outline(heights, face, MM * _given(size.lower_width_mm), MM * _given(size.upper_width_mm))
+    across = 0.5 * MM * _given(size.face_length_mm)
+    if size.shape == "rectangle":
+        return rectangle(heights, (face - across, face + across))
+    # About the centre itself, not the middle of its ends: ellipses of one centre then hold each other.
+    return Ellipse(middle, face, across, 0.5 * (heights[1] - heights[0]))
+
+
+def _given(number: object) -> float:
+    if not isinstance(number, float):
+        raise TypeError(f"a drawn value was expected, received {number}")
+    return number
+
+
+def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:
+    """Yield what is wrong with a spall by itself, at every combination of its bounds."""
+    for corner in corners(size):
+        spall = spall_on_tooth(pair, corner, reading, 0)
+        for problem in damage_problems(pair, (spall,)):
+            if problem.name != "contact":
+                key = _spall_key(size, problem.name)
+                yield Problem(prefix + key, in_mm(problem.received), allowed_text(problem.allowed))
+
+
+def _spall_key(size: SpallSize, name: str) -> str:
+    if size.shape == "polygon" and name in ("height_m", "face_m"):
+        return "vertices"
+    if name == "depth_m" and size.depth_law == "length_squared":
+        return "depth_coefficient_um_per_mm2"
+    return SPALL_KEYS.get(name, "profile_length_mm")
+
+
+def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> Spall:
+    """Return a spall with all its sizes at their upper and its place at its lower bounds, without depth to speak of."""
+    sizes = {key: value for key in SIZE_KEYS if (value := getattr(size, key)) is not None}
+    largest = size.model_copy(update={key: bounds(value)[1] for key, value in sizes.items()})
+    spall = spall_on_tooth(pair, next(corners(largest)), reading, tooth)
+    return replace(spall, depth_m=PROBE_M)

@@ -11,12 +11,11 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config
-from siggen.config.damage import KINDS as config_kinds
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.planning.specimen import draw_specimen
-from siggen.specimen.damage import KINDS, state_damage
+from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair
 
 PIT = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
@@ -150,8 +149,3 @@ def test_growing_layers_keep_their_lattice_even_from_odd_to_even_columns() -> No
     assert len({round(p.height_m, 9) for p in severe}) == 1
     # seven neighbours one spacing apart: no gap and no half step where the number of columns was even in between
     assert np.diff(sorted(p.face_m for p in severe)) == pytest.approx([1e-3] * 6, rel=1e-9)
-
-
-def test_every_kind_that_a_file_may_name_is_drawn_and_checked() -> None:
-    assert set(config_kinds.values()) == set(KINDS)
-    assert all("kind" in section.model_fields for section in KINDS)

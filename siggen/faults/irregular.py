@@ -1,36 +1,51 @@
-"""Irregular spalls of a state: from the configuration to the flank of a drawn gear, and what cannot be."""
+"""Irregular spalls of a state: skewed and wavy edges, a rough floor; one on each damaged tooth, growing with the state.
+
+Ranges that no source gives are assumed: skews up to a few tenths of the length per 10 mm of face, waviness of 5 to 20 %
+of the length, edge radii of 0.02 to 0.2 mm, depths from the depth of the largest shear stress (0.3 to 0.8 Hertz half
+widths) to several tenths of a millimetre.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import sqrt
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from siggen.arrays import FloatArray
-from siggen.config.irregular import IrregularSpalls
 from siggen.errors import Problem
+from siggen.faults.fault import Fault
+from siggen.faults.flank_place import (
+    DAMAGED_GEAR,
+    MM,
+    PROBE_M,
+    READING,
+    AnyGear,
+    HeightReading,
+    Length,
+    PlaceOnFace,
+    allowed_text,
+    axial_heights_m,
+    axial_m,
+    height_m_of,
+    in_mm,
+    read_m,
+)
+from siggen.faults.growth import Growth
 from siggen.gears.damage.flank_damage import single_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
-from siggen.gears.damage.irregular import (
-    STRIPS,
-    WAVE_LIMIT,
-    IrregularSpall,
-    drawn_waves,
-    grown_spall,
-    stations_across,
-)
+from siggen.gears.damage.irregular import STRIPS, WAVE_LIMIT, IrregularSpall, drawn_waves, grown_spall, stations_across
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
-from siggen.keys.number import Number, at, bounds, constant
-from siggen.keys.teeth import stage_of
-from siggen.specimen.damage_kind import PROBE_M, DamageKind, allowed_text, in_mm
-from siggen.specimen.gears import pit_height_m
-from siggen.specimen.growth import MM, Growth
-from siggen.specimen.spalls import axial_heights_m, axial_m, read_m
+from siggen.keys.number import Number, Within, at, bounds, constant
+from siggen.keys.problems import MISSING, refusal
+from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 
 PER_10MM = 0.1
 """mm of arc per 10 mm of face as a slope."""
@@ -39,10 +54,113 @@ WAVE_SHARE = 0.1
 STRIPS_PER_WAVE = 4
 """Strips in a correlation length, at least: straight pieces then follow a wave."""
 
+START: Literal["below_pitch"] = "below_pitch"
+Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch"))]
+Skew = Annotated[Number, Within(least=-5, most=5)]
+OptionalLength = Annotated[Number | None, Within(above=0, words=(None,))]
+Share = Annotated[Number | None, Within(above=0, most=1, words=(None,))]
 
-def _irregular(model: IrregularSpalls, growth: Growth) -> Damage:
-    """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
-    return tuple(_on_tooth(model, growth, tooth, index) for index, tooth in enumerate(growth.teeth(model)))
+
+class IrregularSpalls(Fault):
+    """An irregular spall on each damaged tooth; drawn once, so that a more severe state holds the milder one."""
+
+    words: ClassVar[tuple[str, ...]] = ("spalling",)
+    outranked: ClassVar[tuple[str, ...]] = ("pitting",)
+
+    kind: Literal["irregular"] = "irregular"
+    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
+    stages: Stages = Field(default=1.0, description=STAGES)
+    centre_height_mm: Middle = Field(
+        default=START,
+        description="height of the middle above the base circle; pitch; or below_pitch: half way along the flank from "
+        "the lowest point of single contact to the pitch line, where the full load meets negative sliding",
+    )
+    height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
+    profile_length_mm: Length = Field(description="mean length along the profile")
+    face_length_mm: OptionalLength = Field(default=None, description="length across the face; or face_share")
+    face_share: Share = Field(default=None, description="length across the face over the face width; or face_length_mm")
+    face_centre_mm: PlaceOnFace = Field(default=None, description="middle across the face; null: of the face")
+    leading_skew_mm_per_10mm: Skew = Field(
+        default=Uniform(low=-0.15, high=0.15),
+        description="rise of the edge that the contact reaches first (lower on the pinion, upper on the gear) towards "
+        "the tip over 10 mm of face, in mm of arc; the default is assumed",
+    )
+    trailing_skew_mm_per_10mm: Skew = Field(
+        default=Uniform(low=-0.15, high=0.15), description="the same of the other edge; the default is assumed"
+    )
+    waviness: Annotated[Number, Within(least=0, most=0.2)] = Field(
+        default=0.1, description="rms of either edge's waves over the profile length; the default is assumed"
+    )
+    waviness_length_mm: OptionalLength = Field(
+        default=None,
+        description="distance across the face over which the waves' correlation falls to 1/e; null: a tenth of the "
+        "face width, assumed",
+    )
+    edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
+        default=Uniform(low=0.02, high=0.2), description="radius of the edges; the default is assumed"
+    )
+    depth_mm: OptionalLength = Field(
+        default=None, description="depth normal to the tooth's middle plane; null: grows with the area (depth_share)"
+    )
+    depth_share: Annotated[Number, Within(above=0, most=0.5)] = Field(
+        default=0.05, description="depth over the root of profile length x face length; the default is assumed"
+    )
+    floor: Literal["dish", "flat"] = Field(default="dish", description="dish: deepest half way between its ends")
+    floor_roughness: Annotated[Number, Within(least=0, most=0.5)] = Field(
+        default=0.15, description="rms of the depth from strip to strip across the face, over it; assumed"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> IrregularSpalls:
+        lengths = {"face_length_mm": self.face_length_mm, "face_share": self.face_share}
+        given = [key for key, value in lengths.items() if value is not None]
+        if not given:
+            allowed = "an irregular spall needs face_length_mm or face_share"
+            raise refusal([Problem("face_length_mm", MISSING, allowed)])
+        if len(given) == 2:
+            raise refusal([Problem("face_share", "a value, beside face_length_mm", "allowed: one of the two")])
+        if self.depth_mm is not None and self.depth_share != 0.05:
+            allowed = "allowed: nothing beside depth_mm, which it would compute"
+            raise refusal([Problem("depth_share", "a value", allowed)])
+        return self
+
+    @model_validator(mode="after")
+    def _a_stage_for_each_tooth(self) -> IrregularSpalls:
+        refuse_stages(self.stages, self.teeth)
+        return self
+
+    def drawn(self, growth: Growth) -> Damage:
+        """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
+        return tuple(_on_tooth(self, growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield what is wrong at the bounds, whatever the waves turn out to be: they never go beyond `WAVE_LIMIT`."""
+        return _problems(pair, self)
+
+    def widest(self, pair: GearPair) -> Damage:
+        """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
+        gear, across = pair.member(self.gear), MM * _face_lengths_mm(self, pair.face_width_m / MM)[1]
+        middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else MM * bounds(self.face_centre_mm)[0]
+        along = read_m(gear, _heights_m(pair, self)[0], self.height_reading)
+        half = 0.5 * MM * bounds(self.profile_length_mm)[1]
+        heights = axial_m(gear, along - half, self.height_reading), axial_m(gear, along + half, self.height_reading)
+        return (Spall(self.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
+
+    @property
+    def drawn_edges(self) -> bool:
+        """Each has an edge radius of its own."""
+        return True
+
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:
+        """Return whether nothing bends its edges, and whether it then may go through the face."""
+        straight = all(bounds(number) == (0.0, 0.0) for number in self._bending())
+        share = None if self.face_share is None else bounds(self.face_share)[1] * face_width_mm
+        length = share if self.face_length_mm is None else bounds(self.face_length_mm)[1]
+        return straight, straight and length is not None and length >= face_width_mm
+
+    def _bending(self) -> Iterator[Number]:
+        yield from (self.leading_skew_mm_per_10mm, self.trailing_skew_mm_per_10mm, self.waviness)
 
 
 def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) -> IrregularSpall:
@@ -102,7 +220,7 @@ def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
     centre = size.centre_height_mm
     if centre == "below_pitch":
         return initiation_height_m(pair, size.gear)
-    return pit_height_m(pair, size.gear, centre if isinstance(centre, str) else constant(centre), size.height_reading)
+    return height_m_of(pair, size.gear, centre if isinstance(centre, str) else constant(centre), size.height_reading)
 
 
 def _bend_m(
@@ -221,18 +339,5 @@ def _deepest_m(pair: GearPair, size: IrregularSpalls) -> float:
     return MM * bounds(size.depth_share)[1] * sqrt(area) * rough
 
 
-def _widest(pair: GearPair, size: IrregularSpalls) -> Damage:
-    """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
-    gear, across = pair.member(size.gear), MM * _face_lengths_mm(size, pair.face_width_m / MM)[1]
-    middle = 0.5 * pair.face_width_m if size.face_centre_mm is None else MM * bounds(size.face_centre_mm)[0]
-    along = read_m(gear, _heights_m(pair, size)[0], size.height_reading)
-    half = 0.5 * MM * bounds(size.profile_length_mm)[1]
-    heights = axial_m(gear, along - half, size.height_reading), axial_m(gear, along + half, size.height_reading)
-    return (Spall(size.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
-
-
 def _said(number: Number) -> str:
     return f"{number:g}" if isinstance(number, float) else str(number)
-
-
-IRREGULAR = DamageKind(_irregular, _problems, _widest)

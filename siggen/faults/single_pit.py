@@ -1,21 +1,35 @@
-"""Single pits: drawn at a place, checked at a place."""
+"""One pit: its size as a user writes it, drawn at a place, checked at a place (pits: paper A, section 2.1).
+
+Sizes are those of one pit: an ellipse on the flank with semi-axes across the face and along the profile, and a depth.
+A distribution of a size is drawn once per pit.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
+from pydantic import Field
 
-from siggen.config import ClusteredPits, LayeredPits, ListedPit
-from siggen.config.damage import PitSize
 from siggen.errors import Problem
+from siggen.faults.flank_place import MM, PROBE_M, Length, found_problems, height_m_of
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.pit import Pit
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, at, bounds
-from siggen.specimen.damage_kind import PROBE_M, found_problems
-from siggen.specimen.gears import pit_height_m
-from siggen.specimen.growth import MM
+from siggen.keys.number import at, bounds
+from siggen.keys.section import Section
+
+
+class PitSize(Section):
+    """Size and floor of a pit."""
+
+    semi_axis_face_mm: Length = Field(description="half the length across the face")
+    semi_axis_profile_mm: Length = Field(description="half the length along the profile")
+    depth_mm: Length = Field(description="depth normal to the tooth's middle plane")
+    floor: Literal["flat", "dish"] = Field(
+        default="flat", description="flat floor, or a dish that is deepest in the middle"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,29 +46,22 @@ class PitPlace:
     remark: str = ""
 
 
-def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, which: str, u: float) -> float:
-    """Return the axial height [m] of a height as the configuration states it, drawn by the uniform `u`."""
-    return pit_height_m(pair, which, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
-
-
 def drawn_pit(
-    size: LayeredPits | ClusteredPits | ListedPit,
-    pair: GearPair,
-    tooth: int,
-    height_m: float,
-    face_m: float,
-    rng: np.random.Generator,
+    size: PitSize, gear: str, pair: GearPair, tooth: int, centre_m: tuple[float, float], rng: np.random.Generator
 ) -> Pit:
-    """Return a pit with its own sizes; a centre that a random shift took off the flank is put on its edge."""
-    low, high = flank_heights(pair.member(size.gear))
+    """Return a pit with its own sizes at a height and across the face [m].
+
+    A centre that a random shift took off the flank is put on its edge.
+    """
+    low, high = flank_heights(pair.member(gear))
     semi_face, semi_profile, depth = (
         MM * at(n, rng.random()) for n in (size.semi_axis_face_mm, size.semi_axis_profile_mm, size.depth_mm)
     )
     return Pit(
-        gear=size.gear,
+        gear=gear,
         tooth=tooth,
-        height_m=min(max(height_m, low), high),
-        face_m=min(max(face_m, 0.0), pair.face_width_m),
+        height_m=min(max(centre_m[0], low), high),
+        face_m=min(max(centre_m[1], 0.0), pair.face_width_m),
         semi_axis_face_m=semi_face,
         semi_axis_profile_m=semi_profile,
         depth_m=depth,
@@ -66,7 +73,7 @@ def pit_place_problems(pair: GearPair, place: PitPlace) -> list[Problem]:
     """Return what is wrong with one place: its height and its place on the face first, then the depth there."""
     middle_m = pair.face_width_m / 2
     at_height = found_problems(pair, (_probe(place, place.height_m, middle_m),), place.height_key, place.remark)
-    pitch_m = pit_height_m(pair, place.gear, "pitch", "axial")
+    pitch_m = height_m_of(pair, place.gear, "pitch", "axial")
     at_face = found_problems(pair, (_probe(place, pitch_m, place.face_m),), place.face_key, place.remark)
     if at_height or at_face:
         return [*at_height, *at_face]

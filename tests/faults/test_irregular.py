@@ -17,7 +17,7 @@ from siggen.planning.specimen import draw_specimen
 from siggen.record.damage_rows import damage_rows
 from siggen.record.simulation import specimen_state
 from siggen.specimen.gears import gear_pair
-from tests.specimen.test_damage import PIT, config_with, damage_of
+from tests.faults.test_damage import PIT, config_with, damage_of
 
 SPALL: dict[str, Any] = {"kind": "irregular", "profile_length_mm": 0.6, "face_length_mm": 5.0}
 GROWN = [

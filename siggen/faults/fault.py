@@ -1,0 +1,91 @@
+"""What the rest of siggen asks a kind of damage: the common part of all sections of damage.
+
+A kind is one module here: its section with the answers below. Where its physics is new, one module in `gears.damage`
+holds it, which knows no configuration. The registry names the kind; nothing else knows kinds.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, TypeAlias, get_args
+
+from siggen.errors import Problem
+from siggen.faults.growth import Growth
+from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.problems import BRANCHES
+from siggen.keys.section import Section
+from siggen.keys.teeth import TeethValue
+
+HitTeeth: TypeAlias = Iterator[tuple[str, str, TeethValue]]
+"""Keys that name teeth, the gear they belong to, and how many or which ones they name."""
+
+
+class Fault(Section):
+    """Base of the sections of damage; its field `kind` is a Literal of one word.
+
+    Paths of problems count from the state's damage. Pairs are given at the bounds of the gears' distributions; what is
+    asked about the damage holds at the bounds of its own, so that no gearbox can turn out impossible.
+    """
+
+    words: ClassVar[tuple[str, ...]] = ()
+    """What a state with it may be called (`fault`); the first is the default."""
+
+    outranked: ClassVar[tuple[str, ...]] = ()
+    """What a state with it is not called any more, although it contains a milder one of that name."""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Make the kind known to the messages, in whose paths it is no key."""
+        BRANCHES.add(cls.kind_word())
+
+    @classmethod
+    def kind_word(cls) -> str:
+        """Return the word of its `kind:`."""
+        return str(get_args(cls.model_fields["kind"].annotation)[0])
+
+    @abstractmethod
+    def drawn(self, growth: Growth) -> Damage:
+        """Return what this state adds; what it hides of the milder state's damage goes by itself."""
+
+    @abstractmethod
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield what cannot be about single damages."""
+
+    def widest(self, pair: GearPair) -> Damage:  # noqa: ARG002
+        """Return the damage that may together take the whole width of contact, without depth to speak of.
+
+        As large as it may be; nothing where that is known only when it is drawn.
+        """
+        return ()
+
+    @classmethod
+    def default_word(cls, read: Callable[[str], object]) -> str:  # noqa: ARG003 - of use where a section holds several kinds
+        """Return what a state with it is called by default; `read` gives its keys, which are not checked yet."""
+        return cls.words[0]
+
+    @property
+    def own_words(self) -> tuple[str, ...]:
+        """What a state with this very damage may be called."""
+        return self.words
+
+    @property
+    def drawn_edges(self) -> bool:
+        """Whether each damage has an edge radius of its own; else all have that of the section dynamics."""
+        return False
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield what names teeth; as it stands, for damage on neighbouring teeth of one gear."""
+        yield "teeth", getattr(self, "gear"), getattr(self, "teeth")  # noqa: B009 - keys of most kinds, not of all
+
+    def key_that_adds_nothing(self, milder: Fault) -> str | None:  # noqa: ARG002
+        """Return the key by which it adds nothing to the milder damage that it contains, or None if it adds some."""
+        return None
+
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:  # noqa: ARG002
+        """Return whether all its edges are parallel to the axis, and whether one may then go through the face.
+
+        None for what has no such edges.
+        """
+        return None

@@ -1,0 +1,121 @@
+"""Places and lengths on a flank: the keys that name them, their values on a drawn gear, and messages in mm."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Literal, TypeAlias
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.errors import Problem
+from siggen.gears.damage.flank_damage import damage_problems
+from siggen.gears.damage.heights import axial_height
+from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.keys.number import Number, Within, at, bounds
+
+GearName: TypeAlias = Literal["pinion", "gear"]
+AnyGear: TypeAlias = Literal["pinion", "gear", "either"]
+"""`either`: drawn per gearbox, the same for all of its states."""
+
+DAMAGED_GEAR = "damaged gear; either: drawn per gearbox, one gear in all states"
+
+HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
+
+Length = Annotated[Number, Within(above=0)]
+Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",))]
+PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,))]
+
+READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
+
+MM = 1e-3
+PROBE_M = 1e-9
+"""Size of a damage that is checked for its place alone."""
+
+GO_ON = {"contact": ", or dynamics.mesh.law: pairs with dynamics.mesh.damage: all or geometry"}
+"""What else to do about a problem, by its name."""
+
+
+def height_m_of(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:
+    """Return the axial height above the base circle of a flank point given as in the configuration [m].
+
+    Parameters
+    ----------
+    pair : GearPair
+    which : str
+        'pinion' or 'gear'.
+    height_mm : float or str
+        Height as measured [mm], or 'pitch' for the pitch point of the mesh (roll angle tan(alpha_w), derived).
+    reading : str
+        'axial', 'radial' or 'arc'.
+    """
+    gear = pair.member(which)
+    if isinstance(height_mm, str):
+        return float(gear.height_m(math.tan(pair.working_pressure_angle_rad)))
+    return axial_height(gear, height_mm / 1e3, reading)
+
+
+def heights_m(pair: GearPair, gear: str, height_mm: Number | str, reading: str) -> list[float]:
+    """Return the axial heights [m] at the bounds of a height as the configuration gives it."""
+    if isinstance(height_mm, str):
+        return [height_m_of(pair, gear, height_mm, reading)]
+    return [height_m_of(pair, gear, value, reading) for value in dict.fromkeys(bounds(height_mm))]
+
+
+def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, which: str, u: float) -> float:
+    """Return the axial height [m] of a height as the configuration states it, drawn by the uniform `u`."""
+    return height_m_of(pair, which, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
+
+
+def read_m(gear: SpurGear, height_m: float, reading: str) -> float:
+    """Return the distance from the base circle of a flank point at an axial height, as a reading measures it [m]."""
+    if reading == "axial":
+        return height_m
+    roll, base = float(gear.roll_at_height(height_m)), gear.base_radius_m
+    return 0.5 * base * roll * roll if reading == "arc" else base * (math.hypot(1.0, roll) - 1.0)
+
+
+def axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
+    """Return the axial height of one reading, as `axial_heights_m` [m]."""
+    return float(axial_heights_m(gear, np.array(value_m), reading))
+
+
+def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> FloatArray:
+    """Return the axial heights of readings; below the base circle and above the tip along the flank's tangent [m].
+
+    Any shape.
+
+    Ends of damage that reach off the flank need a height, whatever is cut off there afterwards. Derived: dx/darc =
+    cos(psi - alpha_2), dx/dR = cos(psi - alpha_2) sqrt(1 + psi^2)/psi (finite at the base circle only per arc, so a
+    radial reading goes on below it as the arc does).
+    """
+    if reading == "axial":
+        return values_m
+    tip = read_m(gear, float(gear.height_m(gear.tip_roll_rad)), reading)
+    ratio = np.clip(values_m, 0.0, tip) / gear.base_radius_m
+    roll = np.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else np.sqrt(2.0 * ratio)
+    beyond = np.maximum(values_m - tip, 0.0) * math.cos(gear.tip_roll_rad - gear.base_half_angle_rad)
+    below = values_m * math.cos(gear.base_half_angle_rad)
+    return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)
+
+
+def in_mm(text: str) -> str:
+    """Return a text with its lengths in mm, the unit of the configuration."""
+    text = re.sub(r"\b([a-z_]+)_m (?=[-\d])", r"\1 ", text)
+    return re.sub(r"(-?\d[\d.]*(?:e[-+]?\d+)?) m\b", lambda found: f"{float(found[1]) * 1e3:.6g} mm", text)
+
+
+def allowed_text(text: str) -> str:
+    """Return what is allowed, in mm and with the word before it."""
+    return "allowed: " + in_mm(text.removeprefix("allowed: "))
+
+
+def found_problems(pair: GearPair, damage: Damage, path: str, remark: str = "") -> list[Problem]:
+    """Return what is wrong with a damage as problems of one key."""
+    return [
+        Problem(path, f"{remark}{in_mm(problem.received)}", allowed_text(problem.allowed) + GO_ON.get(problem.name, ""))
+        for problem in damage_problems(pair, damage)
+    ]

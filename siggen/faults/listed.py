@@ -1,0 +1,119 @@
+"""Pits and spalls that are listed one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from siggen.errors import Problem
+from siggen.faults.fault import Fault, HitTeeth
+from siggen.faults.flank_place import MM, READING, GearName, Height, HeightReading, drawn_height_m, heights_m
+from siggen.faults.growth import Growth
+from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
+from siggen.faults.single_spall import SpallSize, largest_spall, spall_on_tooth, spall_problems
+from siggen.gears.damage.pit import Pit
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import Number, Within, at, bounds
+from siggen.keys.problems import refusal
+from siggen.keys.section import Whole
+
+
+class ListedPit(PitSize):
+    """One pit at a given place."""
+
+    gear: GearName = Field(default="pinion", description="damaged gear")
+    tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
+    height_mm: Height = Field(default="pitch", description="height of the centre above the base circle")
+    face_mm: Annotated[Number, Within(least=0)] = Field(description="centre across the face, from one end of the tooth")
+
+
+class ListedSpall(SpallSize):
+    """One spall at a given place."""
+
+    gear: GearName = Field(default="pinion", description="damaged gear")
+    tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
+
+
+class ListedPits(Fault):
+    """Pits and spalls one by one."""
+
+    words: ClassVar[tuple[str, ...]] = ("pitting", "spalling")
+
+    kind: Literal["list"] = "list"
+    height_reading: HeightReading = Field(default="axial", description=READING)
+    pits: tuple[ListedPit, ...] = Field(default=(), description="the pits")
+    spalls: tuple[ListedSpall, ...] = Field(default=(), description="the spalls")
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> ListedPits:
+        if not (self.pits or self.spalls):
+            raise refusal([Problem("pits", "no pits and no spalls", "allowed: at least 1 pit or spall")])
+        return self
+
+    @classmethod
+    def default_word(cls, read: Callable[[str], object]) -> str:
+        """Return spalling for a list of spalls alone."""
+        return "spalling" if read("spalls") and not read("pits") else "pitting"
+
+    @property
+    def own_words(self) -> tuple[str, ...]:
+        """Whatever is listed may be called pitting, and with a spall spalling."""
+        return self.words if self.spalls else ("pitting",)
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield every listed tooth."""
+        yield from ((f"pits.{number}.tooth", pit.gear, (pit.tooth,)) for number, pit in enumerate(self.pits))
+        yield from ((f"spalls.{number}.tooth", spall.gear, (spall.tooth,)) for number, spall in enumerate(self.spalls))
+
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool] | None:
+        """Return whether all listed spalls are rectangles, and whether one may go through the face; None without."""
+        found = [spall.parallel(face_width_mm) for spall in self.spalls]
+        return (all(parallel for parallel, _ in found), any(through for _, through in found)) if found else None
+
+    def drawn(self, growth: Growth) -> Damage:
+        """Return what is listed."""
+        return (*self._pits(growth), *self._spalls(growth))
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield what is wrong with each of them."""
+        for index, pit in enumerate(self.pits):
+            keys = (f"pits.{index}.height_mm", f"pits.{index}.face_mm", f"pits.{index}.depth_mm")
+            for height_m in heights_m(pair, pit.gear, pit.height_mm, self.height_reading):
+                for face_mm in bounds(pit.face_mm):
+                    yield from pit_place_problems(pair, PitPlace(pit.gear, height_m, face_mm / 1e3, pit, *keys))
+        for index, spall in enumerate(self.spalls):
+            yield from spall_problems(pair, spall, self.height_reading, f"spalls.{index}.")
+
+    def widest(self, pair: GearPair) -> Damage:
+        """Return all of them, as large as they may be."""
+        # Teeth that there are not are refused by name elsewhere.
+        pits = tuple(
+            largest_pit(
+                pit.gear,
+                pit.tooth,
+                heights_m(pair, pit.gear, pit.height_mm, self.height_reading)[0],
+                bounds(pit.face_mm)[0] / 1e3,
+                pit,
+            )
+            for pit in self.pits
+            if pit.tooth < pair.member(pit.gear).teeth
+        )
+        spalls = [s for s in self.spalls if s.tooth < pair.member(s.gear).teeth]
+        return (*pits, *(largest_spall(pair, s, self.height_reading, s.tooth) for s in spalls))
+
+    def _pits(self, growth: Growth) -> Iterator[Pit]:
+        for index, pit in enumerate(self.pits):
+            rng = growth.rng(f"list.pit{index}")
+            height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, pit.gear, rng.random())
+            yield drawn_pit(pit, pit.gear, growth.pair, pit.tooth, (height, MM * at(pit.face_mm, rng.random())), rng)
+
+    def _spalls(self, growth: Growth) -> Iterator[Spall]:
+        uniform = growth.uniforms()
+        for index, spall in enumerate(self.spalls):
+            drawn = draw(spall, uniform, f"list.spall{index}")
+            yield spall_on_tooth(growth.pair, drawn, self.height_reading, spall.tooth)

@@ -1,0 +1,66 @@
+"""Spalls of a state: one on each damaged tooth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from siggen.errors import Problem
+from siggen.faults.fault import Fault
+from siggen.faults.flank_place import READING, HeightReading
+from siggen.faults.growth import Growth
+from siggen.faults.single_spall import SIZE_KEYS, SpallSize, largest_spall, spall_on_tooth, spall_problems
+from siggen.gears.damage.spall import Spall
+from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.drawing import draw
+from siggen.keys.number import at, constant
+from siggen.keys.problems import refusal
+from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
+
+
+class Spalls(SpallSize, Fault):
+    """A spall on each damaged tooth."""
+
+    words: ClassVar[tuple[str, ...]] = ("spalling",)
+    outranked: ClassVar[tuple[str, ...]] = ("pitting",)
+
+    kind: Literal["spall"] = "spall"
+    teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
+    height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
+    stages: Stages = Field(default=1.0, description=f"{STAGES}; not of a polygon")
+
+    @model_validator(mode="after")
+    def _a_stage_for_each_tooth(self) -> Spalls:
+        refuse_stages(self.stages, self.teeth)
+        if self.shape == "polygon" and self.stages != 1.0:
+            raise refusal([Problem("stages", "a value", "allowed: nothing, a polygon is as large as its vertices say")])
+        return self
+
+    def drawn(self, growth: Growth) -> Damage:
+        """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
+        return tuple(self._on_tooth(growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:
+        """Yield what is wrong with a spall by itself."""
+        return spall_problems(pair, self, self.height_reading)
+
+    def widest(self, pair: GearPair) -> Damage:
+        """Return the largest spall."""
+        return (largest_spall(pair, self, self.height_reading, 0),)
+
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:
+        """Return whether it is a rectangle, and whether it may go through the face."""
+        return self.parallel(face_width_mm)
+
+    def _on_tooth(self, growth: Growth, tooth: int, index: int) -> Spall:
+        uniform, name = growth.place(self.gear, Spalls), f"spall.{self.gear}.{tooth}"
+        stage = at(stage_of(self.stages, index), uniform(f"{name}.stages"))
+        return spall_on_tooth(growth.pair, draw(self, uniform, name)._at_stage(stage), self.height_reading, tooth)
+
+    def _at_stage(self, stage: float) -> Spalls:
+        """Return drawn sizes at a stage: lengths and depth shrink alike; a depth by length follows its own law."""
+        given = {key: value for key in SIZE_KEYS if (value := getattr(self, key)) is not None}
+        return self if stage == 1.0 else self.model_copy(update={key: stage * constant(v) for key, v in given.items()})
