@@ -19,7 +19,7 @@ def flank(
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
     out: Annotated[
-        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per pit or spall.")
+        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per single damage.")
     ] = None,
     png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
     show: Open = False,

@@ -15,8 +15,8 @@ DAMAGE_COLUMNS = (
     Column("record_id", pa.int64(), "", "record that shows the damage"),
     Column("gear", pa.string(), "", "pinion or gear"),
     Column("tooth", pa.int32(), "", "index of the tooth"),
-    Column("kind", pa.string(), "", "pit or spall"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v or polygon"),
+    Column("kind", pa.string(), "", "what the damage is"),
+    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v, polygon or none"),
     Column(
         "height_mm",
         pa.float64(),
@@ -41,7 +41,7 @@ DAMAGE_COLUMNS = (
     ),
     Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
-"""Columns of `damage/<split>.parquet`: one row per pit or spall of a record."""
+"""Columns of `damage/<split>.parquet`: one row per single damage of a record."""
 EDGE_COLUMNS = (
     Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
     Column(

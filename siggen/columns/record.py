@@ -82,12 +82,12 @@ ID_COLUMNS = (
     Column("split", pa.string(), "", "train, validation or test"),
 )
 LABEL_COLUMNS = (
-    Column("fault", pa.string(), "", "kind of fault: healthy, pitting or spalling"),
+    Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate or severe"),
     Column("faulty_gear", pa.string(), "", "which gear carries damage: none, pinion, gear or both"),
     Column("faulty_teeth_pinion", list_of(pa.int32()), "", "indices of the pinion's damaged teeth"),
     Column("faulty_teeth_gear", list_of(pa.int32()), "", "indices of the gear's damaged teeth"),
-    Column("damage_count", pa.int32(), "", "number of pits and spalls on all teeth"),
+    Column("damage_count", pa.int32(), "", "number of single damages on all teeth"),
     Column("damaged_area_mm2", pa.float64(), "mm^2", "area of the union of all damage, all teeth"),
     Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
     Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),

@@ -251,8 +251,9 @@ def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem
     if milder.damage is None or state.damage is None:
         return
     if key := state.damage.key_that_adds_nothing(milder.damage):
-        received = f"no pits beyond those of {milder.name}, which this state contains (grows_from)"
-        allowed = f"allowed: more pits than {milder.name} has, or grows_from: none"
+        nouns = state.damage.nouns or "damage"
+        received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"
+        allowed = f"allowed: more {nouns} than {milder.name} has, or grows_from: none"
         yield Problem(f"{path}.damage.{key}", received, allowed)
 
 

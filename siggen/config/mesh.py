@@ -33,12 +33,12 @@ class Mesh(Section):
     film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
     damage: Literal["all", "stiffness", "geometry"] = Field(
         default="all",
-        description="how pits and spalls act with law: pairs; stiffness: shorter contact and weaker sections, as in "
+        description="how damage acts with law: pairs; stiffness: shorter contact and weaker sections, as in "
         "potential-energy models (paper A); geometry: lands carry, flanks sink where none is left, lands inside damage "
         "are rough; all: geometry, and weaker sections",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=0.1, description="rounding of the edges of pits and spalls (damage: geometry or all)"
+        default=0.1, description="rounding of the edges of damage (damage: geometry or all)"
     )
     contact: Literal["slices", "face"] = Field(
         default="slices",

@@ -31,9 +31,7 @@ class State(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
         description="label of the state"
     )
-    fault: FaultWord = Field(
-        description="default: what its kind of damage is called, a list of spalls alone spalling; healthy without"
-    )
+    fault: FaultWord = Field(description="default: what its kind of damage is called; healthy without damage")
     severity: Literal["healthy", "slight", "moderate", "severe"] = Field(
         description="default: the state's name if that is a severity; healthy without damage"
     )

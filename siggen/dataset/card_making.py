@@ -22,6 +22,10 @@ SECTIONS = {
     "geometry": "The tooth's sections keep their strength.",
     "all": "They also take material from the tooth's sections, which weakens them.",
 }
+GROWTH = (
+    "States of a specimen may grow from each other: a later state then keeps the damage of the earlier one "
+    "(`grows_from` in `config.yaml`). Single damages are in `damage/`."
+)
 FRICTION = {
     "off": "There is no friction between the flanks.",
     "constant": "The flanks rub with a constant coefficient.",
@@ -81,19 +85,24 @@ def _ends(values: Sequence[float]) -> tuple[float, float]:
 
 
 def damage_text(config: Config) -> str:
-    """Say how pits and spalls act on the teeth."""
-    if all(state.damage is None for state in config.states):
+    """Say how the kinds of damage act on the teeth."""
+    kinds = list(dict.fromkeys(type(state.damage) for state in config.states if state.damage is not None))
+    if not kinds:
         return "None: every state is healthy."
+    nouns = list(dict.fromkeys(noun for kind in kinds if kind.nouns for noun in kind.nouns.split(" and ")))
+    said = [_flank_text(config, " and ".join(nouns))] if nouns else []
+    return " ".join([*said, *dict.fromkeys(kind.acts for kind in kinds if kind.acts), GROWTH])
+
+
+def _flank_text(config: Config, nouns: str) -> str:
+    """Say how material missing from a flank acts."""
     mesh = config.dynamics.mesh
     if mesh.law == "linear" or mesh.damage == "stiffness":
         acts = STIFFNESS_DAMAGE
     else:
         acts = GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
-    return (
-        f"Pits and spalls with outline, depth and place on the flank {acts} The union of overlapping outlines counts "
-        "once. States of a specimen may grow from each other: a later state then keeps the damage of the earlier one "
-        "(`grows_from` in `config.yaml`). Outlines are in `damage/`."
-    )
+    head = f"{nouns.capitalize()} with outline, depth and place on the flank {acts}"
+    return f"{head} The union of overlapping outlines counts once."
 
 
 def _dynamics_text(config: Config) -> str:

@@ -34,7 +34,7 @@ def write_metadata(storage: Storage, config: Config, split: str, sidecars: Seque
 def write_damage(
     storage: Storage, config: Config, split: str, sidecars: Sequence[Sidecar], damage_rows: DamageRows
 ) -> FileFacts:
-    """Write one row per pit or spall of every record of a split, in the order of the records."""
+    """Write one row per single damage of every record of a split, in the order of the records."""
     schema = damage_schema(config)
     batches = (
         batch

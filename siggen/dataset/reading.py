@@ -104,7 +104,7 @@ class Dataset:
         return self._table(METADATA_FOLDER, split, columns)
 
     def damage(self, split: str | None = None) -> pa.Table:
-        """Return one row per pit or spall of every record of a split, or of all splits."""
+        """Return one row per single damage of every record of a split, or of all splits."""
         return self._table(DAMAGE_FOLDER, split, None)
 
     def records(

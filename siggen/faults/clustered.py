@@ -17,6 +17,7 @@ from siggen.faults.flank_place import (
     Height,
     HeightReading,
     Length,
+    OptionalLengthAcross,
     drawn_height_m,
     heights_m,
 )
@@ -27,7 +28,7 @@ from siggen.gears.damage.layouts import clustered_centres
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, Within, at
+from siggen.keys.number import at
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 
@@ -36,6 +37,7 @@ class ClusteredPits(PitSize, Fault):
     """Pits scattered around a height."""
 
     words: ClassVar[tuple[str, ...]] = ("pitting",)
+    nouns: ClassVar[str] = "pits"
 
     kind: Literal["clustered"] = "clustered"
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
@@ -44,7 +46,7 @@ class ClusteredPits(PitSize, Fault):
     centre_height_mm: Height = Field(default="pitch", description="height above the base circle around which they lie")
     height_reading: HeightReading = Field(default="axial", description=READING)
     spread_profile_mm: Length = Field(description="standard deviation of the heights")
-    spread_face_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+    spread_face_mm: OptionalLengthAcross = Field(
         default=None, description="standard deviation across the face about its middle; null: evenly over the face"
     )
 

@@ -35,6 +35,12 @@ class Fault(Section):
     outranked: ClassVar[tuple[str, ...]] = ()
     """What a state with it is not called any more, although it contains a milder one of that name."""
 
+    nouns: ClassVar[str] = ""
+    """What it consists of, in the plural, where it is material missing from a flank: for cards and messages."""
+
+    acts: ClassVar[str] = ""
+    """A sentence of the card on how it acts, where it is anything else."""
+
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Make the kind known to the messages, in whose paths it is no key."""

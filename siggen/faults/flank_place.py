@@ -16,6 +16,7 @@ from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import Number, Within, at, bounds
+from siggen.keys.scaling import Grows
 
 GearName: TypeAlias = Literal["pinion", "gear"]
 AnyGear: TypeAlias = Literal["pinion", "gear", "either"]
@@ -25,9 +26,16 @@ DAMAGED_GEAR = "damaged gear; either: drawn per gearbox, one gear in all states"
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
 
-Length = Annotated[Number, Within(above=0)]
-Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",))]
-PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,))]
+MODULE, FACE_WIDTH, SKEW = "module", "face width", "module over face width"
+"""What lengths of damage grow with, so that it takes the same share of the flank of another gear pair. Pits keep their
+outline, so both of their axes grow with the module; an edge rises by the same share of a spall's length."""
+
+Length = Annotated[Number, Within(above=0), Grows(MODULE)]
+OptionalLength = Annotated[Number | None, Within(above=0, words=(None,)), Grows(MODULE)]
+LengthAcross = Annotated[Number, Within(above=0), Grows(FACE_WIDTH)]
+OptionalLengthAcross = Annotated[Number | None, Within(above=0, words=(None,)), Grows(FACE_WIDTH)]
+Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",)), Grows(MODULE)]
+PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FACE_WIDTH)]
 
 READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
 

@@ -20,11 +20,15 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
     MM,
+    MODULE,
     PROBE_M,
     READING,
+    SKEW,
     AnyGear,
     HeightReading,
     Length,
+    OptionalLength,
+    OptionalLengthAcross,
     PlaceOnFace,
     allowed_text,
     axial_heights_m,
@@ -45,6 +49,7 @@ from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds, constant
 from siggen.keys.problems import MISSING, refusal
+from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 
 PER_10MM = 0.1
@@ -55,9 +60,8 @@ STRIPS_PER_WAVE = 4
 """Strips in a correlation length, at least: straight pieces then follow a wave."""
 
 START: Literal["below_pitch"] = "below_pitch"
-Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch"))]
-Skew = Annotated[Number, Within(least=-5, most=5)]
-OptionalLength = Annotated[Number | None, Within(above=0, words=(None,))]
+Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch")), Grows(MODULE)]
+Skew = Annotated[Number, Within(least=-5, most=5), Grows(SKEW)]
 Share = Annotated[Number | None, Within(above=0, most=1, words=(None,))]
 
 
@@ -66,6 +70,7 @@ class IrregularSpalls(Fault):
 
     words: ClassVar[tuple[str, ...]] = ("spalling",)
     outranked: ClassVar[tuple[str, ...]] = ("pitting",)
+    nouns: ClassVar[str] = "spalls"
 
     kind: Literal["irregular"] = "irregular"
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
@@ -78,7 +83,7 @@ class IrregularSpalls(Fault):
     )
     height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
     profile_length_mm: Length = Field(description="mean length along the profile")
-    face_length_mm: OptionalLength = Field(default=None, description="length across the face; or face_share")
+    face_length_mm: OptionalLengthAcross = Field(default=None, description="length across the face; or face_share")
     face_share: Share = Field(default=None, description="length across the face over the face width; or face_length_mm")
     face_centre_mm: PlaceOnFace = Field(default=None, description="middle across the face; null: of the face")
     leading_skew_mm_per_10mm: Skew = Field(
@@ -97,7 +102,7 @@ class IrregularSpalls(Fault):
         description="distance across the face over which the waves' correlation falls to 1/e; null: a tenth of the "
         "face width, assumed",
     )
-    edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
+    edge_radius_mm: Annotated[Number, Within(least=0, most=1), Grows(MODULE)] = Field(
         default=Uniform(low=0.02, high=0.2), description="radius of the edges; the default is assumed"
     )
     depth_mm: OptionalLength = Field(

@@ -13,11 +13,13 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
     MM,
+    MODULE,
     READING,
     AnyGear,
     Height,
     HeightReading,
     Length,
+    LengthAcross,
     PlaceOnFace,
     drawn_height_m,
     heights_m,
@@ -29,6 +31,7 @@ from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, Within, at, bounds
+from siggen.keys.scaling import Grows
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 
@@ -37,6 +40,7 @@ class LayeredPits(PitSize, Fault):
     """Rows of equal count, one above the other, as in paper A."""
 
     words: ClassVar[tuple[str, ...]] = ("pitting",)
+    nouns: ClassVar[str] = "pits"
 
     kind: Literal["layered"] = "layered"
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
@@ -45,9 +49,9 @@ class LayeredPits(PitSize, Fault):
     pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
     first_height_mm: Height = Field(default="pitch", description="height of the first row above the base circle")
     height_reading: HeightReading = Field(default="axial", description=READING)
-    spacing_face_mm: Length = Field(default=1.0, description="between pits of a row")
+    spacing_face_mm: LengthAcross = Field(default=1.0, description="between pits of a row")
     spacing_profile_mm: Length = Field(default=0.4, description="between rows")
-    jitter_mm: Annotated[Number, Within(least=0)] = Field(
+    jitter_mm: Annotated[Number, Within(least=0), Grows(MODULE)] = Field(
         default=0.0, description="every pit is moved by up to this, along both directions"
     )
     face_centre_mm: PlaceOnFace = Field(

@@ -9,7 +9,16 @@ from pydantic import Field, model_validator
 
 from siggen.errors import Problem
 from siggen.faults.fault import Fault, HitTeeth
-from siggen.faults.flank_place import MM, READING, GearName, Height, HeightReading, drawn_height_m, heights_m
+from siggen.faults.flank_place import (
+    FACE_WIDTH,
+    MM,
+    READING,
+    GearName,
+    Height,
+    HeightReading,
+    drawn_height_m,
+    heights_m,
+)
 from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.faults.single_spall import SpallSize, largest_spall, spall_on_tooth, spall_problems
@@ -20,6 +29,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.problems import refusal
+from siggen.keys.scaling import Grows
 from siggen.keys.section import Whole
 
 
@@ -29,7 +39,9 @@ class ListedPit(PitSize):
     gear: GearName = Field(default="pinion", description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     height_mm: Height = Field(default="pitch", description="height of the centre above the base circle")
-    face_mm: Annotated[Number, Within(least=0)] = Field(description="centre across the face, from one end of the tooth")
+    face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(
+        description="centre across the face, from one end of the tooth"
+    )
 
 
 class ListedSpall(SpallSize):
@@ -43,6 +55,7 @@ class ListedPits(Fault):
     """Pits and spalls one by one."""
 
     words: ClassVar[tuple[str, ...]] = ("pitting", "spalling")
+    nouns: ClassVar[str] = "pits and spalls"
 
     kind: Literal["list"] = "list"
     height_reading: HeightReading = Field(default="axial", description=READING)

@@ -1,4 +1,4 @@
-"""The kinds of damage; a new one is a line here."""
+"""What follows from the list of kinds: the union that a state parses, its words, and what is said about them."""
 
 from __future__ import annotations
 
@@ -9,30 +9,24 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
-from siggen.faults.clustered import ClusteredPits
 from siggen.faults.fault import Fault
-from siggen.faults.irregular import IrregularSpalls
-from siggen.faults.layered import LayeredPits
-from siggen.faults.listed import ListedPits
-from siggen.faults.spalls import Spalls
+from siggen.faults.kinds import KINDS
 from siggen.keys.wording import AllowedText
 
-REGISTERED: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls]
-
-KINDS: Mapping[str, type[Fault]] = {one.kind_word(): one for one in REGISTERED}
+BY_WORD: Mapping[str, type[Fault]] = {one.kind_word(): one for one in KINDS}
 """Word of `kind:` -> section."""
 
 HEALTHY = "healthy"
-FAULT_WORDS = (HEALTHY, *dict.fromkeys(word for one in REGISTERED for word in one.words))
+FAULT_WORDS = (HEALTHY, *dict.fromkeys(word for one in KINDS for word in one.words))
 """What states may be called."""
 
-DAMAGE = AllowedText("null, or a mapping with kind: {} or {}".format(", ".join([*KINDS][:-1]), [*KINDS][-1]))
+DAMAGE = AllowedText("null, or a mapping with kind: {} or {}".format(", ".join([*BY_WORD][:-1]), [*BY_WORD][-1]))
 
 if TYPE_CHECKING:
     DamageSection: TypeAlias = Fault
     FaultWord: TypeAlias = str
 else:
-    DamageSection = Annotated[reduce(or_, REGISTERED), Field(discriminator="kind")]
+    DamageSection = Annotated[reduce(or_, KINDS), Field(discriminator="kind")]
     FaultWord = Literal[FAULT_WORDS]
 
 
@@ -42,10 +36,10 @@ def default_word(damage: object) -> str:
         damage.get if isinstance(damage, Mapping) else lambda key: getattr(damage, key, None)
     )
     kind = read("kind")
-    section = KINDS.get(kind) if isinstance(kind, str) else None
+    section = BY_WORD.get(kind) if isinstance(kind, str) else None
     return FAULT_WORDS[1] if section is None else section.default_word(read)
 
 
 def kinds_called(word: str) -> list[str]:
     """Return the kinds whose damage a state may be called by a word."""
-    return [kind for kind, section in KINDS.items() if word in section.words]
+    return [kind for kind, section in BY_WORD.items() if word in section.words]

@@ -15,11 +15,14 @@ from pydantic import Field, model_validator
 from siggen.errors import Problem, counted
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    FACE_WIDTH,
     MM,
+    MODULE,
     PROBE_M,
     AnyGear,
     Height,
-    Length,
+    OptionalLength,
+    OptionalLengthAcross,
     PlaceOnFace,
     allowed_text,
     axial_m,
@@ -34,12 +37,12 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, Within, bounds, constant
 from siggen.keys.problems import MISSING, refusal
+from siggen.keys.scaling import Grows
 from siggen.keys.section import Real, Section
 
 Shape: TypeAlias = Literal["rectangle", "ellipse", "v", "polygon"]
 DepthLaw: TypeAlias = Literal["flat", "dish", "length_squared"]
-OptionalLength = Annotated[Number | None, Within(above=0, words=(None,))]
-OptionalWidth = Annotated[Number | None, Within(least=0, words=(None,))]
+OptionalWidth = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FACE_WIDTH)]
 
 SIZES = {
     "rectangle": ("face_length_mm", "profile_length_mm"),
@@ -53,8 +56,8 @@ SIZES = {
 class Vertex(Section):
     """Corner of a polygon, never drawn."""
 
-    height_mm: Annotated[Real, Field(ge=0)] = Field(description="above the base circle")
-    face_mm: Real = Field(
+    height_mm: Annotated[Real, Field(ge=0), Grows(MODULE)] = Field(description="above the base circle")
+    face_mm: Annotated[Real, Grows(FACE_WIDTH)] = Field(
         description="across the face, from one end of the tooth; what lies beyond the face is cut off"
     )
 
@@ -71,7 +74,9 @@ class SpallSize(Section):
     face_centre_mm: PlaceOnFace = Field(
         default=None, description="middle across the face; null: of the face; not of a polygon"
     )
-    face_length_mm: OptionalLength = Field(default=None, description="length across the face; rectangle and ellipse")
+    face_length_mm: OptionalLengthAcross = Field(
+        default=None, description="length across the face; rectangle and ellipse"
+    )
     profile_length_mm: OptionalLength = Field(
         default=None, description="length along the profile, read as height_reading says; not of a polygon"
     )
@@ -83,7 +88,7 @@ class SpallSize(Section):
         description="flat; dish (depth_mm in the middle); length_squared (flat, coefficient x squared arc length)",
     )
     depth_mm: OptionalLength = Field(default=None, description="depth normal to the tooth's middle plane")
-    depth_coefficient_um_per_mm2: Length = Field(
+    depth_coefficient_um_per_mm2: Annotated[Number, Within(above=0)] = Field(
         default=16.3, description="of length_squared; 16.3 was measured on spalls 2.3 to 3.8 mm long"
     )
 

@@ -26,6 +26,7 @@ class Spalls(SpallSize, Fault):
 
     words: ClassVar[tuple[str, ...]] = ("spalling",)
     outranked: ClassVar[tuple[str, ...]] = ("pitting",)
+    nouns: ClassVar[str] = "spalls"
 
     kind: Literal["spall"] = "spall"
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)

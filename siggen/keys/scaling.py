@@ -3,12 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
 from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
+
+
+@dataclass(frozen=True, slots=True)
+class Grows:
+    """Mark of a key whose numbers are multiplied by the factor of this name where a gearbox has another size."""
+
+    factor: str
+
+
+def grown(section: SomeSection, factors: Mapping[str, float]) -> SomeSection:
+    """Return a section whose marked numbers are multiplied by the factor of their mark, at any depth."""
+    changed: dict[str, Any] = {}
+    for name, field in type(section).model_fields.items():
+        value, marks = getattr(section, name), [mark for mark in field.metadata if isinstance(mark, Grows)]
+        if marks:
+            changed[name] = multiplied(value, factors[marks[-1].factor])
+        elif isinstance(value, Section):
+            changed[name] = grown(value, factors)
+        elif isinstance(value, tuple) and value and all(isinstance(item, Section) for item in value):
+            changed[name] = tuple(grown(item, factors) for item in value)
+    return section.model_copy(update=changed)
 
 
 def scaled(section: SomeSection, factors: Mapping[str, float]) -> SomeSection:

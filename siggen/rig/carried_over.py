@@ -11,21 +11,9 @@ from typing import Any
 
 from siggen.config import Gears
 from siggen.config.pairs import Pair
-from siggen.keys.scaling import multiplied, scaled
+from siggen.faults.flank_place import FACE_WIDTH, MODULE, SKEW
+from siggen.keys.scaling import grown, multiplied, scaled
 from siggen.rig.pair_scales import PairScales, pair_scales
-
-PROFILE_KEYS = (
-    "semi_axis_face_mm", "semi_axis_profile_mm", "depth_mm", "first_height_mm", "centre_height_mm", "height_mm",
-    "spacing_profile_mm", "spread_profile_mm", "profile_length_mm", "waviness_length_mm", "edge_radius_mm", "jitter_mm",
-)  # fmt: skip
-"""Of damage: they grow with the module. Pits keep their outline, so both of their axes do."""
-FACE_KEYS = (
-    "spacing_face_mm", "face_centre_mm", "face_mm", "spread_face_mm", "face_length_mm", "lower_width_mm",
-    "upper_width_mm",
-)  # fmt: skip
-"""Of damage: they grow with the face width, so that a spall takes the same share of it."""
-SKEW_KEYS = ("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm")
-"""Of damage: module over face width, so that an edge rises by the same share of the spall's length."""
 
 
 def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
@@ -46,9 +34,18 @@ def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
     }
     for name, factors in _factors(scales).items():
         if sections.get(name) is not None:
-            whole = name in {"states", "sensors"}
-            found[name] = _each(sections[name], factors) if whole else scaled(sections[name], factors)
+            found[name] = _each(sections[name], factors) if name == "sensors" else scaled(sections[name], factors)
+    if sections.get("states") is not None:
+        found["states"] = _damaged(sections["states"], scales)
     return found
+
+
+def _damaged(states: Any, scales: PairScales) -> Any:
+    """Return states whose damage takes the same share of the other flanks."""
+    factors = {MODULE: scales.module, FACE_WIDTH: scales.face_width, SKEW: scales.module / scales.face_width}
+    if isinstance(states, Mapping):
+        return {index: grown(state, factors) for index, state in states.items()}
+    return tuple(grown(state, factors) for state in states)
 
 
 def _each(entries: Any, factors: Mapping[str, float]) -> Any:
@@ -75,19 +72,8 @@ def _gears(gears: Gears, pair: Pair, scales: PairScales) -> Gears:
 def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
     """Return section -> path of a key below it -> factor."""
     mass = scales.size**3
-    damage = {
-        **dict.fromkeys(PROFILE_KEYS, scales.module),
-        **dict.fromkeys(FACE_KEYS, scales.face_width),
-        **dict.fromkeys(SKEW_KEYS, scales.module / scales.face_width),
-    }
-    listed = {
-        f"{group}.{key}": factor
-        for group in ("vertices", "pits", "spalls", "spalls.vertices")
-        for key, factor in damage.items()
-    }
     return {
         "dynamics": _dynamics(scales),
-        "states": {f"damage.{key}": factor for key, factor in {**damage, **listed}.items()},
         "sensors": {"position_mm": scales.size},
         "manufacture": {
             "lead_misalignment_um": scales.face_width,

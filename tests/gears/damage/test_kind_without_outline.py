@@ -2,72 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 
-from siggen.arrays import FloatArray
 from siggen.columns.damage_columns import DAMAGE_COLUMNS
 from siggen.dynamics.mesh.slice_law import SliceOptions, slice_law
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
-from siggen.gears.damage.tooth_damage import Refusal, ToothDamage, has_extent
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.damage.tooth_damage import has_extent
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss, mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.views.flank_views import _views
+from tests.faults.toy_crack import Hinge
 from tests.gears.builders import pair_18_47, pit
 
 PAIR, OPTIONS = pair_18_47(), StiffnessOptions()
-
-
-@dataclass(frozen=True, slots=True)
-class Hinge:
-    """A crack as a torsional spring in the root: at the lever u of a contact it adds u²/k to the compliance."""
-
-    gear: str
-    tooth: int
-    depth_m: float
-    spring_nm_per_rad: float
-    kind: str = "crack"
-    outline: None = None
-
-    def rows(self) -> list[tuple[float, ...]]:
-        return []
-
-    def tooth_compliance_m_per_n(self, pair: GearPair, roll_rad: FloatArray) -> FloatArray:
-        gear = pair.member(self.gear)
-        slant = roll_rad - gear.base_half_angle_rad
-        lever = gear.height_m(roll_rad) * np.cos(slant) - gear.half_thickness_m(roll_rad) * np.sin(slant)
-        return np.asarray(lever**2 / self.spring_nm_per_rad)
-
-    def profile_arc_m(self, gear: SpurGear) -> float:
-        return 0.0
-
-    def hides(self, other: ToothDamage) -> bool:
-        return isinstance(other, Hinge) and (other.gear, other.tooth) == (self.gear, self.tooth)
-
-    def own_problems(self) -> Iterator[Refusal]:
-        if self.depth_m <= 0.0:
-            yield Refusal("depth_m", f"depth_m {self.depth_m!r} m", "above 0")
-
-    def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
-        if not 0 <= self.tooth < pair.member(self.gear).teeth:
-            yield Refusal("tooth", f"tooth {self.tooth!r}", "a tooth of the gear")
-
-    def table_row(self) -> dict[str, object]:
-        lengths = ("height_mm", "face_mm", "semi_axis_face_mm", "semi_axis_profile_mm")
-        names = {"gear": self.gear, "tooth": self.tooth, "kind": self.kind, "shape": "none", "depth_law": "none"}
-        return {
-            **names,
-            **dict.fromkeys(lengths, 0.0),
-            "depth_mm": 1e3 * self.depth_m,
-            "polygon_face_mm": [],
-            "polygon_height_mm": [],
-        }
 
 
 CRACK = Hinge("pinion", 3, 1e-3, 2e4)

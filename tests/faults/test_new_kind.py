@@ -1,0 +1,102 @@
+"""Somebody adds a kind of damage: a module, a line in the list of kinds, and every program knows it and names no other."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import siggen
+from tests.house.source_tree import ROOT
+from tests.publication.conftest import facts_file
+
+CONFIG = """
+extends: quickstart
+name: toy
+specimens: 10
+duration_s: 0.4
+repeats: 1
+splits: {train: 10, validation: 5, test: 5}
+dynamics: {mesh: {damage: all}}
+states:
+  - {name: healthy}
+  - {name: slight, damage: {kind: toy_crack, depth_mm: {kind: uniform, low: 0.8, high: 1.2}}}
+  - {name: severe, damage: {kind: toy_crack, depth_mm: {kind: uniform, low: 3, high: 4}}}
+"""
+OTHER_KINDS = re.compile(r"\b(pits?|pitting|spall\w*)\b", re.IGNORECASE)
+
+
+def command(folder: Path, *words: str, code: int = 0) -> str:
+    """Run a program with the toy registered, in a fresh process."""
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.faults.with_toys", *words],
+        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "COLUMNS": "160"},
+        capture_output=True, text=True, timeout=500, check=False,
+    )  # fmt: skip
+    said = done.stdout + done.stderr
+    assert done.returncode == code, said
+    assert "Traceback" not in said
+    return said
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("toy")
+    (folder / "toy.yaml").write_text(CONFIG)
+    command(folder, "siggen", "generate", "toy.yaml", "--out", "set", "--engine", "serial")
+    return folder
+
+
+def words_of(page: Path) -> str:
+    """Return what a reader of a page sees."""
+    source = re.sub(r"(?s)<(script|style)\b.*?</\1>", " ", page.read_text(encoding="utf-8"))
+    return html.unescape(re.sub(r"<[^>]+>", " ", source))
+
+
+def test_it_is_labelled_softens_its_tooth_and_has_its_rows(folder: Path) -> None:
+    dataset = siggen.open(folder / "set")
+    labels = dataset.labels().to_pylist()
+    assert {label["fault"] for label in labels} == {"healthy", "crack"}
+    losses = {s: [one["mesh_stiffness_loss"] for one in labels if one["state"] == s] for s in ("healthy", "severe")}
+    assert max(losses["healthy"]) == 0.0 < min(losses["severe"])
+    assert {row["kind"] for row in dataset.damage().to_pylist()} == {"crack"}
+
+
+def test_the_plan_counts_its_states_and_a_mistake_in_it_is_named(folder: Path) -> None:
+    assert "crack" in command(folder, "siggen", "plan", "toy.yaml", "--trial", "0")
+    change = "states.2.damage.depth_mm=0.01"
+    said = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", change, code=2)
+    assert "states.2.damage.depth_mm" in said
+    assert "allowed: at least 0.1" in said
+
+
+def test_card_and_publication_name_it_and_no_other(folder: Path) -> None:
+    facts_file(folder)
+    command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
+    for card in ("set/README.md", "published/README.md"):
+        text = (folder / card).read_text(encoding="utf-8")
+        assert "Toy cracks soften their teeth" in text
+        assert not OTHER_KINDS.search(text)
+    assert "crack" in json.dumps(json.loads((folder / "published" / "croissant.json").read_text()))
+
+
+def test_the_explorer_names_it_and_no_other(folder: Path) -> None:
+    command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
+    assert "crack" in (folder / "explorer.html").read_text(encoding="utf-8")
+    assert not OTHER_KINDS.search(words_of(folder / "explorer.html"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["report", "audit"])
+def test_report_and_audit_name_no_other(folder: Path, what: str) -> None:
+    options = ("--no-cnn",) if what == "report" else ()
+    command(folder, "siggen-diagnostics", what, "set", *options, "--out", what)
+    said = words_of(folder / what / f"{what}.html")
+    assert ("crack" in said) == (what == "report")
+    assert not OTHER_KINDS.search(said)
