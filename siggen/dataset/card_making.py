@@ -85,10 +85,7 @@ def damage_text(config: Config) -> str:
     if all(state.damage is None for state in config.states):
         return "None: every state is healthy."
     mesh = config.dynamics.mesh
-    if mesh.law == "linear" or mesh.damage == "stiffness":
-        acts = STIFFNESS_DAMAGE
-    else:
-        acts = GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
+    acts = STIFFNESS_DAMAGE if mesh.law == "linear" else GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
     return (
         f"Pits and spalls with outline, depth and place on the flank {acts} The union of overlapping outlines counts "
         "once. States of a specimen may grow from each other: a later state then keeps the damage of the earlier one "
@@ -133,10 +130,9 @@ def _sensing_text(config: Config) -> str:
 
 def across_text(config: Config) -> str:
     """Say what the contact and the shafts know of the face width."""
-    mesh = config.dynamics.mesh
-    if mesh.law == "linear" or mesh.contact == "slices":
+    if config.dynamics.mesh.law == "linear":
         return ""
-    solved = "The contact is solved across the face and depends on the load (`dynamics.mesh.contact`). "
+    solved = "The contact is solved across the face and depends on the load (`dynamics.mesh.law: pairs`). "
     return solved + ("Shafts bend and gears tilt (`dynamics.shafts`). " if config.dynamics.shafts is not None else "")
 
 
