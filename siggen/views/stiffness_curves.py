@@ -19,7 +19,6 @@ from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.number import bounds
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
