@@ -20,22 +20,21 @@ from benchmarks.row import Row
 from benchmarks.shipped import shipped
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 
-CASES = (("slices", False), ("face", False), ("face", True))
 SIGNAL_S, ROUNDS = 0.5, 20
 STEPS = 2
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
-    """Yield one row per contact: the severest state of quickstart's first gearbox with two steps per sample."""
+    """Yield a row without and one with tilt: the severest state of quickstart's first gearbox, two steps per sample."""
     if shutil.which("perf") is None:
         yield Row("instructions of a tried step", "", "needs perf (Linux)")
         return
-    for contact, tilt in CASES:
-        motion, loop = _loop(contact, tilt=tilt)
+    for tilt in (False, True):
+        motion, loop = _loop(tilt=tilt)
         loop()  # compiles
         tried, rounds = motion.steps_tried, ROUNDS // 4 if quick else ROUNDS
         counted = _counted(loop, rounds)
-        what = f"a tried step, {contact}, {'with' if tilt else 'without'} tilt"
+        what = f"a tried step, face, {'with' if tilt else 'without'} tilt"
         if counted is None:
             yield Row(what, "", "perf counts nothing here")
             continue
@@ -46,9 +45,9 @@ def rows(*, quick: bool) -> Iterator[Row]:
         )
 
 
-def _loop(contact: str, *, tilt: bool) -> tuple[ExponentialMotion, Callable[[], None]]:
+def _loop(*, tilt: bool) -> tuple[ExponentialMotion, Callable[[], None]]:
     """Return a motion and what runs its loop over SIGNAL_S from the static start."""
-    case = precision_case(PRESETS[0], contact, 0, -1, tilt=tilt)
+    case = precision_case(PRESETS[0], 0, -1, tilt=tilt)
     motion = case.motion("exponential", STEPS)
     assert isinstance(motion, ExponentialMotion)
     pitches, inputs = case.driven_steps(motion, STEPS, SIGNAL_S)

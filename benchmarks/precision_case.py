@@ -91,10 +91,10 @@ def state_grid(integrator: str, steps: int) -> TimeGrid:
     return TimeGrid(2, 2) if (integrator, steps) == ("exponential", 1) else TimeGrid(steps, 1)
 
 
-def precision_case(preset: Path, contact: str, gearbox: int, state: int, *, tilt: bool = True) -> Case:
+def precision_case(preset: Path, gearbox: int, state: int, *, tilt: bool = True) -> Case:
     """Return a record of a preset of a state, negative from the last one on, ready to be integrated in many ways."""
-    rigid = ("dynamics.shafts=null",) if contact == "slices" or not tilt else ()  # slices do not feel a tilt
-    return _case(shipped(preset, f"dynamics.mesh.contact={contact}", f"duration_s={SIGNAL_S}", *rigid), gearbox, state)
+    rigid = () if tilt else ("dynamics.shafts=null",)
+    return _case(shipped(preset, f"duration_s={SIGNAL_S}", *rigid), gearbox, state)
 
 
 def linear_case(gearbox: int, state: int) -> Case:

@@ -5,8 +5,8 @@ Markdown: the strongest attacker by state, alone and beside the gearbox's own he
 four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
 on two cores. SET is one of bench, parallel, industrial, families, edges; without any: bench, parallel, edges.
 
-* `detect_bench`, `detect_parallel`, `detect_industrial`: presets bench, bench_parallel and industrial with the states
-  of STATES, SAME and STATES; `detect_families`: all states of families;
+* `detect_bench`, `detect_industrial`: presets bench and industrial with the states of STATES; `detect_parallel`: bench
+  with the states of SAME and edges parallel to the axis; `detect_families`: all states of families;
 * `detect_edges`: bench with spalls of 1 mm over SHARES of the face, both edges turned together by SKEWS_MM.
 """
 
@@ -37,12 +37,12 @@ STATES = (
     *(f"through_{i:03d}" for i in LENGTHS),
 )
 SAME = ("healthy", "healthy_again", "face_80", *(f"through_{i:03d}" for i in LENGTHS))
-"""Of bench_parallel: enough to compare it with bench."""
+"""Of bench with parallel edges: enough to compare it with bench."""
 FAMILIES = ("healthy", "healthy_again", "slight", "face_40", "face_80", "through")
 """Their sizes are for module 3 mm and grow with it."""
 PRESETS = {
     "bench": ("bench", STATES),
-    "parallel": ("bench_parallel", SAME),
+    "parallel": ("bench", SAME),
     "industrial": ("industrial", STATES),
     "families": ("families", FAMILIES),
 }
@@ -69,6 +69,22 @@ def preset(name: str, gearboxes: int, chosen: tuple[str, ...]) -> dict[str, Any]
     states = [state for state in raw["states"] if state["name"] in chosen]
     by = {"by": "pair"} if name == "families" else {}
     return {**raw, "specimens": gearboxes, "states": states, "splits": {**HALVES, **by}}
+
+
+def _irregular(state: dict[str, Any]) -> bool:
+    return bool(state.get("damage", {}).get("kind") == "irregular")
+
+
+def parallel(raw: dict[str, Any]) -> dict[str, Any]:
+    """Return a configuration with the edges of all irregular spalls parallel to the axis."""
+    straight = dict.fromkeys(("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm", "waviness"), 0.0)
+    states = [
+        {**state, "damage": {**state["damage"], **straight}}
+        if state["name"].startswith(("face_", "through_"))
+        else state
+        for state in raw["states"]
+    ]
+    return {**raw, "name": "bench_parallel", "states": states}
 
 
 def edges(gearboxes: int) -> dict[str, Any]:
@@ -195,7 +211,8 @@ def main(gearboxes: int, workers: int, chosen: list[str]) -> None:
     found = {}
     for folder, (name, states) in PRESETS.items():
         if folder in chosen:
-            found[name] = audited(folder, preset(name, gearboxes, states), workers)
+            raw = preset(name, gearboxes, states)
+            found[folder] = audited(folder, parallel(raw) if folder == "parallel" else raw, workers)
     for name, ways in found.items():
         print(f"\n{name}\n", *ladder_table(ways), sep="\n")
     drawn = {name: ways for name, ways in found.items() if name != "families"}

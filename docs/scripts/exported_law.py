@@ -103,14 +103,11 @@ class PairLaw:
             for name, value in model.items()
             if name.startswith("law.")
         }
-        self.of_face = "contact.curves" in self.model
-        self.of_slices = "slices.sink_m" in self.model
-        self.lead = self.model.get("contact.lead_m", self.model.get("slices.lead_m", 0.0))
+        self.lead = self.model["contact.lead_m"]
         self.alone = 0 if self.model["film_n_s_per_m"] > 0.0 else 1
         self.before = {}
-        if self.of_face:
-            nodes, reach = len(self.model["contact.curves"][0]), self.model["contact.reach_m"]
-            self.nodes = [reach * (k / (nodes - 1)) ** 2 for k in range(nodes)]
+        nodes, reach = len(self.model["contact.curves"][0]), self.model["contact.reach_m"]
+        self.nodes = [reach * (k / (nodes - 1)) ** 2 for k in range(nodes)]
 
     def forces(self, state, pitches):
         """Return the forces of a state at a pinion angle in base pitches."""
@@ -186,9 +183,7 @@ class PairLaw:
             return Spring(pair.whole * depth, pair.whole) if depth < 0.0 else Spring()
         if depth <= 0.0:
             return Spring()
-        if self.of_face:
-            return self.spring_of_face(pair, depth - self.touch(pair), tilt)
-        return self.spring_of_slices(pair, depth) if self.of_slices else Spring(pair.whole * depth, pair.whole)
+        return self.spring_of_face(pair, depth - self.touch(pair), tilt)
 
     def touch(self, pair):
         """Return the approach at which a pair first touches."""
@@ -220,28 +215,6 @@ class PairLaw:
             spring.moment, spring.cross = moment + turning * tilt, cross + turning_slope * tilt
             spring.turning = turning
         return spring
-
-    def spring_of_slices(self, pair, depth):
-        """Return the spring whose groups of the face touch one by one."""
-        law, row, at = self.model, pair.row, (pair.cell, pair.weight)
-        rough = between(law["slices.on_damage"][row], *at)
-        low, high = law["slices.sink_m"][row][pair.cell], law["slices.sink_m"][row][pair.cell + 1]
-        if low[-1] == 0.0 and high[-1] == 0.0:
-            return Spring(pair.whole * depth, pair.whole, between(law["slices.land"][row], *at), rough)
-        sinks = np.array(low) * (1.0 - pair.weight) + np.array(high) * pair.weight
-        flush, contact = between(law["slices.flush"][row], *at), between(law["slices.contact_n_per_m"], *at)
-        # Springs in the order in which they touch: what is flush, then groups that stand for 1, 3, 5 ... parts of it.
-        parts = contact * (1.0 - flush) * (2 * np.arange(sinks.size) + 1) / sinks.size**2
-        stiffness = np.cumsum(np.append(contact * flush, parts))
-        preload = np.cumsum(np.append(0.0, parts * sinks))
-        compliance = 1.0 / pair.whole - 1.0 / contact
-        # The force is the largest of those with the first 1, 2, 3, ... springs in contact.
-        forces = (stiffness * depth - preload) / (1.0 + compliance * stiffness)
-        last = int(np.argmax(forces))
-        if forces[last] <= 0.0:
-            return Spring()
-        slope = stiffness[last] / (1.0 + compliance * stiffness[last])
-        return Spring(float(forces[last]), float(slope), flush + (1.0 - flush) * last**2 / sinks.size**2, rough)
 
     def add(self, sums, pair, spring, state, shared):
         """Add the forces of a pair that touches: spring, damper, moment, friction."""
@@ -298,18 +271,9 @@ class PairLaw:
         along = (pair.position - law["start_m"]) / law["base_pitch_m"]
         if law["film_n_s_per_m"] == 0.0 or rate <= 0.0 or not 0.0 <= along <= law["contact_ratio"]:
             return 0.0
-        gap = self.sink(pair) - pair.penetration
+        gap = self.touch(pair) - pair.penetration
         radius = pair.position * (law["line_of_action_m"] - pair.position) / law["line_of_action_m"]
         return law["film_n_s_per_m"] * (0.5 * radius / max(gap, law["film_floor_m"])) ** 1.5 * rate
-
-    def sink(self, pair):
-        """Return how deep the mating flank of a pair lies before anything touches."""
-        if self.of_face:
-            return self.touch(pair)
-        if not self.of_slices or between(self.model["slices.flush"][pair.row], pair.cell, pair.weight) > 0.0:
-            return 0.0
-        first = [sinks[0] for sinks in self.model["slices.sink_m"][pair.row][pair.cell : pair.cell + 2]]
-        return between(first, 0, pair.weight)
 
 
 def cubic(left, right, over, span):

@@ -26,7 +26,7 @@ def config(accuracy_class: str, share: str) -> Config:
             f"specimens={SPECIMENS}", "fs_hz=54000.0", f"duration_s={PINION / 30!r}", "mesh_harmonics=5",
             "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]", "states=[{name: healthy}]",
             "dynamics.friction.model=off",
-            "dynamics.mesh.damping=constant", "dynamics.mesh.contact=slices", "dynamics.shafts=null",
+            "dynamics.mesh.damping=constant", "dynamics.shafts=null",
             f"manufacture={{accuracy_class: {accuracy_class}{share}}}",
         ],
     )  # fmt: skip

@@ -45,7 +45,7 @@ CHANGES: dict[str, Changes] = {
     "relief 6 to 10 um": NARROW,
     "shafts of 30 and 35 mm on 110 to 140 mm": SLENDER,
     "both, as bench was before": {**NARROW, **SLENDER},
-    "contact of slices, rigid shafts": {"dynamics.mesh.contact": "slices", SHAFTS: None},
+    "rigid shafts": {SHAFTS: None},
     "no relief": {RELIEF: 0},
     "no helix, crowning and misalignment": {
         "manufacture.helix": "off", "manufacture.lead_misalignment_um": 0, "manufacture.crowning_um": 0

@@ -22,10 +22,10 @@ PRESSURE_ANGLE = np.radians(20.0)
 LID = {axis: f"clean_accel_casing_lid_{axis}_m_s2" for axis in ("vertical", "horizontal")}
 BEARING = {axis: f"bearing_force_pinion_bearing_{axis}_n" for axis in ("vertical", "horizontal")}
 
-# Perfect gears on stiff shafts with linear contact, so that nothing but the damage shows beside the mesh lines; the
+# Perfect gears on stiff shafts, so that nothing but the damage shows beside the mesh lines; the
 # middles of the ranges of configs/paper_b.yaml; bearings with 3 %, bolts with 4 % of critical damping.
 CONSTANTS = [
-    "specimens=1", "manufacture=null", "dynamics.shafts=null", "dynamics.mesh.contact=slices",
+    "specimens=1", "manufacture=null", "dynamics.shafts=null",
     "dynamics.mesh_damping_ratio=0.07", "dynamics.backlash_um=80", "dynamics.mesh.tip_relief_um=8",
     *(f"dynamics.{gear}.bearing_stiffness_{axis}_n_per_m=2e8" for gear in ("pinion", "gear") for axis in "xy"),
     *(f"dynamics.pinion.bearing_damping_{axis}_n_s_per_m=850" for axis in "xy"),

@@ -16,7 +16,7 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import OperatingPoint
-from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
 from siggen.specimen.gears import gear_pair
 
@@ -37,7 +37,7 @@ def contact_notes(config: Config) -> tuple[str, ...]:
     healthy, pitted = zip(*_groups(config), strict=True)
     fluid = (section.fluid, max(composite_roughness_m(corner)[0] for corner in corners(section)))
     notes = lubrication_notes(_united(healthy), "masjedi_khonsari", *fluid)
-    if not (damage_is_geometry(config.dynamics) and any(state.damage is not None for state in config.states)):
+    if not (solves_across_the_face(config.dynamics) and any(state.damage is not None for state in config.states)):
         return notes
     # Load, speed and material are those of the healthy flank: only the roughness is news.
     inside = lubrication_notes(_united(pitted), "masjedi_khonsari", checked=("roughness",))

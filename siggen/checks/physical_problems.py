@@ -29,7 +29,7 @@ from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
-from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.friction import roughness_problem
 from siggen.specimen.gears import gear_pair, stiffness_options
 
@@ -61,7 +61,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     flanks = list({_without_bores(pair): pair for pair in sound}.values())
     dynamics: Dynamics | None = sections.get("dynamics")
     # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
-    through_face = dynamics is None or damage_is_geometry(dynamics)
+    through_face = dynamics is None or solves_across_the_face(dynamics)
     for index, state in (item for states in possible_states(sections.get("states", {})) for item in states.items()):
         if state.damage is not None:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)

@@ -8,10 +8,10 @@ from siggen.specimen.gears import gear_pair
 
 
 def shaft_notes(config: Config) -> tuple[str, ...]:
-    """Return what to know where the contact is solved across the face, gears tilt or flanks are misaligned."""
+    """Return what to know where the contact is solved across the face or gears tilt."""
     mesh, notes = config.dynamics.mesh, []
-    if mesh.law == "pairs" and mesh.contact == "face":
-        notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.contact)")
+    if mesh.law == "pairs":
+        notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.law: pairs)")
     if config.dynamics.shafts is not None:
         notes.append(
             "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
@@ -24,10 +24,4 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
                 f"{1e6 * tilts.largest_rad:.3g} urad, the model holds to {1e6 * tilts.limit_rad:.3g}: such gearboxes "
                 "end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    uneven = config.manufacture is not None and not config.manufacture.even_face
-    if uneven and mesh.contact != "face":
-        notes.append(
-            "misalignment, helix and crowning act several times too hard: with dynamics.mesh.contact: slices teeth are "
-            "rigid across the face; with face they give way (docs/understand/contact_across_the_face.md)"
-        )
     return tuple(notes)

@@ -30,7 +30,7 @@ def tvms(
         typer.Option(
             "--parts",
             help="Add the compliances that the damaged tooth's pair is made of: contact and tooth. With "
-            "dynamics.mesh.contact: face the contact is that of the pair alone under the torque, sink included.",
+            "dynamics.mesh.law: pairs the contact is that of the pair alone under the torque, sink included.",
         ),
     ] = False,
     torque_nm: Annotated[
@@ -54,7 +54,7 @@ def tvms(
 ) -> None:
     """Write the mesh stiffness of every state against the pinion angle (0: the first damaged tooth enters contact).
 
-    The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.damage: geometry or all)
+    The curves begin one pitch before that angle. Where damage acts as geometry (dynamics.mesh.law: pairs)
     the stiffness is force over approach at rest, at a torque; then with sink and land of the damaged pair.
 
     Example: siggen inspect tvms configs/paper_a.yaml --out tvms.csv --png tvms.png

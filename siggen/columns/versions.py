@@ -11,7 +11,7 @@ SCHEMA_VERSION = "2"
 READ_VERSIONS = ("1", SCHEMA_VERSION)
 """Versions that are read. Sets of version 1 have no label `mesh_stiffness_loss_as_simulated`."""
 
-SIMULATION_VERSION = 2
+SIMULATION_VERSION = 3
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""
 
 FIRST_SIMULATION_VERSION = 1

@@ -144,9 +144,6 @@ def _mesh_law(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[
     if dynamics.mesh.law == "linear" and dynamics.mesh.squeeze_film != "off":
         allowed = "allowed: off, or dynamics.mesh.law: pairs"
         yield Problem("dynamics.mesh.squeeze_film", f"'{dynamics.mesh.squeeze_film}'", allowed)
-    if dynamics.mesh.law == "linear" and dynamics.mesh.contact != "slices":
-        allowed = "allowed: slices, or dynamics.mesh.law: pairs; the linear law knows no contact across the face"
-        yield Problem("dynamics.mesh.contact", f"'{dynamics.mesh.contact}'", allowed)
     if dynamics.mesh.damping == "asperity_share" and dynamics.rubbing != "mixed_ehl":
         allowed = "allowed: constant, or dynamics.friction.model: mixed_ehl, which the asperity share comes from"
         yield Problem("dynamics.mesh.damping", "'asperity_share'", allowed)
@@ -158,18 +155,6 @@ def _manufacture(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     if sections["dynamics"].mesh.law == "linear":
         allowed = "allowed: null with dynamics.mesh.law: linear, whose teeth are all alike; or dynamics.mesh.law: pairs"
         yield Problem("manufacture", "errors of single teeth", allowed)
-    # Without slices across the face a misalignment would be a label without an effect.
-    if sections["dynamics"].mesh.damage == "stiffness":
-        for key, none in (
-            ("lead_misalignment_um", 0.0),
-            ("crowning_um", 0.0),
-            ("crowning_gear_um", None),
-            ("helix", "off"),
-        ):
-            if (value := getattr(sections["manufacture"], key)) not in (none, 0.0):
-                said = "0" if none in (0.0, None) else none
-                allowed = f"allowed: {said} with dynamics.mesh.damage: stiffness, which has no slices across the face"
-                yield Problem(f"manufacture.{key}", str(value), allowed)
 
 
 def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

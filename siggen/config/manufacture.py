@@ -145,11 +145,6 @@ class Manufacture(Section):
         return self.helix != "off"
 
     @property
-    def even_face(self) -> bool:
-        """Whether flanks meet evenly across the face in every specimen."""
-        return not (self.has_crowning or self.has_helix) and self.lead_misalignment_um == 0.0
-
-    @property
     def classes_text(self) -> str:
         """The classes in words, such as "6", "5, 6 or 7" or "6, gear 7"."""
         gear = self.accuracy_class_gear

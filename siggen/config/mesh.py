@@ -15,7 +15,10 @@ class Mesh(Section):
     """The law of the mesh force; everything but `law` is used by the law pairs alone."""
 
     law: Literal["linear", "pairs"] = Field(
-        default="pairs", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
+        default="pairs",
+        description="linear: mesh stiffness times approach; damage lowers the stiffness, as in potential-energy models "
+        "(paper A); pairs: every tooth pair by itself, its contact solved across the face, load-dependent after Weber "
+        "and Banaschek, with elastic edges of damage",
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
         default=8.0, description="parabolic relief at the tips of both gears"
@@ -31,19 +34,13 @@ class Mesh(Section):
     )
     oil_viscosity_pa_s: Annotated[Number, Within(above=0)] = Field(default=0.112, description="of the squeezed film")
     film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
-    damage: Literal["all", "stiffness", "geometry"] = Field(
+    damage: Literal["all", "geometry"] = Field(
         default="all",
-        description="how damage acts with law: pairs; stiffness: shorter contact and weaker sections, as in "
-        "potential-energy models (paper A); geometry: lands carry, flanks sink where none is left, lands inside damage "
-        "are rough; all: geometry, and weaker sections",
+        description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "
+        "lands inside damage are rough; all: geometry, and weaker sections",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=0.1, description="rounding of the edges of damage (damage: geometry or all)"
-    )
-    contact: Literal["slices", "face"] = Field(
-        default="slices",
-        description="slices: linear contact, slices across the face that do not feel each other; face: the contact "
-        "solved across the face, load-dependent after Weber and Banaschek, with elastic edges of damage",
+        default=0.1, description="rounding of the edges of damage (law: pairs)"
     )
     damping: Literal["constant", "asperity_share"] = Field(
         default="constant",
@@ -91,5 +88,5 @@ class Friction(Section):
     hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
-        description="rms roughness of a flank's lands inside damage (mixed_ehl; mesh.damage: geometry or all)",
+        description="rms roughness of a flank's lands inside damage (mixed_ehl)",
     )

@@ -97,10 +97,7 @@ def damage_text(config: Config) -> str:
 def _flank_text(config: Config, nouns: str) -> str:
     """Say how material missing from a flank acts."""
     mesh = config.dynamics.mesh
-    if mesh.law == "linear" or mesh.damage == "stiffness":
-        acts = STIFFNESS_DAMAGE
-    else:
-        acts = GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
+    acts = STIFFNESS_DAMAGE if mesh.law == "linear" else GEOMETRY_DAMAGE.format(sections=SECTIONS[mesh.damage])
     head = f"{nouns.capitalize()} with outline, depth and place on the flank {acts}"
     return f"{head} The union of overlapping outlines counts once."
 
@@ -142,10 +139,9 @@ def _sensing_text(config: Config) -> str:
 
 def across_text(config: Config) -> str:
     """Say what the contact and the shafts know of the face width."""
-    mesh = config.dynamics.mesh
-    if mesh.law == "linear" or mesh.contact == "slices":
+    if config.dynamics.mesh.law == "linear":
         return ""
-    solved = "The contact is solved across the face and depends on the load (`dynamics.mesh.contact`). "
+    solved = "The contact is solved across the face and depends on the load (`dynamics.mesh.law: pairs`). "
     return solved + ("Shafts bend and gears tilt (`dynamics.shafts`). " if config.dynamics.shafts is not None else "")
 
 

@@ -43,7 +43,7 @@ MM = 1e-3
 PROBE_M = 1e-9
 """Size of a damage that is checked for its place alone."""
 
-GO_ON = {"contact": ", or dynamics.mesh.law: pairs with dynamics.mesh.damage: all or geometry"}
+GO_ON = {"contact": ", or dynamics.mesh.law: pairs"}
 """What else to do about a problem, by its name."""
 
 

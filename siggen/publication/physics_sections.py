@@ -30,12 +30,7 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
         f"ISO 1328-1 class {made.classes_text}" if made else "perfect gears",
     )
     yield "tooth pairs one by one", mesh.law == "pairs", f"`dynamics.mesh.law: {mesh.law}`"
-    yield "contact across the face", mesh.contact == "face", f"`dynamics.mesh.contact: {mesh.contact}`"
-    yield (
-        "damage as geometry",
-        mesh.law == "pairs" and mesh.damage != "stiffness",
-        f"`dynamics.mesh.damage: {mesh.damage}`",
-    )
+    yield "contact across the face, damage as geometry", mesh.law == "pairs", f"`dynamics.mesh.law: {mesh.law}`"
     yield "friction of the flanks", dynamics.rubbing != "off", friction_text(config)
     yield "casing that moves", dynamics.model == "casing", f"`dynamics.model: {dynamics.model}`"
     yield "shafts that bend, gears that tilt", dynamics.shafts is not None, "`dynamics.shafts`"

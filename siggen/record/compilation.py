@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import gc
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -94,16 +94,19 @@ def _run_motion(config: Config) -> None:
     import numpy as np
 
     from siggen.planning.gearbox import gearbox_config
-    from siggen.planning.plan import record_ids_of
+    from siggen.planning.plan import planned_record
     from siggen.planning.specimen import draw_operating_point, draw_specimen
-    from siggen.record.simulation import simulate_specimen, specimen_state
+    from siggen.record.simulation import simulated, specimen_state
+    from siggen.specimen.instrument import specimen_instrument
 
-    # Tables of the same types without solving any contact. No file says so: nothing of it is checked or stored.
-    mesh = config.dynamics.mesh.model_copy(update={"contact": "slices", "damage": "stiffness"})
-    dynamics = config.dynamics.model_copy(update={"mesh": mesh, "shafts": None})
     states = tuple(state.model_copy(update={"damage": None}) for state in config.states[:1])
-    short = config.model_copy(update={"dynamics": dynamics, "states": states, "duration_s": SHORT_S})
-    list(simulate_specimen(short, record_ids_of(short, 0)[:1]))
+    parallel = config.dynamics.model_copy(update={"shafts": None})
+    short = config.model_copy(update={"dynamics": parallel, "states": states, "duration_s": SHORT_S})
+    own, specimen = gearbox_config(short, 0), draw_specimen(short, 0)
+    # Tables of the same types without solving any contact: springs, as the law linear has them.
+    mesh = specimen.dynamics.mesh.model_copy(update={"law": "linear"})
+    springs = replace(specimen, dynamics=specimen.dynamics.model_copy(update={"mesh": mesh}))
+    state = specimen_state(own, springs, 0)
+    simulated(own, specimen, specimen_instrument(own, specimen), state, planned_record(own, 0))
     # what a label of damaged teeth needs besides
-    static = specimen_state(gearbox_config(short, 0), draw_specimen(short, 0), 0).static
-    static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))
+    state.static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))

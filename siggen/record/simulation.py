@@ -28,7 +28,7 @@ from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import is_asked_for
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
-from siggen.specimen.contact import ToothTables, largest_force_n, mean_line_load_n_per_m, tooth_tables
+from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
 from siggen.specimen.errors import SpecimenErrors, error_labels
 from siggen.specimen.flank_waves import wave_labels
@@ -47,6 +47,7 @@ __all__ = [
     "refused_as",
     "simulate",
     "simulate_specimen",
+    "simulated",
     "specimen_state",
     "start_angle_rad",
 ]
@@ -87,12 +88,11 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
     pair, options = made.pair, stiffness_options(specimen.stiffness)
     with refused_as("impossible_damage"):
         damage = made.damage(state_id)
-        load = mean_line_load_n_per_m(config.operating_points, pair)
         errors = made.errors(state_id)
         lead = None if errors is None or errors.even else errors.lead_m
         tables = tooth_tables(
-            specimen.dynamics, pair, damage, options, specimen.stiffness.table_points, load, lead,
-            largest_force_n=largest_force_n(config.operating_points, pair),
+            specimen.dynamics, pair, damage, options, specimen.stiffness.table_points,
+            largest_force_n(config.operating_points, pair), lead,
         )  # fmt: skip
         labels = damage_labels(config.states[state_id], pair, damage, options, tables.sink_depth_m)
     return StateTeeth(pair, options, damage, errors, tables, labels)
@@ -118,7 +118,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         pair,
         teeth.options,
         teeth.damage,
-        SpecimenMesh(pair, assembled, tables.tables, missing, tables.slices, tables.coupling_m_per_n, tables.contact),
+        SpecimenMesh(pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact),
         labels,
         static,
     )
@@ -207,9 +207,16 @@ def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: Pl
     return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
 
 
-def _simulated(
+def simulated(
     config: Config, specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
 ) -> Record:
+    """Return one record of a specimen in a state; `config` is that of its gearbox.
+
+    Raises
+    ------
+    SolverFailure
+        As `record_response`.
+    """
     with_internals = has_internals(config, planned)
     with refused_as("outside_model"), stage("inputs"):
         driven = _driven(config, specimen, state, planned)
@@ -272,7 +279,7 @@ def _results(whole: Config, records: Sequence[PlannedRecord]) -> Iterator[Record
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(config, specimen, state_id, gears))
     for record in records:
         try:
-            made = _simulated(config, specimen, instrument, state_of(record.state_id), record)
+            made = simulated(config, specimen, instrument, state_of(record.state_id), record)
             yield replace(made, labels={**made.labels, **family}) if family else made
         except SolverFailure as failure:
             yield RecordFailure(record.record_id, failure.status, failure.reason)

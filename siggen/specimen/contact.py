@@ -10,7 +10,6 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange
-from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, largest_sink_m, slice_law, slice_tables
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
@@ -26,32 +25,24 @@ LEAST_LINE_LOAD_N_PER_M = 1e3
 
 @dataclass(frozen=True, slots=True)
 class ToothTables:
-    """Stiffness by kinds of pairs; with `slices` of the whole face, and the damage is in the slices.
+    """Stiffness by kinds of pairs; with a `contact` that of healthy teeth, and damage acts through the contact.
 
     `coupling_m_per_n` (apart, points): see `siggen.gears.stiffness.body_coupling`; None without.
     """
 
     tables: MeshTables
-    slices: SliceLaw | None
     coupling_m_per_n: FloatArray | None
     contact: ContactTable | None = None
 
     @property
     def sink_depth_m(self) -> float:
         """How far a flank sinks at most where damage leaves no land [m]."""
-        if self.contact is not None:
-            return float(self.contact.touch_m.max())
-        return 0.0 if self.slices is None else largest_sink_m(self.slices)
-
-
-def damage_is_geometry(dynamics: Dynamics) -> bool:
-    """Whether damage acts through the contact of the flanks and so may take its whole length."""
-    return dynamics.mesh.law == "pairs" and dynamics.mesh.damage != "stiffness"
+        return 0.0 if self.contact is None else float(self.contact.touch_m.max())
 
 
 def solves_across_the_face(dynamics: Dynamics) -> bool:
-    """Whether the contact is solved across the face rather than in slices that do not feel each other."""
-    return dynamics.mesh.law == "pairs" and dynamics.mesh.contact == "face"
+    """Whether the contact is solved across the face, so that damage is geometry and may take its whole length."""
+    return dynamics.mesh.law == "pairs"
 
 
 def tooth_tables(
@@ -60,12 +51,10 @@ def tooth_tables(
     damage: Damage,
     options: StiffnessOptions,
     points: int,
-    line_load_n_per_m: float,
+    largest_force_n: float,
     lead_m: Callable[[int], FloatArray] | None = None,
-    *,
-    largest_force_n: float = 0.0,
 ) -> ToothTables:
-    """Return the tables of a drawn `dynamics` section.
+    """Return the tables of a drawn `dynamics` section; contacts are tabulated up to the largest force.
 
     Raises
     ------
@@ -74,36 +63,12 @@ def tooth_tables(
     """
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
     coupling = None if options.coupling == "none" else body_coupling(pair, options, along)
-    if solves_across_the_face(dynamics):
-        return _across_the_face(dynamics, pair, damage, options, points, largest_force_n, lead_m, coupling)
-    # Misaligned faces need slices in the healthy state too: states must not differ by it.
-    if not ((damage or lead_m is not None) and damage_is_geometry(dynamics)):
-        return ToothTables(mesh_tables(pair, damage, options, points=points), None, coupling)
-    section = dynamics.mesh
-    sliced = SliceOptions(
-        line_load_n_per_m,
-        edge_radius_m=1e-3 * constant(section.pit_edge_radius_mm),
-        section_loss=section.damage == "all",
-    )
-    slices = slice_law(pair, damage, options, sliced, points, lead_m=None if lead_m is None else lead_m(sliced.slices))
-    return ToothTables(slice_tables(pair, damage, slices), slices, coupling)
-
-
-def _across_the_face(
-    dynamics: Dynamics,
-    pair: GearPair,
-    damage: Damage,
-    options: StiffnessOptions,
-    points: int,
-    largest_force_n: float,
-    lead_m: Callable[[int], FloatArray] | None,
-    coupling: FloatArray | None,
-) -> ToothTables:
-    """Return the table of the contact across the face; the linear tables of healthy teeth are what it deviates from."""
+    if not solves_across_the_face(dynamics):
+        return ToothTables(mesh_tables(pair, damage, options, points=points), coupling)
     face = face_options(dynamics, largest_force_n)
     lead = None if lead_m is None else lead_m(face_slices(pair, face))
     table = contact_table(pair, damage, options, face, points, lead)
-    return ToothTables(whole_face(pair, damage, options, points), None, coupling, table)
+    return ToothTables(whole_face(pair, damage, options, points), coupling, table)
 
 
 def face_options(dynamics: Dynamics, largest_force_n: float) -> TableOptions:
@@ -134,11 +99,7 @@ def largest_force_n(points: Sequence[OperatingRange], pair: GearPair) -> float:
 
 
 def mean_line_load_n_per_m(points: Sequence[OperatingRange], pair: GearPair) -> float:
-    """Return the line load of the mean torque of a set [N/m], which sets the Hertz band that bridges narrow pits.
-
-    One for a whole set, so that tables stay one per specimen and state: a half-width of 67 µm at 59 N/mm changes with
-    the root of the load.
-    """
+    """Return the line load of the mean torque of a set [N/m]: its Hertz band smooths waves on the flanks."""
     torques = [abs(0.5 * sum(bounds(point.torque_nm))) for point in points]
     force = sum(torques) / len(torques) / pair.pinion.base_radius_m
     return max(force / pair.face_width_m, LEAST_LINE_LOAD_N_PER_M)

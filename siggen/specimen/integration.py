@@ -18,12 +18,12 @@ from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.keys.number import bounds
 from siggen.planning.specimen import Specimen
 
-SMOOTH, KINKED = (1.4, 50.0), (1.1, 66.0)
-"""Radians of the mesh's vibration in one step, and steps per base pitch, of contact across the face and of slices.
+MOST_RADIANS, LEAST_PER_PITCH = 1.4, 50.0
+"""Radians of the mesh's vibration in one step, and steps per base pitch.
 
-At 1.84 rad and 38 steps per pitch the worst of 24 records of quickstart, `contact: face`, erred by 1.15e-3;
-at half of that by 2.6e-4 (`siggen verify DIR --physics 24`). The bound lies between: at 1.34 rad (35.2 kHz) the worst
-of 8 records errs by 4.4e-4. Slices touch one by one, so their force has corners.
+At 1.84 rad and 38 steps per pitch the worst of 24 records of quickstart erred by 1.15e-3; at half of that by 2.6e-4
+(`siggen verify DIR --physics 24`). The bound lies between: at 1.34 rad (35.2 kHz) the worst of 8 records errs by
+4.4e-4.
 """
 USUAL_TOLERANCE = 1e-3
 MESH_SHARE = 0.05
@@ -60,8 +60,7 @@ def time_grid(config: Config, specimen: Specimen, structure: Structure, tables: 
     teeth_hz = float(tables.table_of_pair.shape[0]) * max(
         bounds(point.speed_hz)[1] for point in config.operating_points
     )
-    radians, steps_per_pitch = SMOOTH if dynamics.mesh.contact == "face" else KINKED
-    rate_hz = max(2.0 * pi * fastest_hz / radians, steps_per_pitch * teeth_hz)
+    rate_hz = max(2.0 * pi * fastest_hz / MOST_RADIANS, LEAST_PER_PITCH * teeth_hz)
     finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
     steps = max(1, ceil(rate_hz / config.fs_hz * finer))
     return TimeGrid(2, 2) if steps == 1 else TimeGrid(steps, 1)

@@ -14,7 +14,6 @@ from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
-from siggen.dynamics.mesh.slice_law import SliceLaw
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
@@ -27,7 +26,7 @@ from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, m
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
-from siggen.specimen.contact import damage_is_geometry
+from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
 
@@ -40,7 +39,6 @@ class SpecimenMesh:
     structure: Structure
     tables: MeshTables
     missing: MissingMaterial
-    slices: SliceLaw | None = None
     coupling_m_per_n: NDArray[np.float64] | None = None
     contact: ContactTable | None = None
 
@@ -117,9 +115,8 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
         damping_ratio=_damping_ratio(dynamics),
         equivalent_mesh_mass_kg=mesh.structure.equivalent_mesh_mass_kg,
         backlash_m=1e-6 * constant(dynamics.backlash_um),
-        friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=damage_is_geometry(dynamics)),
+        friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,
-        slices=mesh.slices,
         contact=mesh.contact,
         coupling_m_per_n=mesh.coupling_m_per_n,
     )

@@ -9,7 +9,6 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics
 from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
-from siggen.dynamics.mesh.slice_law import SliceLaw
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
@@ -31,16 +30,13 @@ class StaticMesh:
     pair : GearPair
     law, healthy : PairLaw
         With the state's damage, and the same without.
-    slices : SliceLaw or None
-        Of the damage, where it acts as geometry.
     contact : ContactTable or None
-        In place of slices, where the contact is solved across the face.
+        Where it is solved across the face.
     """
 
     pair: GearPair
     law: PairLaw
     healthy: PairLaw
-    slices: SliceLaw | None
     contact: ContactTable | None = None
 
     def force_n(self, torque_nm: float) -> float:
@@ -68,9 +64,7 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
         missing = teeth_missing(dynamics, pair, points)
     alike = replace(teeth.tables, table_of_pair=np.zeros_like(teeth.tables.table_of_pair), coupled=None)
     # Sinks count from where the flanks of a misaligned pair touch first, or its offset would count as approach.
-    slices = None if teeth.slices is None else teeth.slices._replace(lead_m=0.0)
     contact = None if teeth.contact is None else teeth.contact._replace(lead_m=0.0)
-    whole = None if slices is None else _first_row(slices)
     flush = (
         None
         if contact is None
@@ -78,32 +72,18 @@ def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: 
     )
     return StaticMesh(
         pair,
-        _law(pair, teeth, missing, slices, contact),
+        _law(pair, teeth, missing, contact),
         _law(
             pair,
             replace(teeth, tables=replace(alike, pair_stiffness_n_per_m=alike.pair_stiffness_n_per_m[:1])),
             missing,
-            whole,
             flush,
         ),
-        slices,
         contact,
     )
 
 
-def _first_row(slices: SliceLaw) -> SliceLaw:
-    return slices._replace(
-        sink_m=slices.sink_m[:1],
-        stiffness_n_per_m=slices.stiffness_n_per_m[:1],
-        flush=slices.flush[:1],
-        land=slices.land[:1],
-        on_damage=slices.on_damage[:1],
-    )
-
-
-def _law(
-    pair: GearPair, teeth: ToothTables, missing: MissingMaterial, slices: SliceLaw | None, contact: ContactTable | None
-) -> PairLaw:
+def _law(pair: GearPair, teeth: ToothTables, missing: MissingMaterial, contact: ContactTable | None) -> PairLaw:
     """Return a law for rest: no damping, no friction, and a backlash that only the back flank would meet."""
     return pair_law(
         teeth.tables,
@@ -112,7 +92,6 @@ def _law(
         damping_ratio=0.0,
         equivalent_mesh_mass_kg=1.0,
         backlash_m=pair.base_pitch_m,
-        slices=slices,
         contact=contact,
         coupling_m_per_n=teeth.coupling_m_per_n,
     )

@@ -33,7 +33,7 @@ from siggen.specimen.instrument import settle_s
 from siggen.specimen.integration import time_grid
 from siggen.specimen.motion import specimen_motion
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 """Raised when a key changes its meaning or goes away; new keys leave it."""
 
 ENDING = ".npz"

@@ -28,20 +28,20 @@ class SimulatedContact:
     Attributes
     ----------
     sink_um : (k,) how far the mating flank sinks before anything carries; 0 where a land carries
-    land_share : (k,) share of the face that is land; with slices averaged over the Hertz band
+    land_share : (k,) share of the face that is land
     potential_energy_n_per_m : (k,) what the mesh stiffness would be if damage only took contact length and sections
-    pair_m_per_n : (k,) approach over force of the pair, alone under the force of a torque: teeth, contact and sink;
-        None where the contact does not depend on the load
+    pair_m_per_n : (k,) approach over force of the pair, alone under the force of a torque: teeth, contact and sink
     """
 
     sink_um: FloatArray
     land_share: FloatArray
     potential_energy_n_per_m: FloatArray
-    pair_m_per_n: FloatArray | None = None
+    pair_m_per_n: FloatArray
 
 
 def simulated_contact(
     static: StaticMesh,
+    contact: ContactTable,
     damage: Damage,
     engagement: int,
     position_m: FloatArray,
@@ -54,6 +54,8 @@ def simulated_contact(
     ----------
     static : StaticMesh
         Of a state with this damage.
+    contact : ContactTable
+        Of that state.
     damage : tuple of Pit or Spall
     engagement : int
         Number of the pair: pinion tooth n mod z1 with gear tooth n mod z2.
@@ -67,26 +69,13 @@ def simulated_contact(
     inside = (position_m >= pair.contact_start_m) & (position_m <= pair.contact_end_m)
     shown = tuple(pit for pit in damage if has_extent(pit))
     row = table_of_pair(pair, pair_kinds(pair, shown))[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
-    sink, land = np.zeros(position_m.size), np.ones(position_m.size)
-    whole = None
-    if static.slices is not None:
-        slices = static.slices
-        grid = slices.start_m + np.arange(slices.land.shape[1]) / slices.per_m
-        flush = np.interp(position_m, grid, slices.flush[row])
-        land = np.interp(position_m, grid, slices.land[row])
-        sink = np.where(flush > 0.0, 0.0, np.interp(position_m, grid, slices.sink_m[row, :, 0]))
-    if static.contact is not None:
-        grid = np.linspace(pair.contact_start_m, pair.contact_end_m, static.contact.touch_m.shape[1])
-        sink = np.interp(position_m, grid, static.contact.touch_m[row])
-        land[inside] = _land_share(pair, damage, engagement, position_m[inside])
-        force = static.force_n(torque_nm)
-        whole = np.full(position_m.size, np.nan)
-        whole[inside] = (
-            sink[inside] + _beyond_touch_m(static.contact, int(row), position_m[inside], grid, force)
-        ) / force
-    return SimulatedContact(
-        np.where(inside, 1e6 * sink, np.nan), np.where(inside, land, np.nan), potential_energy_n_per_m, whole
-    )
+    grid = np.linspace(pair.contact_start_m, pair.contact_end_m, contact.touch_m.shape[1])
+    within, force = position_m[inside], static.force_n(torque_nm)
+    sink, land, whole = np.full((3, position_m.size), np.nan)
+    sink[inside] = np.interp(within, grid, contact.touch_m[row])
+    land[inside] = _land_share(pair, damage, engagement, within)
+    whole[inside] = (sink[inside] + _beyond_touch_m(contact, int(row), within, grid, force)) / force
+    return SimulatedContact(1e6 * sink, land, potential_energy_n_per_m, whole)
 
 
 def _land_share(pair: GearPair, damage: Damage, engagement: int, position_m: FloatArray) -> FloatArray:

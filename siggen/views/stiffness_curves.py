@@ -19,11 +19,10 @@ from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.number import bounds
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
-from siggen.specimen.contact import damage_is_geometry, largest_force_n
+from siggen.specimen.contact import largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
@@ -42,7 +41,7 @@ class StiffnessCurve:
     mesh_stiffness_n_per_m : (k,) as simulated, see `stiffness_meaning`
     parts_m_per_n : name of a part -> (k,) compliance of the pair of the first damaged tooth, NaN where it is not in
         contact; the parts of both teeth from the root to the contact, in the order in which they are drawn. With
-        `contact: face` the contact is that of a pair alone under the torque's force, with what the flanks sink
+        `law: pairs` the contact is that of a pair alone under the torque's force, with what the flanks sink
     simulated : what the simulation makes of the damage, where it acts as geometry; else None
     """
 
@@ -114,7 +113,7 @@ def stiffness_curves(
         _curve(specimen, pair, state.name, damage, angle, first)
         for state, damage in zip(config.states, damages, strict=True)
     ]
-    if not damage_is_geometry(specimen.dynamics):
+    if not solves_across_the_face(specimen.dynamics):
         return curves
     torque = static_torque_nm(config, specimen_id) if torque_nm is None else torque_nm
     return [_as_simulated(config, specimen, i, curve, first, torque) for i, curve in enumerate(curves)]
@@ -127,7 +126,7 @@ def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
 
 def stiffness_meaning(config: Config, torque_nm: float) -> str:
     """Return in words what a curve of mesh stiffness of this configuration is."""
-    if damage_is_geometry(config.dynamics):
+    if solves_across_the_face(config.dynamics):
         return f"quasi-static mesh stiffness at {torque_nm:.3g}\u00a0N\u00a0m: force over approach, as simulated"
     return "mesh stiffness by potential energy"
 
@@ -136,27 +135,21 @@ def _as_simulated(
     config: Config, specimen: Specimen, state_id: int, curve: StiffnessCurve, engagement: int, torque_nm: float
 ) -> StiffnessCurve:
     state = specimen_state(config, specimen, state_id)
-    pair, angle = state.pair, curve.angle_rad
+    pair, angle, contact = state.pair, curve.angle_rad, state.static.contact
+    if contact is None:
+        return curve
     most = largest_force_n(config.operating_points, pair) * pair.pinion.base_radius_m
-    if state.static.contact is not None and torque_nm > most:
+    if torque_nm > most:
         raise UsageError(
             f"torque: received {torque_nm:g} N m; allowed: up to {most:.4g} N m, three times the largest of the set, "
             "where the tables of the contact across the face end"
         )
-    try:
-        stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
-    except ValueError as error:
-        most = max(bounds(point.torque_nm)[1] for point in config.operating_points)
-        raise UsageError(
-            f"torque: received {torque_nm:g} N m, which the teeth of specimen {specimen.specimen_id} do not carry "
-            f"({error}); allowed: a torque that they carry, such as up to {most:g} N m, the largest of the set"
-        ) from None
+    stiffness = state.static.stiffness_n_per_m(torque_nm, angle * pair.pinion.teeth / (2 * pi) + engagement)
     position = pair.contact_start_m + pair.pinion.base_radius_m * angle
     energy = curve.mesh_stiffness_n_per_m
-    found = simulated_contact(state.static, state.damage, engagement, position, energy, torque_nm)
-    parts = curve.parts_m_per_n
-    if found.pair_m_per_n is not None:
-        parts = {**parts, "contact": found.pair_m_per_n - sum(v for name, v in parts.items() if name != "contact")}
+    found = simulated_contact(state.static, contact, state.damage, engagement, position, energy, torque_nm)
+    teeth = {name: value for name, value in curve.parts_m_per_n.items() if name != "contact"}
+    parts = {**teeth, "contact": found.pair_m_per_n - sum(teeth.values())}
     return replace(curve, mesh_stiffness_n_per_m=stiffness, simulated=found, parts_m_per_n=parts)
 
 
@@ -165,7 +158,7 @@ def _curve(
 ) -> StiffnessCurve:
     options = stiffness_options(specimen.stiffness)
     offset = engagement * 2 * pi / pair.pinion.teeth
-    open_face = damage_is_geometry(specimen.dynamics)
+    open_face = solves_across_the_face(specimen.dynamics)
     stiffness = mesh_stiffness(pair, angle + offset, options, damage, through_face=open_face)
     return StiffnessCurve(state, angle, stiffness, _parts(pair, options, damage, angle, engagement, open_face))
 

@@ -12,7 +12,7 @@ from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.specimen.contact import damage_is_geometry, face_options, largest_force_n, solves_across_the_face
+from siggen.specimen.contact import face_options, largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
 from siggen.specimen.errors import specimen_errors
 from siggen.specimen.gears import gear_pair, stiffness_options
@@ -26,7 +26,7 @@ PLACES = 8
 def worst_table_error(config: Config, specimen_id: int = 0) -> float:
     """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
 
-    Where damage acts through the contact's slices, which have tables of their own, that of healthy teeth.
+    Of healthy teeth where the contact is solved across the face, which has tables of its own.
 
     Source: `siggen.gears.stiffness.mesh_tables.table_error`, half-way between the points of the tables that simulations
     use.
@@ -35,7 +35,7 @@ def worst_table_error(config: Config, specimen_id: int = 0) -> float:
     specimen = draw_specimen(config, specimen_id)
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     damages: dict[Damage, None] = {(): None}
-    if not damage_is_geometry(specimen.dynamics):
+    if not solves_across_the_face(specimen.dynamics):
         damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
     points = specimen.stiffness.table_points
     return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
@@ -45,14 +45,13 @@ def table_error_text(config: Config, specimen_id: int = 0) -> str:
     """Return in words how exactly the tables of one specimen's stiffness, or contact across the face, are."""
     if solves_across_the_face(config.dynamics):
         return _contact_text(config, specimen_id)
-    whose = "healthy teeth" if damage_is_geometry(config.dynamics) else "teeth in all states"
     try:
         error = f"within {100.0 * worst_table_error(config, specimen_id):.2g} %"
     except ValueError as refusal:
         error = f"nowhere: {refusal}"
     return (
         f"tables of {config.stiffness.table_points} points, as simulations use them, interpolate the stiffness of "
-        f"{whose} of specimen {specimen_id} {error}"
+        f"teeth in all states of specimen {specimen_id} {error}"
     )
 
 

@@ -11,7 +11,6 @@ from siggen.errors import ConfigError
 from siggen.gears.contact.edge_law import edge_terms
 from tests.config.minimal import minimal
 
-FACE = {"dynamics__mesh__contact": "face"}
 PITS = minimal()["states"][1]  # type: ignore[index]
 
 
@@ -20,17 +19,16 @@ def spalls(radius: object) -> list[dict[str, Any]]:
     return [{"name": "healthy"}, {"name": "slight", "damage": damage}]
 
 
-def test_edges_rounder_than_a_seventh_of_the_relative_radius_are_refused_with_the_contact_across_the_face() -> None:
+def test_edges_rounder_than_a_seventh_of_the_relative_radius_are_refused() -> None:
     drawn = {"kind": "uniform", "low": 0.1, "high": 0.99}
     with pytest.raises(ConfigError) as refused:
-        load_config(minimal(**FACE, states=spalls(drawn), dynamics__mesh__pit_edge_radius_mm=0.99))
+        load_config(minimal(states=spalls(drawn), dynamics__mesh__pit_edge_radius_mm=0.99))
     (found,) = refused.value.problems  # pit_edge_radius_mm is of no damage here
     assert found.path == "states.1.damage.edge_radius_mm"
     assert found.allowed.startswith("allowed: at most 0.95")
     with pytest.raises(ConfigError, match=r"dynamics.mesh.pit_edge_radius_mm: received 0.99; allowed: at most 0.95"):
-        load_config(minimal(**FACE, states=[{"name": "healthy"}, PITS], dynamics__mesh__pit_edge_radius_mm=0.99))
-    load_config(minimal(states=spalls(drawn)))
-    load_config(minimal(**FACE, states=spalls(0.9)))
+        load_config(minimal(states=[{"name": "healthy"}, PITS], dynamics__mesh__pit_edge_radius_mm=0.99))
+    load_config(minimal(states=spalls(0.9)))
 
 
 def test_beyond_that_share_the_sink_of_the_law_falls_below_none_at_the_edge() -> None:

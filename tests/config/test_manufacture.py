@@ -77,21 +77,7 @@ def test_teeth_that_are_all_alike_have_no_errors() -> None:
     assert "dynamics.mesh.law: pairs" in found.allowed
 
 
-def test_a_misalignment_needs_slices_across_the_face() -> None:
-    section = {"accuracy_class": 6, "lead_misalignment_um": "iso_1328"}
-    assert parse(with_section(**section)).config is not None
-    raw = with_section(**section)
-    raw["dynamics"]["mesh"]["damage"] = "stiffness"  # type: ignore[index]
-    (found,) = parse(raw).problems
-    assert str(found).startswith("manufacture.lead_misalignment_um: received iso_1328; allowed: 0 with")
-
-
-def test_crowning_and_helix_need_slices_and_slopes_count_once() -> None:
-    raw = with_section(accuracy_class=6, crowning_um=5.0, helix="iso_1328")
-    raw["dynamics"]["mesh"]["damage"] = "stiffness"  # type: ignore[index]
-    found = [str(one) for one in parse(raw).problems]
-    assert found[0].startswith("manufacture.crowning_um: received 5.0; allowed: 0 with")
-    assert found[1].startswith("manufacture.helix: received iso_1328; allowed: off with")
+def test_helix_slopes_count_once() -> None:
     assert "which has the helix slopes already" in problem(
         accuracy_class=6, helix="iso_1328", lead_misalignment_um="iso_1328"
     )

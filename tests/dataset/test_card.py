@@ -116,7 +116,7 @@ def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
     assert drive_text(torque) == "Within a record torque varies (`variation`); the speed is constant."
     assert "Shafts bend" not in noisy
     assert "healthy machine adds" not in noisy
-    across = "The contact is solved across the face and depends on the load (`dynamics.mesh.contact`). Shafts bend"
+    across = "The contact is solved across the face and depends on the load (`dynamics.mesh.law: pairs`). Shafts bend"
     assert across in rich
     one = background_text(shipped("quickstart", "background={floor: {}}"))
     assert (

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 
 from siggen.dynamics.friction.friction import FrictionLaw
+from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gears.contact.contact_table import ContactTable
+from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.table_options import TableOptions
+from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from siggen.specimen.contact import whole_face
 
 RELIEF = TipRelief(8e-6, 0.25 * 8.856e-3)
+TEETH = StiffnessOptions("base_circle", "sainsot", "profile")
 TORQUE = 30.0
 MESHES = 18
+LARGEST_N = 4000.0
+"""Up to which contacts are tabulated: three times the force of the torque."""
 
 
 @cache
@@ -41,7 +49,7 @@ def gear_pair() -> GearPair:
 
 @cache
 def tables() -> MeshTables:
-    return mesh_tables(gear_pair(), (), StiffnessOptions("base_circle", "sainsot", "profile"))
+    return mesh_tables(gear_pair(), (), TEETH)
 
 
 def constant_tables(stiffness: float = 1.57e8, contact_ratio: float = 2.0) -> MeshTables:
@@ -65,7 +73,7 @@ def law(
     missing: MissingMaterial | None = None,
     over: MeshTables | None = None,
     *,
-    damping_ratio: float = 0.07,
+    damping_ratio: float | DampingLaw = 0.07,
     backlash_m: float = 80e-6,
     mass: float = 0.2124,
     friction: FrictionLaw | None = None,
@@ -85,6 +93,18 @@ def law(
         contact=contact,
         coupling_m_per_n=coupling_m_per_n,
     )
+
+
+@cache
+def contact_of(damage: Damage = (), points: int = 1025) -> ContactTable:
+    """Return the contact of teeth with damage of sharp edges, solved across the face."""
+    return contact_table(gear_pair(), damage, TEETH, TableOptions(LARGEST_N, edge_radius_m=0.0), points)
+
+
+def contact_law(damage: Damage = (), **other: Any) -> PairLaw:
+    """Return the law of teeth with damage; others as of `law`."""
+    table = contact_of(damage)
+    return law(over=whole_face(gear_pair(), damage, TEETH, table.touch_m.shape[1]), contact=table, **other)
 
 
 def motion(

@@ -1,4 +1,4 @@
-"""Somebody adds a kind of damage: a module, a line in the list of kinds, and every program knows it and names no other."""
+"""Somebody adds a kind of damage, a module and a line: every program knows it, and names no other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`python -m tests.faults.with_toys siggen|siggen-diagnostics ...`: the program, with the toy kind of damage registered."""
+"""`python -m tests.faults.with_toys siggen|siggen-diagnostics ...`: the program, with the toys registered."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Presets: bench, bench_parallel, industrial and ideal in miniature, and what each of them promises."""
+"""Presets: bench, industrial and ideal in miniature, and what each of them promises."""
 
 from __future__ import annotations
 
@@ -24,10 +24,9 @@ from siggen.record.simulation import simulate
 from siggen.sets.verification import verify
 
 CONFIGS = Path(__file__).parents[2] / "configs"
-PRESETS = ("bench", "bench_parallel", "industrial", "ideal")
+PRESETS = ("bench", "industrial", "ideal")
 LENGTHS_MM = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25, 1.5]
 SHARES = [0.2, 0.4, 0.8, 0.95]
-BENDING = ("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm", "waviness")
 THROUGH = "through_100"
 
 
@@ -58,23 +57,6 @@ def test_the_ladder_of_a_preset_is_dense_where_damage_begins_to_show(name: str) 
     assert shares == [*SHARES, *(1.0 for _ in LENGTHS_MM)]
     assert [d.profile_length_mm for d in damages if d is not None] == [*(1.0 for _ in SHARES), *LENGTHS_MM]
     assert all(damage.height_reading == "arc" for damage in damages)
-
-
-def test_bench_and_bench_parallel_differ_by_the_bending_of_edges_alone() -> None:
-    """So a record without a spall is the same, bit by bit; its name is no part of any draw."""
-    bench, parallel = (load_config(CONFIGS / f"{name}.yaml") for name in ("bench", "bench_parallel"))
-    straight = dict.fromkeys(BENDING, 0.0)
-    states = [
-        state if state.damage is None or state.damage.kind != "irregular"
-        else state.model_copy(update={"damage": state.damage.model_copy(update=straight)})
-        for state in bench.states
-    ]  # fmt: skip
-    assert parallel == bench.model_copy(update={"name": "bench_parallel", "states": tuple(states)})
-    healthy, same = (
-        simulate(preset(name, ("healthy",), specimens=1, duration_s=0.1), [0])[0]
-        for name in ("bench", "bench_parallel")
-    )
-    assert all(healthy.channels[c].tobytes() == same.channels[c].tobytes() for c in healthy.channels)
 
 
 @pytest.mark.parametrize("name", PRESETS)

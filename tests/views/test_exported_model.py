@@ -151,10 +151,10 @@ under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
 
 @pytest.mark.parametrize("coupling", ["none", "body"])
-def test_scipy_gives_the_motion_with_slices_film_and_damping_by_asperity_share(coupling: str) -> None:
+def test_scipy_gives_the_motion_with_film_and_damping_by_asperity_share(coupling: str) -> None:
     # Springs and films begin with a step: both solvers are of first order there.
     model, own = begun_with_film(coupling)
-    assert {"law.slices.sink_m", "law.damping_film_root_kg"} <= set(model)
+    assert {"law.contact.touch_m", "law.damping_film_root_kg"} <= set(model)
     assert model["law.film_n_s_per_m"] > 0.0
     assert largest(own, by_scipy(model, own, FINE)) < 1e-3
 
@@ -174,7 +174,6 @@ def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_
         ("configs/linear_pits.yaml", 0, []),
         ("configs/paper_b.yaml", 0, []),
         ("tests/configs/casing.yaml", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
-        ("tests/configs/casing.yaml", 16, ["dynamics.mesh.contact=face"]),
         ("configs/bench.yaml", 5, []),
     ],
 )

@@ -19,7 +19,7 @@ from siggen.views.face_pressure import FacePressure, face_pressure
 CONFIG = "configs/quickstart.yaml"
 SPALL = "{kind: irregular, profile_length_mm: 1.2, face_share: 0.6, face_centre_mm: 8, edge_radius_mm: 0.15}"
 LINEAR = (
-    *("--set", "dynamics.mesh.law=linear", "--set", "dynamics.mesh.contact=slices", "--set", "dynamics.shafts=null"),
+    *("--set", "dynamics.mesh.law=linear", "--set", "dynamics.shafts=null"),
     *("--set", "dynamics.friction.model=off", "--set", "manufacture=null"),
 )
 OVERRIDES = [

@@ -76,9 +76,3 @@ def slide_roll_ratio(position_m: Values, line_m: float, speed_1_rad_s: Values, s
 def hertz_pressure(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
     """Return the peak pressure p_H [Pa] of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
     return np.sqrt(line_load_n_per_m * (0.5 * effective_modulus_pa) / (np.pi * radius_m))
-
-
-@njit(cache=True)
-def hertz_half_width(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
-    """Return the half-width a_H [m] of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
-    return np.sqrt(4.0 * line_load_n_per_m * radius_m / (np.pi * (0.5 * effective_modulus_pa)))

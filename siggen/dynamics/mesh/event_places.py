@@ -53,8 +53,6 @@ def _deepest_m(law: PairLaw) -> float:
     head = law.places
     if head[layout.CONTACT_NODES] > 0:
         return float(law.numbers[head[layout.TOUCH_AT] : head[layout.COLUMN_AT]].max())
-    if head[layout.GROUPS] > 0:
-        return float(law.numbers[head[layout.SINK_AT] : head[layout.FLUSH_AT]].max())
     return 0.0
 
 

@@ -50,8 +50,6 @@ def law_tables(law: PairLaw) -> dict[str, Any]:
     head, scalars = law.places, law.scalars
     single = NUMBERS | (DAMPING if head[layout.SHARE_DAMPS] else {"damping_root_kg": layout.DAMPING_ROOT})
     tables = {name: float(scalars[place]) for name, place in single.items()} | _teeth(law)
-    if head[layout.GROUPS]:
-        tables |= _slices(law) | {"slices.lead_m": float(scalars[layout.LEAD_M])}
     if head[layout.CONTACT_NODES]:
         tables |= _contact(law)
     if head[layout.APART]:
@@ -80,18 +78,6 @@ def _teeth(law: PairLaw) -> dict[str, NDArray[Any]]:
         tables[f"kind_of_tooth_{gear + 1}"] = kinds
         tables[f"missing_{gear + 1}"] = _numbers(law, missing, (int(kinds.max()) + 1, missing_points))
         tables[f"offset_{gear + 1}"] = _numbers(law, offset, (teeth[gear],))
-    return tables
-
-
-def _slices(law: PairLaw) -> dict[str, NDArray[Any]]:
-    points, groups = int(law.places[layout.POINTS]), int(law.places[layout.GROUPS])
-    rows = (
-        int(_wholes(law, layout.TABLE_AT, (int(law.places[layout.TEETH_1]), int(law.places[layout.TEETH_2]))).max()) + 1
-    )
-    tables = {"slices.sink_m": _numbers(law, layout.SINK_AT, (rows, points, groups))}
-    for name, place in (("flush", layout.FLUSH_AT), ("land", layout.LAND_AT), ("on_damage", layout.ON_DAMAGE_AT)):
-        tables[f"slices.{name}"] = _numbers(law, place, (rows, points))
-    tables["slices.contact_n_per_m"] = _numbers(law, layout.CONTACT_AT, (points,))
     return tables
 
 

@@ -24,12 +24,12 @@ from siggen.dynamics.mesh.pair_columns import (
     ROUGH,
     STIFFNESS,
     TILT,
+    TOUCH,
     TURNING,
     WHOLE,
     YIELD,
 )
 from siggen.dynamics.mesh.pair_forces import LEAST_CARRYING, film_force, lubricated
-from siggen.dynamics.mesh.pair_springs import least_sink
 from siggen.dynamics.mesh.pair_tangents import write_springs
 
 (
@@ -85,7 +85,7 @@ def write_node_forces(
     if index[layout.SHARE_DAMPS] > 0:
         _write_roots(scalars, numbers, index, weights, pairs, slots)
     for q in range(count):
-        _load(scalars, numbers, index, pairs, q, slots, tilts, node)
+        _load(scalars, index, pairs, q, slots, tilts, node)
     if index[layout.ROUGHNESSES] > 0:
         for i in range(slots):
             _rub(scalars, numbers, index, pairs, i, slots, tilts, node)
@@ -110,9 +110,8 @@ def _write_roots(
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _load(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool,
-    node: FloatArray,
-) -> None:  # fmt: skip
+    scalars: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool, node: FloatArray
+) -> None:
     """Add springs, dampers and films of all pairs at a node; NORMAL becomes the whole force."""
     rate, total = node[NODE_RATE, q], 0.0
     for i in range(q * slots, (q + 1) * slots):
@@ -122,8 +121,7 @@ def _load(
         flank = pairs[i, FLANK]
         if flank == 0.0:
             if scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
-                gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
-                film = film_force(scalars, pairs[i, POSITION], gap, rate)
+                film = film_force(scalars, pairs[i, POSITION], pairs[i, TOUCH] - pairs[i, PENETRATION], rate)
                 node[NODE_NORMAL, q] += film
                 node[NODE_SLOPE_RATE, q] += film / rate if film > 0.0 else 0.0
             continue

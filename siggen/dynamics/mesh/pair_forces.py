@@ -32,12 +32,13 @@ from siggen.dynamics.mesh.pair_columns import (
     SLIDING,
     STIFFNESS,
     TILT_RATE,
+    TOUCH,
     TURNING,
     WHOLE,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import find_flanks, pair_table, place_pairs
-from siggen.dynamics.mesh.pair_springs import least_sink, share_coupled, spring_of_flank
+from siggen.dynamics.mesh.pair_springs import share_coupled, spring_of_flank
 
 LEAST_CARRYING = 1e-3
 """Of the face, less than a slice: what a force is divided by where a motion that diverges leaves the table."""
@@ -170,11 +171,12 @@ def write_forces(
             continue
         pairs[i, SLIDING] = sliding_0_m_s + pairs[i, POSITION] * sliding_1_per_s
         # NORMAL holds the elastic force until the damping is known, which needs the stiffness of all that touch.
-        elastic, tangent, carrying = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+        elastic, tangent = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
         if elastic == 0.0:
             pairs[i, FLANK], pairs[i, STIFFNESS] = 0.0, pairs[i, WHOLE]
             continue
         pairs[i, FLANK] = 1.0 if elastic > 0.0 else -1.0
+        carrying = 1.0
         if elastic > 0.0 and index[layout.CONTACT_NODES] > 0:
             carrying = write_spread(scalars, numbers, index, pairs, i)
         pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, CARRYING] = elastic, tangent, carrying
@@ -186,7 +188,7 @@ def write_forces(
             pairs[i, NORMAL] = 0.0
             _load(scalars, numbers, index, pairs, i, elastic, damping, rate_m_s)
         elif scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
-            gap = least_sink(numbers, index, pairs, i) - pairs[i, PENETRATION]
+            gap = pairs[i, TOUCH] - pairs[i, PENETRATION]
             pairs[i, NORMAL] = film_force(scalars, pairs[i, POSITION], gap, rate_m_s)
 
 

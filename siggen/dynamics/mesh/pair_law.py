@@ -8,13 +8,12 @@ Luo, Baddour, Liang, MSSP 119 (2019) 155-181): with the approach x along the lin
     c_n = 2 ζ √(Σk m_e) k_n/Σk     over the pairs that touch, k = f' (Kasuba and Evans 1981: constant ratio)
     F_n = μ_n N_n tanh(v_n/v_0)    on the drive flank, v_n = sliding of the pinion's flank on the gear's (`friction`)
 
-f_n(p) = k_n p, or the force of slices across pitted flanks (`slice_law`), or that of the contact solved across the face
-(`contact_spring`). c_nm is the deflection at one pair per unit
-force at another, through the gear bodies that they share; 0 without coupling. Between flanks that approach without
-touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders, iso-viscous; derived); its force
-jumps where the flanks touch, from that of the thinnest film to the mesh damper's, since a film in closed contact is as
-good as rigid. Positions are in base pitches, as in `mesh_force`; outside the path of contact the stiffness is that of
-its end. Load sharing is N_n/ΣN and needs no formula of its own.
+f_n(p) is the force of the contact solved across the face (`contact_spring`), or k_n p without a table of it. c_nm is
+the deflection at one pair per unit force at another, through the gear bodies that they share; 0 without coupling.
+Between flanks that approach without touching a squeezed film may act: N_n = 12 π η L (R_e/2h)^1.5 ẋ (rigid cylinders,
+iso-viscous; derived); its force jumps where the flanks touch, from that of the thinnest film to the mesh damper's,
+since a film in closed contact is as good as rigid. Positions are in base pitches, as in `mesh_force`; outside the path
+of contact the stiffness is that of its end. Load sharing is N_n/ΣN and needs no formula of its own.
 """
 
 from __future__ import annotations
@@ -31,7 +30,6 @@ from siggen.dynamics.mesh.packed_tables import PackedTables
 
 if TYPE_CHECKING:
     from siggen.dynamics.mesh.damping import DampingLaw
-    from siggen.dynamics.mesh.slice_law import SliceLaw
     from siggen.gears.contact.contact_table import ContactTable
     from siggen.gears.geometry.missing_material import MissingMaterial
     from siggen.gears.stiffness.mesh_tables import MeshTables
@@ -47,15 +45,13 @@ if TYPE_CHECKING:
 SCALARS = 26
 
 (
-    TEETH_1, TEETH_2, POINTS, MISSING_POINTS, GROUPS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS,
-    SHARE_DAMPS, STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, SINK_AT, FLUSH_AT, LAND_AT,
-    ON_DAMAGE_AT, CONTACT_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT, KIND_1_AT, KIND_2_AT, CONTACT_NODES,
-    CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT, CONTACT_VALUES,
-) = range(33)  # fmt: skip
-"""Places in the head of `PairLaw.places`: counts (0 groups: no slices; 0 apart: no coupling; no roughness: no friction;
-0 nodes: no table of the contact across the face) and, ending in _AT, where a table begins in `numbers`, or in `places`
-itself."""
-HEAD = 33
+    TEETH_1, TEETH_2, POINTS, MISSING_POINTS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS, SHARE_DAMPS,
+    STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT,
+    KIND_1_AT, KIND_2_AT, CONTACT_NODES, CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT, CONTACT_VALUES,
+) = range(27)  # fmt: skip
+"""Places in the head of `PairLaw.places`: counts (0 apart: no coupling; no roughness: no friction; 0 nodes: no table of
+the contact across the face) and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
+HEAD = 27
 
 
 class PairLaw(NamedTuple):
@@ -123,7 +119,6 @@ def pair_law(
     backlash_m: float,
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
-    slices: SliceLaw | None = None,
     contact: ContactTable | None = None,
     coupling_m_per_n: FloatArray | None = None,
 ) -> PairLaw:
@@ -132,16 +127,14 @@ def pair_law(
     Parameters
     ----------
     tables : MeshTables
-        Stiffness of single pairs; with slices, of pairs whose whole face is in contact (`slice_tables`).
+        Stiffness of single pairs; with a contact, of pairs whose whole face is in contact.
     missing : MissingMaterial
     line_of_action_m, equivalent_mesh_mass_kg, backlash_m : float
     damping_ratio : float or DampingLaw
         ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
     friction, film : FrictionLaw, SqueezeFilm or None
-    slices : SliceLaw or None
-        On the grid of `tables`: forces of pitted or misaligned flanks.
     contact : ContactTable or None
-        On the grid of `tables`, in place of slices: forces of all pairs with the contact solved across the face.
+        On the grid of `tables`: forces of all pairs with the contact solved across the face; None: springs.
     coupling_m_per_n : (apart, points) or None
         Deflection at one pair per unit force at the pair a + 1 base pitches away, over the position of the pair that
         entered later, on the grid of `tables` [m/N].
@@ -165,8 +158,6 @@ def pair_law(
     scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
     scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
     _pack_teeth(packed, tables, missing)
-    if slices is not None:
-        _pack_slices(packed, scalars, slices, tables)
     if contact is not None:
         _pack_contact(packed, scalars, contact, tables)
     if coupling_m_per_n is not None:
@@ -211,21 +202,6 @@ def _pack_teeth(packed: PackedTables, tables: MeshTables, missing: MissingMateri
         packed.add(profile, teeth.profile_m)
         packed.add(offset, teeth.offset_m)
         packed.add_index(kind, teeth.kind_of_tooth)
-
-
-def _pack_slices(packed: PackedTables, scalars: FloatArray, slices: SliceLaw, tables: MeshTables) -> None:
-    if slices.stiffness_n_per_m.shape != tables.pair_stiffness_n_per_m.shape:
-        raise ValueError(
-            f"slices: received tables of shape {slices.stiffness_n_per_m.shape}; allowed are those of the stiffness, "
-            f"{tables.pair_stiffness_n_per_m.shape}"
-        )
-    packed.head(GROUPS, slices.sink_m.shape[2])
-    for place, values in (
-        (SINK_AT, slices.sink_m), (FLUSH_AT, slices.flush), (LAND_AT, slices.land), (ON_DAMAGE_AT, slices.on_damage),
-        (CONTACT_AT, slices.contact_n_per_m),
-    ):  # fmt: skip
-        packed.add(place, values)
-    scalars[LEAD_M] = slices.lead_m
 
 
 def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTable, tables: MeshTables) -> None:

@@ -85,8 +85,6 @@ def place_pair(
     first += between(numbers, int(pairs[i, MISSED_2_AT]), along, share)
     pairs[i, GAP] = pairs[i, OFFSET] + first + scalars[layout.LEAD_M]
     pairs[i, ROUGH] = 0.0
-    if index[layout.GROUPS] > 0:
-        pairs[i, ROUGH] = between(numbers, index[layout.ON_DAMAGE_AT] + int(pairs[i, ROW]) * points, cell, weight)
     if index[layout.CONTACT_NODES] > 0:
         place_contact(numbers, index, pairs, i)
     for a in range(min(index[layout.APART], MOST_APART)):

@@ -14,7 +14,6 @@ from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.contact_spring import contact_spring
 from siggen.dynamics.mesh.pair_columns import (
-    CELL,
     COLUMNS,
     COUPLED,
     FLANK,
@@ -22,13 +21,8 @@ from siggen.dynamics.mesh.pair_columns import (
     NORMAL,
     PENETRATION,
     POSITION,
-    ROW,
-    TOUCH,
-    WEIGHT,
     WHOLE,
-    between,
 )
-from siggen.dynamics.mesh.slice_law import grouped_force
 
 ALONE, FORCE, SLOPE, RIGHT, MATRIX = range(5)
 """Columns of the solution: penetration by itself, force, slope, right side; the matrix, and behind it the coupling."""
@@ -41,56 +35,25 @@ MOST_STEPS = 50
 @njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def _spring(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float]:
-    """Return force [N], stiffness [N/m] and carrying share of the face of slot i on its drive flank."""
-    whole = pairs[i, WHOLE]
+) -> tuple[float, float]:
+    """Return force [N] and stiffness [N/m] of slot i on its drive flank."""
     if penetration_m <= 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0
     if index[layout.CONTACT_NODES] > 0:
-        force, slope = contact_spring(scalars, numbers, index, pairs, i, penetration_m)
-        return force, slope, 1.0
-    groups = index[layout.GROUPS]
-    if groups > 0:
-        cell, weight, points = int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
-        corner = int(pairs[i, ROW]) * points + cell
-        low = index[layout.SINK_AT] + corner * groups
-        if numbers[low + groups - 1] != 0.0 or numbers[low + 2 * groups - 1] != 0.0:
-            flush = between(numbers, index[layout.FLUSH_AT], corner, weight)
-            contact = between(numbers, index[layout.CONTACT_AT], cell, weight)
-            return grouped_force(numbers, low, groups, weight, flush, contact, whole, penetration_m)
-        land = between(numbers, index[layout.LAND_AT], corner, weight)
-        return whole * penetration_m, whole, land
-    return whole * penetration_m, whole, 1.0
-
-
-@njit(cache=True, _nrt=False)
-def least_sink(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> float:
-    """Return how deep the mating flank of slot i lies before anything touches [m]; 0 where the face is flush."""
-    if index[layout.CONTACT_NODES] > 0:
-        touch: float = pairs[i, TOUCH]
-        return touch
-    groups = index[layout.GROUPS]
-    if groups == 0:
-        return 0.0
-    cell, weight = int(pairs[i, CELL]), pairs[i, WEIGHT]
-    corner = int(pairs[i, ROW]) * index[layout.POINTS] + cell
-    if between(numbers, index[layout.FLUSH_AT], corner, weight) > 0.0:
-        return 0.0
-    low = index[layout.SINK_AT] + corner * groups
-    sink: float = numbers[low] * (1.0 - weight) + numbers[low + groups] * weight
-    return sink
+        return contact_spring(scalars, numbers, index, pairs, i, penetration_m)
+    return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE]
 
 
 @njit(cache=True, _nrt=False, inline="always", error_model="numpy")
 def spring_of_flank(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float]:
+) -> tuple[float, float]:
     """Return the same on the flank of column FLANK; the back flank has no damage and pushes the other way."""
     if pairs[i, FLANK] >= 0.0:
         return _spring(scalars, numbers, index, pairs, i, penetration_m)
     if penetration_m >= 0.0:
-        return 0.0, 0.0, 0.0
-    return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE], 1.0
+        return 0.0, 0.0
+    return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE]
 
 
 @njit(cache=True, _nrt=False)
@@ -125,19 +88,18 @@ def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pai
     """Replace the penetration of every pair by itself with that under the forces of the others."""
     slots, apart = pairs.shape[0], min(index[layout.APART], MOST_APART)
     coupling = MATRIX + slots
-    smooth = index[layout.CONTACT_NODES] > 0
     work = pairs[:, COLUMNS:]  # of the table itself: code that allocates nothing need not count references
     for i in range(slots):
         for column in range(coupling + slots):
             work[i, column] = 0.0
-    _prepare(scalars, pairs, work, apart, smooth)
+    _prepare(scalars, pairs, work, apart)
     for step in range(MOST_STEPS):
         settled = True
         for i in range(slots):
             found, tangent = 0.0, 0.0
             if pairs[i, WHOLE] > 0.0:
                 pairs[i, PENETRATION] = _under_others(work, coupling, i)
-                found, tangent, _ = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+                found, tangent = spring_of_flank(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
             settled = settled and tangent == work[i, SLOPE]
             work[i, SLOPE], work[i, RIGHT] = tangent, found - work[i, FORCE]
             if step > MOST_STEPS // 2:
@@ -146,22 +108,21 @@ def share_coupled(scalars: FloatArray, numbers: FloatArray, index: IntArray, pai
         # One at a time, the same pieces twice are no proof: all steps are taken, each far nearer than the one before.
         if settled and step <= MOST_STEPS // 2:
             return
-        if _newton_step(work, coupling) <= SETTLED_CHANGE and smooth:
+        if _newton_step(work, coupling) <= SETTLED_CHANGE:
             for i in range(slots):
                 pairs[i, PENETRATION] = _under_others(work, coupling, i)
             return
 
 
 @njit(cache=True, _nrt=False, inline="always")
-def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: int, smooth: bool) -> None:
+def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: int) -> None:
     """Write penetrations by themselves, first guesses and couplings."""
     slots = pairs.shape[0]
     for i in range(slots):
         work[i, ALONE], work[i, SLOPE] = pairs[i, PENETRATION], -1.0
         if pairs[i, WHOLE] == 0.0:
             continue
-        if smooth:
-            work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
+        work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
         for j in range(slots):
             if i != j and pairs[j, WHOLE] > 0.0:
                 work[i, MATRIX + slots + j] = coupling_of(scalars, pairs, apart, i, j)

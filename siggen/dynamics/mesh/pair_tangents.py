@@ -37,8 +37,6 @@ from siggen.dynamics.mesh.pair_springs import share_coupled, spring_of_flank
 
 SMOOTH_CHANGE = 0.02
 """Of the larger force: Newton's error is the curvature times the square of this over ten, below 1e-6 of the force."""
-KINKED_CHANGE = 1e-4
-"""The same where springs are piecewise linear."""
 MOST_STEPS = 8
 
 
@@ -130,8 +128,8 @@ def _spring(
         ) = contact_state(scalars, numbers, index, pairs, i, penetration_m)  # fmt: skip
         return force, slope
     pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING] = 0.0, 0.0, 0.0
-    force, slope, pairs[i, CARRYING] = spring_of_flank(scalars, numbers, index, pairs, i, penetration_m)
-    return force, slope
+    pairs[i, CARRYING] = 1.0
+    return spring_of_flank(scalars, numbers, index, pairs, i, penetration_m)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -149,7 +147,6 @@ def _write_two(
     # Row i is that of the pair that entered later, the older one is j.
     away = int(pairs[i, PAIR] - pairs[j, PAIR])
     c = pairs[i, COUPLED + away - 1] if away <= min(index[layout.APART], MOST_APART) else 0.0
-    settled = SMOOTH_CHANGE if index[layout.CONTACT_NODES] > 0 else KINKED_CHANGE
     alone_i, alone_j = pairs[i, PENETRATION], pairs[j, PENETRATION]
     f_i, k_i, d_i = _state_before(pairs, i, i + back)
     f_j, k_j, d_j = _state_before(pairs, j, j + back)
@@ -164,7 +161,7 @@ def _write_two(
         d_i = (g_i - f_i - k_i * c * (g_j - f_j)) * inverse
         d_j = (g_j - f_j - k_j * c * (g_i - f_i)) * inverse
         f_i, f_j = f_i + d_i, f_j + d_j
-        if max(abs(d_i), abs(d_j)) <= settled * max(abs(f_i), abs(f_j)):
+        if max(abs(d_i), abs(d_j)) <= SMOOTH_CHANGE * max(abs(f_i), abs(f_j)):
             break
     pairs[i, PENETRATION], pairs[j, PENETRATION] = alone_i - c * f_j, alone_j - c * f_i
     pairs[i, MOMENT] += pairs[i, CROSS] * (pairs[i, PENETRATION] - p_i)

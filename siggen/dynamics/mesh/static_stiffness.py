@@ -2,8 +2,8 @@
 
 Derived. At rest the pairs carry F at the approach x(F), measured from where ideal flanks would touch, so tip relief and
 the sink into damage count as approach. F/x is a secant, not a tangent: where the mating flank first sinks into damage
-it falls with a falling load. On the drive flank the force grows with the approach in straight pieces, so false position
-ends on the exact solution as soon as both ends of the bracket lie on one piece.
+it falls with a falling load. On the drive flank the force grows with the approach, so false position within a bracket
+always ends.
 """
 
 from __future__ import annotations

@@ -22,8 +22,8 @@ from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, advance, f
 from siggen.dynamics.time.pair_motion import PairMotion
 from siggen.dynamics.time.transient import transient_s
 
-SMOOTH_SHARE, KINKED_SHARE = 4e-2, 1e-2
-"""Of the static force: how large its quadratic part over a step may be, with contact across the face and slices."""
+BEND_SHARE = 4e-2
+"""Of the static force: how large its quadratic part over a step may be."""
 MEAN_ANGLES = 24
 GOLDEN = 0.6180339887498949
 """Angles spread over all teeth and the path of contact."""
@@ -60,8 +60,7 @@ class ExponentialMotion(PairMotion):
         rigid = (self.pair_equations.rigid_sliding_0, self.pair_equations.rigid_sliding_1)
         self.scheme = exponential_scheme(structure, self.equations, damping, rigid, stride * step_s)
         self._stride = stride
-        share = SMOOTH_SHARE if law.places[layout.CONTACT_NODES] > 0 else KINKED_SHARE
-        self._tolerance_n = share * abs(self.equations.static_force)
+        self._tolerance_n = BEND_SHARE * abs(self.equations.static_force)
         self._events = event_places(
             law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * stride * step_s
         )

@@ -88,7 +88,7 @@ def contact_table(
     """
     damage = tuple(pit for pit in damage if has_extent(pit))
     lead = np.zeros(face_slices(pair, options)) if lead_m is None else np.asarray(lead_m, dtype=np.float64)
-    # The least missing material counts in the places of the teeth (`slice_law` does the same).
+    # The least missing material counts in the places of the teeth.
     even = lead - lead.min()
     healthy, row = _healthy(pair, stiffness, options, points, tuple(even.tolist()))
     solver = table_solver(pair, stiffness, options, even)

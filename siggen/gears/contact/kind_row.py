@@ -71,7 +71,7 @@ def kind_row(
         flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
         for which, of_tooth in zip(flanks, pits, strict=True)
     ]
-    # What shows on no flank acts through the tooth alone, as in `slice_law`.
+    # What shows on no flank acts through the tooth alone.
     acting = [tuple(d for d in of_tooth if options.section_loss or d.outline is None) for of_tooth in pits]
     if healthy is not None and not any(acting):
         rest = healthy.rest

@@ -10,7 +10,7 @@ pinion's arc and falls with the gear's; where they touch they are one pit.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import asin, pi, sqrt
+from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -29,12 +29,10 @@ from siggen.gears.damage.row_columns import (
     SEMI_FACE,
     SEMI_HEIGHT,
     TRAPEZOID,
-    UNSTATED,
 )
 from siggen.gears.damage.tooth_damage import ToothDamage, has_extent
 from siggen.gears.damage.union import square_depth
 from siggen.gears.geometry import involute
-from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
 BEYOND_TIP = 1.5
@@ -75,20 +73,6 @@ class FlankChords(NamedTuple):
     half_angle_rad: float
 
 
-class ContactChords(NamedTuple):
-    """What slices meet at positions, each (positions, slices).
-
-    `covered`: share of the Hertz band over pits; `edge_m`: distance to the nearest edge of the pit at the contact, 0 on
-    a land; `depth_m`: depth of the floor there, 0 on a land; `edge_radius_m`: radius of that edge, negative where the
-    damage states none and on a land.
-    """
-
-    covered: FloatArray
-    edge_m: FloatArray
-    depth_m: FloatArray
-    edge_radius_m: FloatArray
-
-
 def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: float, slices: int) -> FlankChords:
     """Return the chords of one flank; pits without extent in any direction are no pits.
 
@@ -126,33 +110,6 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
         base_radius_m=gear.base_radius_m,
         half_angle_rad=gear.base_half_angle_rad,
     )
-
-
-def contact_chords(
-    pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m: FloatArray, half_width_m: FloatArray
-) -> ContactChords:
-    """Return what every slice meets at contact positions s (k,) with Hertz half-widths a_H (k,) [m].
-
-    The covered share weighs the damage within the Hertz band by the pressure, a semi-ellipse: a pit much narrower than
-    the band covers next to nothing, a wide one all.
-    """
-    shape = (position_m.size, pinion.intervals.size)
-    out = ContactChords(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.full(shape, UNSTATED))
-    room = pinion.low.shape[1] + gear.low.shape[1]
-    _fill_contact(pair.line_of_action_m, pinion, gear, position_m, half_width_m, np.empty((4, room)), out)
-    # Shares of several pits may add up to 1 less a rounding error: that is no land.
-    np.copyto(out.covered, 1.0, where=out.covered > 1.0 - 1e-12)
-    return out
-
-
-@njit(cache=True)
-def semi_ellipse_share(offset: float) -> float:
-    """Return the part of a semi-ellipse of half-width 1 that lies below `offset`: 0 at -1, 1/2 at 0, 1 at 1."""
-    if offset <= -1.0:
-        return 0.0
-    if offset >= 1.0:
-        return 1.0
-    return 0.5 + (offset * sqrt((1.0 - offset) * (1.0 + offset)) + asin(offset)) / pi
 
 
 @njit(cache=True)
@@ -268,55 +225,3 @@ def depth_on_line(
         if low[j, k] < height < high[j, k]:
             deepest = max(deepest, square_depth(height, face[j], pits, row[j, k]))
     return sqrt(deepest)
-
-
-@njit(cache=True)
-def tangent_union(
-    pinion: FlankChords, gear: FlankChords, j: int, arc_1: float, arc_2: float, room: FloatArray, merged: FloatArray
-) -> int:
-    """Write the pits of both flanks on line j along the tangent at the contact, as separate intervals."""
-    filled = 0
-    for k in range(pinion.intervals[j]):
-        low, high = pinion.low[j, k] - arc_1, pinion.high[j, k] - arc_1
-        filled = _insert(low, high, pinion.low_radius_m[j, k], pinion.high_radius_m[j, k], room, filled)
-    for k in range(gear.intervals[j]):
-        low, high = arc_2 - gear.high[j, k], arc_2 - gear.low[j, k]
-        filled = _insert(low, high, gear.high_radius_m[j, k], gear.low_radius_m[j, k], room, filled)
-    return _merge(room, filled, merged)
-
-
-@njit(cache=True)
-def _fill_contact(
-    line: float,
-    pinion: FlankChords,
-    gear: FlankChords,
-    position: FloatArray,
-    half_width: FloatArray,
-    room: FloatArray,
-    out: ContactChords,
-) -> None:
-    merged = np.empty_like(room)
-    face_1, pits_1, face_2, pits_2 = pinion.face_m, pinion.pits, gear.face_m, gear.pits
-    crossing_1, row_1, low_1, high_1 = pinion.lines
-    crossing_2, row_2, low_2, high_2 = gear.lines
-    for i in range(position.size):
-        roll_1 = position[i] / pinion.base_radius_m
-        roll_2 = (line - position[i]) / gear.base_radius_m
-        arc_1 = 0.5 * pinion.base_radius_m * roll_1 * roll_1
-        arc_2 = 0.5 * gear.base_radius_m * roll_2 * roll_2
-        height_1 = involute.height(roll_1, pinion.base_radius_m, pinion.half_angle_rad)
-        height_2 = involute.height(roll_2, gear.base_radius_m, gear.half_angle_rad)
-        for j in range(pinion.intervals.size):
-            if pinion.intervals[j] + gear.intervals[j] == 0:
-                continue
-            count = tangent_union(pinion, gear, j, arc_1, arc_2, room, merged)
-            for k in range(count):
-                low, high = merged[0, k], merged[1, k]
-                share = semi_ellipse_share(high / half_width[i]) - semi_ellipse_share(low / half_width[i])
-                out.covered[i, j] += share
-                if low < 0.0 < high:
-                    out.edge_m[i, j] = min(-low, high)
-                    out.edge_radius_m[i, j] = merged[2, k] if -low <= high else merged[3, k]
-                    depth = depth_on_line(j, height_1, face_1, pits_1, crossing_1, row_1, low_1, high_1)
-                    depth += depth_on_line(j, height_2, face_2, pits_2, crossing_2, row_2, low_2, high_2)
-                    out.depth_m[i, j] = depth

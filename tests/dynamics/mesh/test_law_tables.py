@@ -9,13 +9,13 @@ from siggen.dynamics.friction.friction import FrictionLaw
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.law_tables import law_tables
 from siggen.dynamics.mesh.pair_law import pair_law
-from siggen.dynamics.mesh.slice_law import SliceLaw
+from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.mesh.test_coupled_pairs import table as coupling_table
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law, tables
 
-ROWS, POINTS, GROUPS = 3, 65, 4
+ROWS, POINTS = 3, 65
 RNG = np.random.default_rng(0)
 
 
@@ -35,10 +35,11 @@ def made_up_teeth(teeth: int) -> ToothTables:
 def test_names_give_back_every_input_of_the_law() -> None:
     over = made_up_tables()
     missing = MissingMaterial(over.start_m, over.end_m, made_up_teeth(18), made_up_teeth(47))
-    sinks = np.sort(RNG.uniform(0.0, 8e-6, (ROWS, POINTS, GROUPS)), axis=2)
-    flush, land, on_damage = RNG.uniform(0.0, 1.0, (3, ROWS, POINTS))
-    contact = RNG.uniform(3e9, 4e9, POINTS)
-    slices = SliceLaw(sinks, over.pair_stiffness_n_per_m, flush, land, on_damage, contact, 0.02, 0.0, 1.0, 2e-6)
+    cells = (ROWS, POINTS - 1)
+    contact = ContactTable(
+        touch_m=RNG.uniform(0.0, 8e-6, (ROWS, POINTS)), column=RNG.uniform(size=cells), gain=RNG.uniform(size=cells),
+        curves=RNG.uniform(size=(9, 7, 8)), reach_m=4e-5, lead_m=2e-6,
+    )  # fmt: skip
     lubricated = AsperityTable(RNG.uniform(size=(2, 5, 6)), RNG.uniform(size=(5, 6)), 0.03, 0.001, 300.0, 9.0, 2.0)
     coupling = coupling_table(0.1, 0.02)
     found = law_tables(
@@ -50,7 +51,7 @@ def test_names_give_back_every_input_of_the_law() -> None:
             equivalent_mesh_mass_kg=0.25,
             backlash_m=8e-5,
             friction=FrictionLaw(lubricated, 0.11, 0.02),
-            slices=slices,
+            contact=contact,
             coupling_m_per_n=coupling,
         )
     )
@@ -59,8 +60,9 @@ def test_names_give_back_every_input_of_the_law() -> None:
         "missing_1": missing.pinion.profile_m, "missing_2": missing.gear.profile_m, "backlash_m": 8e-5,
         "kind_of_tooth_1": missing.pinion.kind_of_tooth, "kind_of_tooth_2": missing.gear.kind_of_tooth,
         "offset_1": missing.pinion.offset_m, "offset_2": missing.gear.offset_m, "line_of_action_m": 0.033,
-        "slices.sink_m": sinks, "slices.flush": flush, "slices.land": land, "slices.on_damage": on_damage,
-        "slices.contact_n_per_m": contact, "slices.lead_m": 2e-6, "rubs": True, "contact_ratio": 1.6,
+        "contact.touch_m": contact.touch_m, "contact.column": contact.column, "contact.gain": contact.gain,
+        "contact.curves": contact.curves, "contact.reach_m": 4e-5, "contact.lead_m": 2e-6, "rubs": True,
+        "contact_ratio": 1.6,
         "friction.table.ratio": lubricated.ratio, "friction.table.fluid": lubricated.fluid, "friction.boundary": 0.11,
         "friction.slip_speed_m_s": 0.02, "friction.table.per_log": 2.0, "damping_structure_root_kg": 0.04,
         "damping_film_root_kg": 0.02, "damping_asperities_root_kg": 0.05, "start_m": over.start_m,
@@ -73,7 +75,7 @@ def test_names_give_back_every_input_of_the_law() -> None:
 
 def test_a_plain_law_names_nothing_that_it_does_not_use() -> None:
     found = law_tables(law())
-    assert not [name for name in found if name.startswith(("slices", "coupling", "friction", "damping_film"))]
+    assert not [name for name in found if name.startswith(("contact.", "coupling", "friction", "damping_film"))]
     assert found["rubs"] is False
     np.testing.assert_array_equal(found["stiffness"], tables().pair_stiffness_n_per_m)
     assert found["missing_1"][0, -1] > RELIEF.amount_m

@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 
 from siggen.dynamics.friction.contact_kinematics import relative_radius
 from siggen.dynamics.mesh.pair_forces import static_approach_m
-from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
-from siggen.dynamics.mesh.slice_law import SliceLaw, SliceOptions, slice_law, slice_tables
 from siggen.dynamics.mesh.static_stiffness import (
     largest_secant_loss,
     pairs_before_damage,
@@ -20,19 +18,13 @@ from siggen.dynamics.mesh.static_stiffness import (
     static_approaches_m,
 )
 from siggen.dynamics.time.equations import no_inputs
-from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import missing_material
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
 from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from tests.dynamics.casing_stage import make_structure
-from tests.dynamics.pair_runs import RELIEF, columns, exact_involutes, gear_pair, law, motion, tables
+from tests.dynamics.pair_runs import TEETH, columns, contact_law, exact_involutes, gear_pair, law, motion, tables
 from tests.gears.pit_shapes import chord_pit
 
 PAIR = gear_pair()
-STIFFNESS = StiffnessOptions("base_circle", "sainsot", "profile")
-SHARP = SliceOptions(59e3, edge_radius_m=0.0)
 PITCH_POINT = PAIR.pitch_point_m
 ALONE = (PITCH_POINT - PAIR.contact_start_m) / PAIR.base_pitch_m
 """Angle at which the damaged tooth is alone in contact, at the pitch point."""
@@ -41,28 +33,15 @@ FORCE = TORQUE / PAIR.pinion.base_radius_m
 SPALL_M = 0.8e-3
 
 
-def damaged(damage: Damage, slices: SliceLaw | None = None, damping_ratio: float = 0.07) -> PairLaw:
-    found = slice_law(PAIR, damage, STIFFNESS, SHARP) if slices is None else slices
-    return pair_law(
-        slice_tables(PAIR, damage, found),
-        missing_material(PAIR, RELIEF),
-        line_of_action_m=PAIR.line_of_action_m,
-        damping_ratio=damping_ratio,
-        equivalent_mesh_mass_kg=0.2124,
-        backlash_m=80e-6,
-        slices=found,
-    )
-
-
 SPALL = (chord_pit(PAIR, SPALL_M, PITCH_POINT),)
-THROUGH, HEALTHY = damaged(SPALL), law()
+THROUGH, HEALTHY = contact_law(SPALL), contact_law()
 
 
 def test_healthy_teeth_without_relief_have_the_mesh_stiffness_of_the_tables() -> None:
     chosen = law(exact_involutes(tables()))
     pitches = np.linspace(3.01, 4.99, 199)
     found = secant_stiffness_n_per_m(chosen, FORCE, pitches)
-    direct = mesh_stiffness(PAIR, 2.0 * np.pi * pitches / PAIR.pinion.teeth, STIFFNESS)
+    direct = mesh_stiffness(PAIR, 2.0 * np.pi * pitches / PAIR.pinion.teeth, TEETH)
     # Linear interpolation between 2049 points.
     np.testing.assert_allclose(found, direct, rtol=1e-5)
 
@@ -76,23 +55,24 @@ def test_false_position_ends_where_halving_ends(pitches: float, force: float) ->
 
 
 def test_a_whole_land_loses_nothing() -> None:
-    # Damage between base circle and path of contact, which begins 0.04 mm of arc above: no contact line lies there.
-    below = Pit("pinion", 0, 0.02e-3, 0.5 * PAIR.face_width_m, 1.0, 0.01e-3, 1e-3, "flat")
-    assert largest_secant_loss(damaged((below,)), HEALTHY, FORCE) == 0.0
+    # Below the path of contact of the gear, further than a loaded contact is wide: by 1.1 mm of arc.
+    below = chord_pit(PAIR, 0.1e-3, PAIR.contact_end_m + 5e-3, which="gear")
+    assert largest_secant_loss(contact_law((below,)), HEALTHY, FORCE) == 0.0
     assert largest_secant_loss(HEALTHY, HEALTHY, FORCE) == 0.0
 
 
 def test_lands_beside_a_spall_lose_what_the_contact_softens() -> None:
-    half = damaged((chord_pit(PAIR, SPALL_M, PITCH_POINT, semi_face_m=5e-3),))
-    # The contact is about a ninth of the compliance; half its length doubles that: far from the 1 of a lost contact.
-    assert 0.02 < largest_secant_loss(half, HEALTHY, FORCE) < 0.15
+    half = contact_law((chord_pit(PAIR, SPALL_M, PITCH_POINT, semi_face_m=5e-3),))
+    # The contact is about a fifth of the compliance; half its length doubles that, and the tooth gives way unevenly:
+    # far from the 1 of a lost contact.
+    assert 0.15 < largest_secant_loss(half, HEALTHY, FORCE) < 0.25
 
 
 @pytest.mark.parametrize("share", [1e-4, 1e-3])
 def test_without_load_the_approach_is_the_sink(share: float) -> None:
     radius = relative_radius(PITCH_POINT, PAIR.line_of_action_m)
     approach = static_approaches_m(THROUGH, share * FORCE, np.array([ALONE]))[0]
-    assert approach == pytest.approx(SPALL_M**2 / (8.0 * radius), rel=0.02)  # as `largest_sink_m`
+    assert approach == pytest.approx(SPALL_M**2 / (8.0 * radius), rel=0.02)
 
 
 def test_the_loss_falls_with_the_load_since_the_sink_stays() -> None:
@@ -101,8 +81,8 @@ def test_the_loss_falls_with_the_load_since_the_sink_stays() -> None:
     assert losses[0] > 0.99
     whole = static_approaches_m(HEALTHY, FORCE, np.array([ALONE]))[0]
     sink = SPALL_M**2 / (8.0 * relative_radius(PITCH_POINT, PAIR.line_of_action_m))
-    # Alone in contact the approach grows by the sink and by little more: the edges carry what the land carried.
-    assert losses[2] == pytest.approx(sink / (whole + sink), abs=0.02)
+    # Alone in contact the approach grows by the sink and by little more: edges carry and give way.
+    assert 0.0 < losses[2] - sink / (whole + sink) < 0.025
 
 
 def test_the_largest_loss_is_that_of_a_fine_scan_over_the_damaged_tooth() -> None:
@@ -115,7 +95,7 @@ def test_the_largest_loss_is_that_of_a_fine_scan_over_the_damaged_tooth() -> Non
 
 def test_damage_on_both_gears_is_scanned_where_the_damaged_teeth_meet() -> None:
     both = (*SPALL, replace(chord_pit(PAIR, SPALL_M, PITCH_POINT, which="gear"), tooth=1))
-    over = mesh_tables(PAIR, (), STIFFNESS)
+    over = mesh_tables(PAIR, (), TEETH)
     rows = np.zeros((18, 47), dtype=np.int32)
     rows[0], rows[:, 1], rows[0, 1] = 1, 2, 3
     chosen = law(
@@ -124,13 +104,13 @@ def test_damage_on_both_gears_is_scanned_where_the_damaged_teeth_meet() -> None:
     newest = pairs_before_damage(chosen)
     met = {int(rows[n % 18, n % 47]) for first in newest for n in range(first - chosen.slots, first + 2)}
     assert met == {0, 1, 2, 3}
-    assert largest_secant_loss(damaged(both), HEALTHY, FORCE) >= largest_secant_loss(THROUGH, HEALTHY, FORCE) - 1e-9
+    assert largest_secant_loss(contact_law(both), HEALTHY, FORCE) >= largest_secant_loss(THROUGH, HEALTHY, FORCE) - 1e-9
 
 
 @pytest.mark.parametrize("pitches", [ALONE, ALONE + 0.06, 0.2, 7.0 + ALONE])
 def test_the_time_loop_comes_to_rest_at_the_same_approach(pitches: float) -> None:
     """An independent way: the whole gearbox is let go 20 µm away and swings until its dampers have stopped it."""
-    run = motion(make_structure(), damaged(SPALL, damping_ratio=0.2), torque_nm=TORQUE)
+    run = motion(make_structure(), contact_law(SPALL, damping_ratio=0.2), torque_nm=TORQUE)
     still = np.full(40_001, pitches)
     states = np.zeros((still.size, 2 * len(run.structure.coordinates)))
     states[0, 0] = 20e-6 / PAIR.pinion.base_radius_m

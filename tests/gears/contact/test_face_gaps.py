@@ -1,4 +1,4 @@
-"""Gaps that slices meet: damage as the present sink law sees it, tips, and the refusals."""
+"""Gaps that slices meet: damage, tips, and the refusals; where damage lies, says `test_flank_chords`."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from siggen.gears.contact.edge_law import NO_EDGE
 from siggen.gears.contact.face_gaps import face_gaps
 from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
 from siggen.gears.contact.pair_rest import rigid_rest
-from siggen.gears.damage.flank_chords import contact_chords, flank_chords
+from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
-from tests.gears.builders import pair_18_47, pit
+from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)
 SLICES = 60
@@ -24,20 +24,6 @@ def flanks(pinion=(), gear=()):
         flank_chords(PAIR.member(which), damage, PAIR.face_width_m, SLICES)
         for which, damage in (("pinion", pinion), ("gear", gear))
     )
-
-
-@pytest.mark.parametrize("damage", [(SPALL,), (pit(a_mm=3.0, b_mm=0.5), pit(face_mm=14.0, floor="dish"))])
-def test_gaps_are_the_chords_of_the_present_sink_law(damage):
-    both = flanks(damage)
-    position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 201)
-    gaps = face_gaps(PAIR, *both, position)
-    chords = contact_chords(PAIR, *both, position, np.full(201, 67e-6))
-    inside = chords.edge_m > 0.0
-    assert inside.sum() > 100
-    np.testing.assert_array_equal(gaps.on_damage > 0.0, inside)
-    np.testing.assert_allclose(np.minimum(gaps.left_m, gaps.right_m)[inside], chords.edge_m[inside], rtol=1e-12)
-    np.testing.assert_allclose(gaps.floor_m, chords.depth_m, rtol=1e-12)
-    assert (np.minimum(gaps.left_m, gaps.right_m)[~inside] <= 1e-12).all()
 
 
 def test_a_spall_seen_from_the_gear_is_its_mirror_image():

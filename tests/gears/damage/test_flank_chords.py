@@ -1,14 +1,10 @@
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.integrate import quad
 
-from siggen.gears.damage.flank_chords import contact_chords, depth_on_line, flank_chords, semi_ellipse_share
+from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
+from siggen.gears.damage.flank_chords import depth_on_line, flank_chords
 from siggen.gears.stiffness.sections import contact_length_loss
 from tests.gears.builders import layers, pair_18_47, pit
 from tests.gears.pit_shapes import arc_of, chord_pit
@@ -18,19 +14,15 @@ WIDTH = PAIR.face_width_m
 CENTRE = PAIR.pitch_point_m - 0.3e-3
 
 
-def chords(pinion_pits=(), gear_pits=(), position=(CENTRE,), half_width=67e-6, slices=200):
-    position = np.atleast_1d(np.asarray(position, dtype=np.float64))
+def gaps(pinion_pits=(), gear_pits=(), position=(CENTRE,), slices=200) -> FaceGaps:
     pinion = flank_chords(PAIR.pinion, pinion_pits, WIDTH, slices)
     gear = flank_chords(PAIR.gear, gear_pits, WIDTH, slices)
-    return contact_chords(PAIR, pinion, gear, position, np.full(position.size, half_width))
+    return face_gaps(PAIR, pinion, gear, np.atleast_1d(np.asarray(position, dtype=np.float64)))
 
 
-@settings(deadline=None)
-@given(offset=st.floats(-1.2, 1.2))
-def test_the_semi_ellipse_is_a_distribution(offset: float) -> None:
-    direct = quad(lambda t: 2.0 / pi * np.sqrt(1.0 - t * t), -1.0, min(max(offset, -1.0), 1.0))[0]
-    # quad's absolute tolerance at the ends, where the root has an infinite slope.
-    assert semi_ellipse_share(offset) == pytest.approx(direct, abs=1e-8)
+def edge_of(found: FaceGaps) -> np.ndarray:
+    """Distance to the nearer edge of the damage under the contact (positions, slices), 0 on land [m]."""
+    return np.where(found.on_damage > 0.0, np.minimum(found.left_m, found.right_m), 0.0)
 
 
 @pytest.mark.parametrize("which", ["pinion", "gear"])
@@ -41,24 +33,24 @@ def test_a_chord_is_measured_as_an_arc_along_the_damaged_flank(which: str, offse
     target = arc_of(PAIR, which, CENTRE) + offset * 0.5 * length
     travel = np.sqrt(2.0 * target * PAIR.member(which).base_radius_m)
     position = travel if which == "pinion" else PAIR.line_of_action_m - travel
-    found = chords(**{f"{which}_pits": (wide,)}, position=position)
+    found = gaps(**{f"{which}_pits": (wide,)}, position=position)
     # The ellipse is 1 m wide: its chord narrows by 5e-5 over the face.
-    np.testing.assert_allclose(found.edge_m, 0.5 * length * (1.0 - abs(offset)), atol=1e-4 * length)
-    np.testing.assert_array_equal(found.depth_m, 1e-3)
+    np.testing.assert_allclose(edge_of(found), 0.5 * length * (1.0 - abs(offset)), atol=1e-4 * length)
+    np.testing.assert_array_equal(found.floor_m, 1e-3)
 
 
 def test_an_arc_of_a_millimetre_lasts_several_in_the_path_of_contact() -> None:
     wide = chord_pit(PAIR, 1.5e-3, PAIR.pitch_point_m)
     position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 4001)
-    inside = position[chords((wide,), position=position).edge_m[:, 100] > 0.0]
+    inside = position[gaps((wide,), position=position).on_damage[:, 100] > 0.0]
     # Published 4.2 mm, to two digits; to first order 1.5 mm R_b1/s.
     assert inside[-1] - inside[0] == pytest.approx(4.2e-3, abs=0.06e-3)
 
 
-def test_the_covered_share_of_a_small_hertz_band_is_the_exact_union() -> None:
+def test_the_damaged_share_of_the_face_is_the_exact_union() -> None:
     pits = layers(3, 8, step_face_mm=0.5, step_height_mm=0.15, height_mm=1.5, stagger_mm=0.25)
     position = np.linspace(CENTRE - 2e-3, CENTRE + 2e-3, 101)
-    found = chords(pits, position=position, half_width=1e-9, slices=4000).covered.mean(axis=1) * WIDTH
+    found = gaps(pits, position=position, slices=4000).on_damage.mean(axis=1) * WIDTH
     height = PAIR.pinion.height_m(position / PAIR.pinion.base_radius_m)
     exact = contact_length_loss(pits, WIDTH, height)
     assert exact.max() > 4e-3
@@ -66,37 +58,18 @@ def test_the_covered_share_of_a_small_hertz_band_is_the_exact_union() -> None:
     np.testing.assert_allclose(found, exact, atol=16 * 2.5e-6)
 
 
-def test_pits_much_narrower_than_the_hertz_band_are_bridged() -> None:
-    half = 67e-6
-    shares = [
-        chords((chord_pit(PAIR, length, CENTRE),), half_width=half).covered.max() for length in (1e-6, 1e-5, 3e-4)
-    ]
-    # Middle of a semi-ellipse: 2 l/(π a).
-    assert shares[0] == pytest.approx(2.0 * 1e-6 / (pi * half), rel=1e-3)
-    assert shares[0] < shares[1] < 0.1
-    assert shares[2] == 1.0
-
-
-def test_the_hertz_band_leaves_the_mean_of_the_damage_along_the_arc() -> None:
-    length = 0.1e-3
-    position = np.linspace(CENTRE - 1e-3, CENTRE + 1e-3, 4001)
-    covered = chords((chord_pit(PAIR, length, CENTRE),), position=position).covered[:, 100]
-    arc = 0.5 * position**2 / PAIR.pinion.base_radius_m
-    assert np.trapezoid(covered, arc) == pytest.approx(length, rel=1e-4)
-
-
 def test_pits_of_mating_flanks_join_where_they_touch() -> None:
     first = chord_pit(PAIR, 0.6e-3, CENTRE, depth_m=20e-6)
     second = chord_pit(PAIR, 1.4e-3, CENTRE, depth_m=30e-6, which="gear")
-    alone, both = chords((first,)), chords((first,), (second,))
-    assert alone.edge_m[0, 100] == pytest.approx(0.3e-3, rel=1e-3)
-    assert both.edge_m[0, 100] == pytest.approx(0.7e-3, rel=1e-3)
-    assert both.depth_m[0, 100] == pytest.approx(50e-6, rel=1e-12)
+    alone, both = gaps((first,)), gaps((first,), (second,))
+    assert edge_of(alone)[0, 100] == pytest.approx(0.3e-3, rel=1e-3)
+    assert edge_of(both)[0, 100] == pytest.approx(0.7e-3, rel=1e-3)
+    assert both.floor_m[0, 100] == pytest.approx(50e-6, rel=1e-12)
 
 
 def test_the_floor_of_a_dish_is_deepest_in_its_middle() -> None:
     dish = chord_pit(PAIR, 1.5e-3, CENTRE, depth_m=0.1e-3, semi_face_m=4e-3, floor="dish")
-    depth = chords((dish,), slices=201).depth_m[0]
+    depth = gaps((dish,), slices=201).floor_m[0]
     assert depth.max() == pytest.approx(0.1e-3, rel=1e-3)
     assert (np.diff(depth[60:101]) > 0.0).all()
     assert depth[0] == 0.0

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.columns.damage_columns import DAMAGE_COLUMNS
-from siggen.dynamics.mesh.slice_law import SliceOptions, slice_law
+from siggen.gears.contact.contact_table import contact_table
+from siggen.gears.contact.table_columns import FORCE, ROUGH
+from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.flank_damage import damage_problems, pit_rows
 from siggen.gears.damage.tooth_damage import has_extent
 from siggen.gears.stiffness.damage_summary import damage_summary
@@ -34,11 +36,14 @@ def test_it_softens_its_pairs_by_its_own_compliance_and_no_others() -> None:
 
 def test_the_contact_keeps_its_land_and_pits_beside_it_stay() -> None:
     damage = (CRACK, pit(tooth=5))
-    law = slice_law(PAIR, damage, OPTIONS, SliceOptions(6e4), 65)
-    row = 1  # pinion teeth ascending: the crack's tooth first
-    assert np.all(law.land[row] == 1.0)
-    assert np.all(law.stiffness_n_per_m[row] < law.stiffness_n_per_m[0])
-    assert law.land[2].min() < 1.0
+    table = contact_table(PAIR, damage, OPTIONS, TableOptions(4e3), 65)
+    # Pinion teeth ascending, the crack's tooth first; forces at the largest approach in the middle of the path.
+    healthy, cracked, pitted = (table.curves[int(table.column[row, 32])] for row in range(3))
+    assert not np.any(table.touch_m)
+    assert 0.5 * healthy[-1, FORCE] < cracked[-1, FORCE] < 0.99 * healthy[-1, FORCE]
+    assert np.array_equal(cracked[:, ROUGH], healthy[:, ROUGH])
+    assert table.curves[:, :, ROUGH].max() > 0.0
+    assert not np.any(pitted[:, ROUGH] < 0.0)
     assert pit_rows(damage).shape[0] == 1
     assert has_extent(CRACK)
 
