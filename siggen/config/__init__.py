@@ -12,7 +12,7 @@ from siggen.config.inheritance import extended_files, inherited
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
-from siggen.config.manufacture import FlankWaves, Manufacture
+from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
@@ -40,7 +40,6 @@ __all__ = [
     "Coupling",
     "Density",
     "Dynamics",
-    "FlankWaves",
     "Floor",
     "ForceNoise",
     "ForeignMesh",
