@@ -70,15 +70,6 @@ class Friction(Section):
         "with the law pairs, off with the law linear",
     )
     coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the model constant")
-    regular_speed_m_s: Annotated[Number, Within(above=0)] = Field(
-        default=0.02, description="sliding speed over which friction builds up around the pitch point"
-    )
-    boundary_coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.11, description="of the asperities (mixed_ehl)"
-    )
-    fluid: Literal["constant", "eyring", "xu_kahraman", "benedict_kelley"] = Field(
-        default="constant", description="friction of the oil film (mixed_ehl); constant: 0.02"
-    )
     oil: Oil = Field(
         default="ISO VG 220", description="mineral gear oil (mixed_ehl); a list: each gearbox draws one of them"
     )
@@ -88,7 +79,6 @@ class Friction(Section):
     roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=0.4, description="rms roughness of either flank (mixed_ehl)"
     )
-    hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
         description="rms roughness of a flank's lands inside damage (mixed_ehl; mesh.damage: geometry or all)",
