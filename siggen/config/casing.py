@@ -55,10 +55,5 @@ class Casing(Section):
         default=0.25,
         description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
     )
-    pinion_position_mm: Position | None = Field(
-        default=None,
-        description="axis of the pinion, the gear's lies horizontally beside it; null: shafts on either side of the "
-        "centre of gravity",
-    )
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
     caps: Caps | None = Field(default=None, description="null: bearings sit in the casing itself")

@@ -27,13 +27,6 @@ class Manufacture(Section):
     tolerance_share: Annotated[Number, Within(least=0, most=1)] = Field(
         default=Uniform(low=0.3, high=0.5), description="deviations over what the class allows, for each gear"
     )
-    runout_share: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=Uniform(low=0.3, high=0.8),
-        description="runout over what class and tolerance_share allow; the first harmonic of the pitch deviations",
-    )
-    profile_waves: Annotated[Number, Within(above=0, most=10)] = Field(
-        default=Uniform(low=2.5, high=3.5), description="cycles of the profile's form over the flank, for each tooth"
-    )
     crowning_um: Annotated[Number, Within(least=0, most=200)] = Field(
         default=0.0,
         description="lead crowning of the pinion: a parabola across the face that takes so much at both ends and "
@@ -46,10 +39,6 @@ class Manufacture(Section):
         default="off",
         description="iso_1328: helix slope and form of each gear, alike on its teeth, within tolerance_share of its "
         "class; the slope anywhere up to its limit, either way, the form at its limit",
-    )
-    # A distribution as a default would count in the identities of sets that do not use it.
-    helix_waves: Annotated[Number | None, Within(above=0, most=5, words=(None,))] = Field(
-        default=None, description="cycles of the helix form over the face; null: uniform from 0.7 to 2 (assumed)"
     )
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
@@ -91,11 +80,6 @@ class Manufacture(Section):
     def crowning_of_gear(self) -> Number:
         """Crowning of the driven gear, as given or as for the pinion."""
         return self.crowning_um if self.crowning_gear_um is None else self.crowning_gear_um
-
-    @property
-    def form_waves(self) -> Number:
-        """Cycles of the helix form, as given or as assumed."""
-        return Uniform(low=0.7, high=2.0) if self.helix_waves is None else self.helix_waves
 
     @property
     def has_crowning(self) -> bool:

@@ -18,13 +18,7 @@ class Mesh(Section):
         default="pairs", description="linear: mesh stiffness times approach; pairs: every tooth pair by itself"
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
-        default=8.0, description="parabolic relief at the tips of both gears"
-    )
-    tip_relief_length: Annotated[Number, Within(above=0, most=1)] = Field(
-        default=0.25, description="length of the relief along the line of action, in base pitches"
-    )
-    corner_contact: Literal["on", "off"] = Field(
-        default="on", description="whether deflected teeth meet with their tip corners outside the path of contact"
+        default=8.0, description="parabolic relief at the tips of both gears, over a quarter of a base pitch"
     )
     squeeze_film: Literal["off", "on"] = Field(
         default="off", description="whether oil damps flanks that approach without touching"

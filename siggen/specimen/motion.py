@@ -31,6 +31,9 @@ from siggen.specimen.contact import damage_is_geometry
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
 
+RELIEF_LENGTH = 0.25
+"""Length of the tip relief along the line of action, in base pitches (assumed)."""
+
 
 @dataclass(frozen=True, slots=True)
 class SpecimenMesh:
@@ -48,8 +51,8 @@ class SpecimenMesh:
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
     """Return the missing material of the teeth of a drawn `dynamics` section."""
     mesh = dynamics.mesh
-    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), constant(mesh.tip_relief_length) * pair.base_pitch_m)
-    return missing_material(pair, relief, corner_contact=mesh.corner_contact == "on", points=points)
+    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
+    return missing_material(pair, relief, points=points)
 
 
 def specimen_motion(

@@ -99,7 +99,7 @@ def _coupling(section: CouplingSection) -> Coupling:
 
 def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
     """Return a drawn casing in SI."""
-    bolts, pinion, inertia = section.bolts, section.pinion_position_mm, section.inertia_kg_m2
+    bolts, inertia = section.bolts, section.inertia_kg_m2
     mass, gyration_m = constant(section.mass_kg), CASING_GYRATION * pair.working_centre_distance_m
     return Casing(
         mass_kg=mass,
@@ -110,7 +110,7 @@ def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sen
             damping_ratio=constant(bolts.damping_ratio),
             places_m=tuple(_metres(place) for place in bolts.positions_mm),
         ),
-        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
+        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0),
         sensor_places_m={s.name: _sensor_metres(s.position_mm) for s in sensors if s.position_mm is not None},
         caps=None if section.caps is None else _caps(section.caps),
     )
