@@ -23,8 +23,6 @@ class Mesh(Section):
     squeeze_film: Literal["off", "on"] = Field(
         default="off", description="whether oil damps flanks that approach without touching"
     )
-    oil_viscosity_pa_s: Annotated[Number, Within(above=0)] = Field(default=0.112, description="of the squeezed film")
-    film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
     damage: Literal["all", "stiffness", "geometry"] = Field(
         default="all",
         description="how pits and spalls act with law: pairs; stiffness: shorter contact and weaker sections, as in "

@@ -33,6 +33,10 @@ from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, spe
 
 RELIEF_LENGTH = 0.25
 """Length of the tip relief along the line of action, in base pitches (assumed)."""
+FILM_VISCOSITY_PA_S = 0.112
+"""Of the squeezed film: ISO VG 220 at 50 °C."""
+FILM_FLOOR_M = 0.8e-6
+"""Thinnest squeezed film: of the size of the flanks' roughness (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +114,7 @@ def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairC
 
 def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
     section = dynamics.mesh
-    film = SqueezeFilm(
-        constant(section.oil_viscosity_pa_s), mesh.pair.face_width_m, 1e-6 * constant(section.film_floor_um)
-    )
+    film = SqueezeFilm(FILM_VISCOSITY_PA_S, mesh.pair.face_width_m, FILM_FLOOR_M)
     return pair_law(
         mesh.tables,
         mesh.missing,
