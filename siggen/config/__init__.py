@@ -1,7 +1,7 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
-from siggen.config.casing import Bolts, Caps, Casing
+from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
@@ -34,7 +34,6 @@ __all__ = [
     "BearingTones",
     "Bolts",
     "Bursts",
-    "Caps",
     "Casing",
     "Config",
     "Coupling",

@@ -59,12 +59,9 @@ class Sensor(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
         description="part of the channel's name"
     )
-    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim", "pinion_cap", "gear_cap"] = (
-        Field(
-            default="pinion_bearing",
-            description="where it is mounted; casing needs the model casing or a path, caps its caps, rims the model "
-            "torsional",
-        )
+    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
+        default="pinion_bearing",
+        description="where it is mounted; casing needs the model casing or a path, rims the model torsional",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION] = Field(
         default=None,

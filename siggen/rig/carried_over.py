@@ -119,9 +119,6 @@ def _dynamics(scales: PairScales) -> dict[str, float]:
         "casing.bolts.shear_stiffness_n_per_m": size,
         "casing.bolts.axial_stiffness_n_per_m": size,
         "casing.bolts.positions_mm": size,
-        "casing.caps.mass_kg": mass,
-        "casing.caps.horizontal_stiffness_n_per_m": size,
-        "casing.caps.vertical_stiffness_n_per_m": size,
         "mesh.tip_relief_um": scales.load / scales.face_width,
         "mesh.pit_edge_radius_mm": scales.module,
     }
