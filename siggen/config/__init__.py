@@ -19,7 +19,7 @@ from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.presets import config_file
-from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
+from siggen.config.sensors import NoiseFloor, Sensor
 from siggen.config.shafts import Shaft, Shafts
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
@@ -55,7 +55,6 @@ __all__ = [
     "ModalPath",
     "NoiseFloor",
     "NoiseModulation",
-    "NoiseRatio",
     "OperatingRange",
     "ParsedConfig",
     "PinkNoise",

@@ -69,7 +69,7 @@ CHANGES = [
     ("states__1__damage__depth_mm", 0.41),
     ("states__1__grows_from", "none"),
     ("sensors__0__bits", None),
-    ("sensors__0__noise", {"snr_db": 20}),
+    ("sensors__0__noise", {"floor_m_s2": 20}),
     ("sensors__0__axes", ["horizontal"]),
 ]
 

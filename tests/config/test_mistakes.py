@@ -172,8 +172,8 @@ MISTAKES = [
     ({"states__0__grows_from": "slight"}, "states.0.grows_from", "'slight', without damage", "only a state with"),
     ({"sensors__0__axes": ["vertical", "vertical"]}, "sensors.0.axes", "vertical, vertical", "each axis once"),
     ({"sensors": [{"name": "a"}, {"name": "a"}]}, "sensors.1.name", "'a'", "a name that sensors.0 does not have"),
-    ({"sensors__0__noise": {"snr_db": 3, "floor_m_s2": 1}}, "sensors.0.noise.floor_m_s2", "1", "known keys: snr_db"),
-    ({"sensors__0__noise": 0.1}, "sensors.0.noise", "0.1", "a mapping with floor_m_s2 or with snr_db"),
+    ({"sensors__0__noise": {"snr_db": 3, "floor_m_s2": 1}}, "sensors.0.noise.snr_db", "3", "known keys: floor_m_s2"),
+    ({"sensors__0__noise": 0.1}, "sensors.0.noise", "0.1", "a mapping with floor_m_s2"),
     ({"fs_hz": 2000}, "fs_hz", "2000.0", "mesh harmonic 5 (mesh_harmonics)"),
     ({"duration_s": 0.00001}, "duration_s", "0.512 samples", "a whole number of at least 2 samples"),
 ]
