@@ -11,6 +11,7 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    MIDDLE_HEIGHT,
     MM,
     READING,
     AnyGear,
@@ -27,7 +28,7 @@ from siggen.gears.damage.layouts import clustered_centres
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, Within, at
+from siggen.keys.number import at
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 
@@ -41,12 +42,9 @@ class ClusteredPits(PitSize, Fault):
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
-    centre_height_mm: Height = Field(default="pitch", description="height above the base circle around which they lie")
+    centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     height_reading: HeightReading = Field(default="axial", description=READING)
-    spread_profile_mm: Length = Field(description="standard deviation of the heights")
-    spread_face_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="standard deviation across the face about its middle; null: evenly over the face"
-    )
+    spread_profile_mm: Length = Field(description="standard deviation of the heights; across the face pits lie evenly")
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return 'count' for no more pits than the milder state has on the same teeth."""
@@ -60,7 +58,7 @@ class ClusteredPits(PitSize, Fault):
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with pits in the middle and at either end of the flank."""
-        middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_face_mm", "depth_mm")
+        middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_profile_mm", "depth_mm")
         for height_m in heights_m(pair, self.gear, self.centre_height_mm, self.height_reading):
             yield from pit_place_problems(pair, PitPlace(self.gear, height_m, middle_m, self, *keys))
         for height_m in flank_heights(pair.member(self.gear)):
@@ -74,7 +72,7 @@ class ClusteredPits(PitSize, Fault):
             yield drawn_pit(self, self.gear, growth.pair, tooth, centre, rng)
 
     def _centres_m(self, growth: Growth, tooth: int, count: int) -> list[tuple[float, float]]:
-        """Return centres [m] scattered around a height, over the face or around its middle."""
+        """Return centres [m] scattered around a height and over the face."""
         if count == 0:
             return []
         uniform, pair = growth.place(self.gear, ClusteredPits), growth.pair
@@ -88,7 +86,6 @@ class ClusteredPits(PitSize, Fault):
             pair.face_width_m,
             height_low_m=low,
             height_high_m=high,
-            face_spread_m=None if self.spread_face_mm is None else _at(self, "spread_face_mm", uniform),
         )
         return list(zip(heights.tolist(), faces.tolist(), strict=True))
 

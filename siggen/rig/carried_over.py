@@ -20,8 +20,7 @@ PROFILE_KEYS = (
 )  # fmt: skip
 """Of damage: they grow with the module. Pits keep their outline, so both of their axes do."""
 FACE_KEYS = (
-    "spacing_face_mm", "face_centre_mm", "face_mm", "spread_face_mm", "face_length_mm", "lower_width_mm",
-    "upper_width_mm",
+    "spacing_face_mm", "face_centre_mm", "face_mm", "face_length_mm",
 )  # fmt: skip
 """Of damage: they grow with the face width, so that a spall takes the same share of it."""
 SKEW_KEYS = ("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm")
@@ -80,11 +79,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
         **dict.fromkeys(FACE_KEYS, scales.face_width),
         **dict.fromkeys(SKEW_KEYS, scales.module / scales.face_width),
     }
-    listed = {
-        f"{group}.{key}": factor
-        for group in ("vertices", "pits", "spalls", "spalls.vertices")
-        for key, factor in damage.items()
-    }
+    listed = {f"{group}.{key}": factor for group in ("pits", "spalls") for key, factor in damage.items()}
     return {
         "dynamics": _dynamics(scales),
         "states": {f"damage.{key}": factor for key, factor in {**damage, **listed}.items()},
