@@ -47,11 +47,7 @@ def test_records_of_states_and_splits_add_up_to_all():
         config(
             specimens=47,
             repeats=3,
-            operating_points={
-                "count": 2,
-                "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
-                "torque_nm": 60,
-            },
+            operating_points=[{"speed_hz": {"kind": "uniform", "low": 20, "high": 35}, "torque_nm": 60}] * 2,
         )
     )
     counts = [count for state in summary["states"] for count in state["records_of_split"].values()]

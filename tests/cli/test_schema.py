@@ -63,12 +63,6 @@ def test_words_beside_numbers_are_shown(schema):
     assert any(choice.get("const") == "pitch" for choice in height["anyOf"])
 
 
-def test_operating_points_may_be_a_list_or_a_mapping(schema):
-    kinds = schema["properties"]["operating_points"]["anyOf"]
-    assert kinds[0]["type"] == "array"
-    assert "count" in resolved(schema, kinds[1])["properties"]
-
-
 def test_damage_is_chosen_by_its_kind(schema):
     (kinds,) = [c for c in schema["$defs"]["State"]["properties"]["damage"]["anyOf"] if "discriminator" in c]
     assert set(kinds["discriminator"]["mapping"]) == {"layered", "clustered", "spall", "list", "irregular"}
