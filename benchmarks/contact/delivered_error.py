@@ -23,7 +23,7 @@ from siggen.gears.contact.kind_row import KindRow, kind_row, pits_of_kind
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.table_columns import NO_ENERGY, TableSolver, row_faces, table_solver
 from siggen.gears.contact.table_options import face_slices
-from siggen.gears.stiffness.mesh_tables import pair_kinds
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, pair_kinds
 from siggen.specimen.contact import face_options, largest_force_n
 from siggen.specimen.errors import specimen_errors
 
@@ -120,10 +120,11 @@ def _solver(case: RecordCase, gearbox: int) -> tuple[TableSolver, list[KindRow]]
     errors = specimen_errors(case.config, pair, gearbox, case.state_id)
     slices = face_slices(pair, options)
     lead = np.zeros(slices) if errors is None or errors.even else errors.lead_m(slices)
-    points = case.specimen.stiffness.table_points
-    healthy = kind_row(pair, teeth, options, points)
+    healthy = kind_row(pair, teeth, options, TABLE_POINTS)
     rows = [
-        healthy if kind == (-1, -1) else kind_row(pair, teeth, options, points, pits_of_kind(damage, kind), healthy)
+        healthy
+        if kind == (-1, -1)
+        else kind_row(pair, teeth, options, TABLE_POINTS, pits_of_kind(damage, kind), healthy)
         for kind in pair_kinds(pair, damage)
     ]
     return table_solver(pair, teeth, options, lead - lead.min()), rows

@@ -113,8 +113,8 @@ def calibrated_text(found: Calibration, out: Path) -> str:
 
 def _manufacture(config: dict[str, Any]) -> Iterable[str]:
     """Yield the line that switches waves of the flanks off, where the rig has them."""
-    if (config.get("manufacture") or {}).get("flank_waves"):
-        yield "manufacture: {flank_waves: null}    # among the lines of the recordings"
+    if (config.get("manufacture") or {}).get("flank_waves") == "on":
+        yield "manufacture: {flank_waves: 'off'}    # among the lines of the recordings"
 
 
 def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[str]:

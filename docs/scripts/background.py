@@ -19,7 +19,7 @@ from siggen.columns.record import Record
 from siggen.record.simulation import simulate
 
 CONFIG = "configs/bench.yaml"
-WITHOUT = ["background=null", "manufacture.flank_waves=null"]
+WITHOUT = ["background=null", "manufacture.flank_waves=off"]
 CHANGES = ["duration_s=3.0"]
 STEPS = 1024
 AIMS = {

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from schema_keys import DISTRIBUTIONS, Key, Schema, is_number_part
 from typer.testing import CliRunner
 
 from siggen.cli.app import app
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
-DISTRIBUTIONS = ("Uniform", "LogUniform", "Normal", "Choice")
 UNITS = {
     "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad",
     "n_per_m": "N/m", "nm_per_rad": "N m/rad",
@@ -42,6 +42,8 @@ This page is printed by `python docs/scripts/yaml_reference.py` from `siggen sch
 * **extends** names a preset or another file. Its values hold wherever this file gives none. Mappings are merged key by
   key; numbers, lists, null, and distributions are replaced. The set's own `config.yaml` holds the result.
 * **required**: the key has no default. Where its section is optional, it is required only in that section.
+* A key that stands in several places with the same meaning has one row, and counts once. Defaults that differ between the
+  places are divided by a slash.
 * **expert**: no shipped configuration sets the key. Its default serves, unless you know why it should not.
 * Units are part of the key names: mm, µm, degrees and GPa for gears, SI for the rest.
 * `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line a value is
@@ -52,64 +54,6 @@ DISTRIBUTION_TEXT = """## Distributions
 Any Number may be written as one of these mappings. Every gearbox draws its own value, except where a key says
 otherwise.
 """
-
-
-@dataclass(frozen=True)
-class Key:
-    """One key of the configuration: where it stands, and what the schema says of it."""
-
-    path: str
-    schema: Mapping[str, Any]
-    required: bool
-
-
-class Schema:
-    """The JSON Schema of a configuration, walked key by key."""
-
-    def __init__(self, content: Mapping[str, Any]) -> None:
-        self.content = content
-
-    def resolved(self, schema: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return a schema with its reference replaced by what it refers to."""
-        reference = schema.get("$ref")
-        if reference is None:
-            return schema
-        return self.content["$defs"][reference.rsplit("/", 1)[1]]
-
-    def keys(self, schema: Mapping[str, Any], prefix: str = "") -> Iterator[Key]:
-        """Yield the keys of an object, each before the keys inside it."""
-        for name, value in schema["properties"].items():
-            path = f"{prefix}{name}"
-            if "const" not in value:  # the kind of a section stands in its heading
-                yield Key(path, value, name in schema.get("required", ()))
-            for ending, section in self.sections(value):
-                yield from self.keys(section, f"{path}{ending}.")
-
-    def sections(self, value: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Yield (how a path goes on, section) for the sections that a value may hold."""
-        for option, listed in self.options(value):
-            section = self.resolved(option)
-            if is_number_part(option) or "properties" not in section:
-                continue
-            kind = section["properties"].get("kind", {}).get("const")
-            label = f" (kind: {kind})" if kind else ""
-            yield ("[]" if listed else "") + label, section
-
-    def options(self, value: Mapping[str, Any], listed: bool = False) -> Iterator[tuple[Mapping[str, Any], bool]]:
-        """Yield the alternatives of a value, and whether they are entries of a list."""
-        alternatives = value.get("anyOf") or value.get("oneOf")
-        if alternatives is not None:
-            for alternative in alternatives:
-                yield from self.options(alternative, listed)
-        elif value.get("type") == "array" and "items" in value:
-            yield from self.options(value["items"], True)
-        else:
-            yield value, listed
-
-
-def is_number_part(option: Mapping[str, Any]) -> bool:
-    """Tell whether an alternative is one of the distributions."""
-    return option.get("$ref", "").rsplit("/", 1)[-1] in DISTRIBUTIONS
 
 
 def digits(value: float) -> str:
@@ -266,40 +210,67 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
     return " ".join(str(text).split())
 
 
-def table(schema: Schema, keys: list[Key], users: Mapping[str, list[str]], start: str = "") -> Iterator[str]:
-    """Yield a table of keys whose paths begin alike."""
-    yield row("key", "meaning", "unit", "allowed", "default", "use")
-    yield row(*["---"] * 6)
+@dataclass(frozen=True)
+class Entry:
+    """A key wherever it stands in one table with the same meaning and range: described once, counted once."""
+
+    keys: tuple[Key, ...]
+    start: str
+
+    @property
+    def names(self) -> list[str]:
+        """The key as it is written in each place, from the table's beginning on."""
+        return list(dict.fromkeys(re.sub(BEGINNING.format(self.start), "", key.path) for key in self.keys))
+
+    @property
+    def kinds(self) -> list[str]:
+        """Kinds of the section that have the key."""
+        return list(dict.fromkeys(kind for key in self.keys for kind in re.findall(r"\(kind: (\w+)\)", key.path)))
+
+    @property
+    def defaults(self) -> list[str]:
+        """Defaults in these places."""
+        return list(dict.fromkeys(default(key) for key in self.keys))
+
+
+BEGINNING = r"^{}(?:\[\])?(?:\.\w+ \(kind: \w+\))?\."
+"""Of the paths of a top-level key: an entry of its list, and a section with kinds."""
+
+
+def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
+    """Return the tables of one top-level key: its own keys, then those of every section with kinds."""
+    found: dict[str, dict[tuple[str, ...], list[Key]]] = {}
     for key in keys:
-        shown = key.path.removeprefix(start)
+        begins = re.match(BEGINNING.format(top), key.path)
+        if begins is not None:
+            place = re.sub(r" \(kind: \w+\)|\[\]", "", begins[0])
+            meant = (key.path.rsplit(".", 1)[-1], described(schema, key.schema), allowed(schema, key.schema))
+            found.setdefault(place, {}).setdefault(meant, []).append(key)
+    return [[Entry(tuple(same), top) for same in table.values()] for table in found.values()]
+
+
+def table(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
+    """Yield a table of keys."""
+    kinds = ["kind"] if any(entry.kinds for entry in rows) else []
+    yield row("key", *kinds, "meaning", "unit", "allowed", "default", "use")
+    yield row(*["---"] * (6 + len(kinds)))
+    for entry in rows:
+        first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
         # What a section cannot do without is never for experts, as in `siggen schema`.
-        marks = "" if users[key.path] or key.path == "extends" or default(key) == "required" else "expert"
-        cells = (described(schema, key.schema), unit(key.path), allowed(schema, key.schema), default(key))
-        yield row(f"`{shown}`", *cells, marks)
+        marks = "" if used or "required" in entry.defaults else "expert"
+        shown = [", ".join(f"`{name}`" for name in entry.names), *([", ".join(entry.kinds)] if kinds else [])]
+        cells = (described(schema, first.schema), unit(first.path), allowed(schema, first.schema))
+        yield row(*shown, *cells, " / ".join(entry.defaults), marks)
 
 
-def sources(keys: list[Key], remarks: Mapping[str, list[str]]) -> Iterator[str]:
+def sources(rows: list[Entry], remarks: Mapping[str, list[str]]) -> Iterator[str]:
     """Yield the sources that shipped configurations name for values of these keys."""
-    named = [(key.path, remarks[key.path]) for key in keys if remarks[key.path]]
-    if named:
+    named = [(entry.names[0], [said for key in entry.keys for said in remarks[key.path]]) for entry in rows]
+    if any(said for _, said in named):
         yield ""
         yield "Sources named in shipped configurations:"
         yield ""
-        yield from (f"* `{path}`: {'; '.join(dict.fromkeys(said))}" for path, said in named)
-
-
-def groups(keys: list[Key], top: str) -> Iterator[tuple[str, str, list[Key]]]:
-    """Yield (heading, common beginning, keys) of one top-level key: its own keys, then those of every kind in it."""
-    found: dict[str, list[Key]] = {}
-    for key in keys:
-        begins = re.match(rf"{top}(?:.*\(kind: \w+\)|\[\])?\.", key.path)
-        if begins is not None:
-            found.setdefault(begins[0], []).append(key)
-    for start, inside in found.items():
-        name = start.removesuffix(".")
-        mapping_too = len(found) > 1 and name == top and f"{top}[]." in found
-        heading = f"### {top} as one mapping" if mapping_too else f"### {name}" if "(kind" in name else ""
-        yield heading, start, inside
+        yield from (f"* `{name}`: {'; '.join(dict.fromkeys(said))}" for name, said in named if said)
 
 
 def page() -> str:
@@ -313,21 +284,22 @@ def page() -> str:
             if key in users:
                 users[key].append(path.stem)
                 remarks[key] += [f"{path.stem}.yaml: {remark}"] if remark else []
-    expert = sum(not found for found in users.values())
-    lines = [HEAD, f"There are {len(users)} keys, {expert} of them expert.", ""]
-    tops = [(key, list(groups(keys, key.path))) for key in keys if key.path in schema.content["properties"]]
-    plain = [key for key, inside in tops if not inside]
-    lines += ["## Top level", "", *table(schema, plain, users), *sources(plain, remarks), ""]
-    for top, inside in tops:
-        if not inside:
-            continue
+    tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]
+    plain = [Entry((key,), "") for key, _ in tops]
+    count = len(plain) + sum(len(rows) for _, tables in tops for rows in tables)
+    lines = [HEAD, f"There are {count} keys in {len(keys)} places.", ""]
+    alone = [Entry((key,), "") for key, tables in tops if not tables]
+    lines += ["## Top level", "", *table(schema, alone, users), *sources(alone, remarks), ""]
+    for top, tables in tops:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
         need = "Required." if top.required else "Optional."
-        lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}. {need}{listed}", ""]
-        for heading, start, group in inside:
-            lines += [heading, ""] if heading else []
-            lines += [*table(schema, group, users, start), *sources(group, remarks), ""]
+        for number, rows in enumerate(tables):
+            if number == 0:
+                lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}. {need}{listed}", ""]
+            else:
+                lines += [f"### {rows[0].keys[0].path.partition(' (kind')[0]}", ""]
+            lines += [*table(schema, rows, users), *sources(rows, remarks), ""]
     lines += [DISTRIBUTION_TEXT, *distributions(schema)]
     return "\n".join(lines).rstrip() + "\n"
 

@@ -31,12 +31,10 @@ def contact_notes(config: Config) -> tuple[str, ...]:
     Contacts are those of the path of contact at 0.3 to 1 times the static mesh force; lands inside damage, where the
     set has any that counts as geometry, with a remark of their own.
     """
-    section = config.dynamics.friction
     if config.dynamics.rubbing != "mixed_ehl":
         return ()
     healthy, pitted = zip(*_groups(config), strict=True)
-    fluid = (section.fluid, max(composite_roughness_m(corner)[0] for corner in corners(section)))
-    notes = lubrication_notes(_united(healthy), "masjedi_khonsari", *fluid)
+    notes = lubrication_notes(_united(healthy), "masjedi_khonsari")
     if not (solves_across_the_face(config.dynamics) and any(state.damage is not None for state in config.states)):
         return notes
     # Load, speed and material are those of the healthy flank: only the roughness is news.

@@ -30,7 +30,6 @@ from siggen.keys.drawing import corners
 from siggen.keys.number import bounds
 from siggen.planning.drawn_parts import possible_states
 from siggen.specimen.contact import solves_across_the_face
-from siggen.specimen.friction import roughness_problem
 from siggen.specimen.gears import gear_pair, stiffness_options
 
 KEYS = {
@@ -67,7 +66,6 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
             problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
     if sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
-    problems += _friction_problems(dynamics)
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += variation_problems(sections, sound)
     problems += shaft_problems(sections, sound)
@@ -82,14 +80,6 @@ def _tolerance_problems(pairs: list[GearPair]) -> Iterator[Problem]:
             for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which):
                 received = f"tolerances for a {which} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
-
-
-def _friction_problems(dynamics: Dynamics | None) -> list[Problem]:
-    allowed = "" if dynamics is None else roughness_problem(dynamics.friction)
-    if dynamics is None or not allowed:
-        return []
-    received = f"{dynamics.friction.roughness_um} with fluid: {dynamics.friction.fluid}"
-    return [Problem("dynamics.friction.roughness_um", received, f"allowed: what the model holds for: {allowed}")]
 
 
 def _coupling_problems(gears: Gears, stiffness: Stiffness | None, pairs: list[GearPair]) -> Iterator[Problem]:

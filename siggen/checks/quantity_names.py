@@ -8,7 +8,7 @@ from siggen.config import Config, by_reference
 from siggen.dynamics.structure.structure import Structure
 from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -47,12 +47,11 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     possible = ((own, gear_pair(corner)) for own in pair_configs(config) for corner in corners(own.gears))
     own, pair = max(possible, key=lambda one: _contact_ratio(one[1]))
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
-    points = specimen.stiffness.table_points
     mesh = SpecimenMesh(
         pair,
         structure(specimen.dynamics, pair, specimen.sensors),
-        mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=points),
-        teeth_missing(specimen.dynamics, pair, points),
+        mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS),
+        teeth_missing(specimen.dynamics, pair, TABLE_POINTS),
     )
     step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
     dynamics = specimen.dynamics

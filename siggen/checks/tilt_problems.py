@@ -100,23 +100,17 @@ def _tilts_over_places_rad(
 
 
 def _in_the_middle(dynamics: Dynamics, which: str) -> Dynamics:
-    """Return the dynamics with one gear's bearings and their caps at the middle of what is drawn."""
+    """Return the dynamics with one gear's bearings at the middle of what is drawn."""
     rotor = getattr(dynamics, which)
     names = ("bearing_stiffness_y_n_per_m", "bearing_stiffness_x_n_per_m")
     rotor = rotor.model_copy(update={name: at(getattr(rotor, name), 0.5) for name in names})
-    casing = dynamics.casing
-    if casing.caps is not None:
-        seats = ("vertical_stiffness_n_per_m", "horizontal_stiffness_n_per_m")
-        caps = casing.caps.model_copy(update={name: at(getattr(casing.caps, name), 0.5) for name in seats})
-        casing = casing.model_copy(update={"caps": caps})
-    return dynamics.model_copy(update={which: rotor, "casing": casing})
+    return dynamics.model_copy(update={which: rotor})
 
 
 def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: float) -> tuple[float, float]:
     """Return least and largest tilt [rad] of one gear under a motor torque, over the bounds of shaft and bearings."""
     shaft: Shaft = getattr(dynamics.shafts, which)
     rotor: Rotor = getattr(dynamics, which)
-    caps = dynamics.casing.caps
     along = {"vertical": np.cos(pair.working_pressure_angle_rad), "horizontal": np.sin(pair.working_pressure_angle_rad)}
     bearings = {"vertical": rotor.bearing_stiffness_y_n_per_m, "horizontal": rotor.bearing_stiffness_x_n_per_m}
     found = []
@@ -124,19 +118,18 @@ def static_tilts_rad(dynamics: Dynamics, which: str, pair: GearPair, torque_nm: 
         beam = Beam(1e-3 * span, place, 1e-3 * thick, pair.youngs_modulus_pa, pair.poisson_ratio, 0.0)
         each = []
         for axis, share in along.items():
-            seats = (np.inf,) if caps is None else bounds(getattr(caps, f"{axis}_stiffness_n_per_m"))
-            softness = [_tilt_per_n(beam, k, seat) for k, seat in product(bounds(bearings[axis]), seats)]
+            softness = [_tilt_per_n(beam, k) for k in bounds(bearings[axis])]
             each.append((share**2 * min(softness), share**2 * max(softness)))
         found.append([sum(ends) for ends in zip(*each, strict=True)])
     force_n = torque_nm / pair.pinion.base_radius_m
     return force_n * min(low for low, _ in found), force_n * max(high for _, high in found)
 
 
-def _tilt_per_n(beam: Beam, bearing_n_per_m: float, seat_n_per_m: float) -> float:
+def _tilt_per_n(beam: Beam, bearing_n_per_m: float) -> float:
     """Return the tilt per force in the middle of the gear [rad/N] on both bearings together."""
     levers = np.array(list(beam.levers_m.values()))
     give_way = [cantilever_compliance_m_per_n(beam, abs(lever)) for lever in levers]
-    springs = 1.0 / (2.0 / bearing_n_per_m + np.array(give_way) + 1.0 / seat_n_per_m)
+    springs = 1.0 / (2.0 / bearing_n_per_m + np.array(give_way))
     zeroth, first, second = (float((springs * levers**power).sum()) for power in (0, 1, 2))
     return first / (zeroth * second - first**2)
 

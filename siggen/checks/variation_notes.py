@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from siggen.config import Config
 from siggen.config.variation import RARE
 from siggen.keys.number import Number, bounds
+from siggen.specimen.shaft_forces import RATED_SPEED_HZ
 
 
 def variation_notes(config: Config) -> tuple[str, ...]:
@@ -58,7 +59,7 @@ def _reversals(config: Config) -> Iterator[str]:
 def _forces(config: Config) -> Iterator[str]:
     unbalance, tones = config.dynamics.unbalance, config.dynamics.bearing_tones
     if _some(unbalance.grade_mm_s):
-        yield f"unbalance of grade G{_span(unbalance.grade_mm_s)} at {_span(unbalance.rated_speed_hz)} Hz"
+        yield f"unbalance of grade G{_span(unbalance.grade_mm_s)} at {RATED_SPEED_HZ:g} Hz"
     if _some(tones.level):
         yield f"bearing tones of up to {_percent(tones.level)} of the mean mesh force"
 

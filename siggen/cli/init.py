@@ -47,7 +47,8 @@ def init(
 
     Shafts and bearings are of catalogue sizes for what the gears are rated for, the accuracy of the flanks lets the
     whole face carry; masses follow from the gears, sampling rate and duration from mesh and hunting period, damage from
-    the module. The rest comes from a preset. `siggen plan` then tries the machine.
+    the module. The rest comes from a preset. `siggen plan` then tries the machine. Editors complete keys by the file
+    siggen.schema.json, which is written beside it.
 
     Example: siggen init --teeth 25,56 --module 2 --speed 1450rpm --out rig.yaml
     """
@@ -57,9 +58,10 @@ def init(
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
     from siggen.config import inherited, parse_yaml
+    from siggen.config.expert_keys import schema_text
     from siggen.errors import UsageError
     from siggen.rig.rig_answers import QUESTIONS, missing_answers, refuse_missing, rig_of
-    from siggen.rig.rig_text import rig_text
+    from siggen.rig.rig_text import SCHEMA_FILE, rig_text
 
     if out.exists():
         raise UsageError(f"{out}: is there already; give --out a new file")
@@ -75,6 +77,7 @@ def init(
     config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text, encoding="utf-8")
+    out.with_name(SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
     for option, sentence in proposals.items():
         typer.echo(f"--{option} was not given; proposed: {sentence}", err=True)
     for sentence in implausible(config):

@@ -8,13 +8,11 @@ import typer
 def schema() -> None:
     """Print the JSON Schema of a configuration, for editors that check YAML while it is written.
 
-    Keys that no shipped configuration sets have `x-expert: true`: begin without them.
+    `siggen init` writes it beside its file, whose first line names it. Keys that no shipped configuration sets have
+    `x-expert: true`: begin without them.
 
     Example: siggen schema > siggen.schema.json
     """
-    import json
+    from siggen.config.expert_keys import schema_text
 
-    from siggen.config.expert_keys import schema_with_experts
-
-    draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    typer.echo(json.dumps(draft | schema_with_experts(), indent=2))
+    typer.echo(schema_text(), nl=False)

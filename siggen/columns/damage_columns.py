@@ -16,7 +16,7 @@ DAMAGE_COLUMNS = (
     Column("gear", pa.string(), "", "pinion or gear"),
     Column("tooth", pa.int32(), "", "index of the tooth"),
     Column("kind", pa.string(), "", "what the damage is"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, v, polygon or none"),
+    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, polygon or none"),
     Column(
         "height_mm",
         pa.float64(),
@@ -32,7 +32,7 @@ DAMAGE_COLUMNS = (
         "semi-axis along the tooth's axis; of a polygon half its range",
     ),
     Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
-    Column("depth_law", pa.string(), "", "how the depth runs: flat, dish, or length_squared (flat, set by the length)"),
+    Column("depth_law", pa.string(), "", "how the depth runs: flat or dish"),
     Column(
         "polygon_face_mm",
         list_of(pa.float64()),

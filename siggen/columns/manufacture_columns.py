@@ -48,7 +48,7 @@ def manufacture_columns(config: Config) -> tuple[Column, ...]:
         for which in ("pinion", "gear")
         for name, kind, unit, meaning in named
     )
-    waves = _wave_columns() if config.manufacture.flank_waves is not None else ()
+    waves = _wave_columns() if config.manufacture.flank_waves == "on" else ()
     lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
     return (
         Column("manufacture_draw", pa.string(), "", "whether states share the specimen's gears: specimen or state"),

@@ -1,7 +1,7 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
-from siggen.config.casing import Bolts, Caps, Casing
+from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, Config, Splits
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
@@ -12,14 +12,14 @@ from siggen.config.inheritance import extended_files, inherited
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
-from siggen.config.manufacture import FlankWaves, Manufacture
+from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.presets import config_file
-from siggen.config.sensors import NoiseFloor, NoiseRatio, Sensor
+from siggen.config.sensors import NoiseFloor, Sensor
 from siggen.config.shafts import Shaft, Shafts
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
@@ -34,13 +34,11 @@ __all__ = [
     "BearingTones",
     "Bolts",
     "Bursts",
-    "Caps",
     "Casing",
     "Config",
     "Coupling",
     "Density",
     "Dynamics",
-    "FlankWaves",
     "Floor",
     "ForceNoise",
     "ForeignMesh",
@@ -57,7 +55,6 @@ __all__ = [
     "ModalPath",
     "NoiseFloor",
     "NoiseModulation",
-    "NoiseRatio",
     "OperatingRange",
     "ParsedConfig",
     "PinkNoise",

@@ -36,17 +36,6 @@ class Bolts(Section):
         return self
 
 
-class Caps(Section):
-    """Two bearing caps on each shaft, all alike, as bodies between shaft and casing."""
-
-    mass_kg: Annotated[Number, Within(above=0)] = Field(default=0.3, description="of one cap with the outer ring")
-    horizontal_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(
-        default=1e9, description="of one cap's seat in the casing"
-    )
-    vertical_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1e9, description="the same")
-    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(default=0.03, description="of a cap on its seat")
-
-
 class Casing(Section):
     """A rigid body that carries the bearings: two translations and rocking."""
 
@@ -55,10 +44,4 @@ class Casing(Section):
         default=0.25,
         description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
     )
-    pinion_position_mm: Position | None = Field(
-        default=None,
-        description="axis of the pinion, the gear's lies horizontally beside it; null: shafts on either side of the "
-        "centre of gravity",
-    )
     bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
-    caps: Caps | None = Field(default=None, description="null: bearings sit in the casing itself")

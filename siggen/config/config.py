@@ -15,7 +15,7 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
-from siggen.config.operating_points import OPERATING_POINTS, OperatingRanges
+from siggen.config.operating_points import OPERATING_POINTS, OperatingRange
 from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
@@ -77,7 +77,9 @@ class Config(Section):
     gears: Gears = Field(description="the gear pair")
     stiffness: Stiffness = Field(default=Stiffness(), description="model of the mesh stiffness")
     dynamics: Dynamics = Field(default=Dynamics(), description="model of the gearbox")
-    operating_points: Annotated[OperatingRanges, OPERATING_POINTS] = Field(description="speeds and torques")
+    operating_points: Annotated[tuple[OperatingRange, ...], Field(min_length=1), OPERATING_POINTS] = Field(
+        description="speeds and torques; ranges are drawn for each entry"
+    )
     states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
     sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")

@@ -81,8 +81,7 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
-    with_caps = model == "casing" and sections["dynamics"].casing.caps is not None
-    places = (*PLACES[model], "pinion_cap", "gear_cap") if with_caps else PLACES[model]
+    places = PLACES[model]
     for index, sensor in sections.get("sensors", {}).items():
         if sensor.path is not None and model != "torsional":
             continue  # checked by _paths

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ from siggen.config.presets import presets
 from siggen.config.yaml_source import read_yaml
 from siggen.keys.section import Section
 
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
 EXPERT = "x-expert"
 """What the JSON Schema says of such a key, beside its type and description."""
 
@@ -33,6 +35,13 @@ def schema_with_experts() -> dict[str, Any]:
             if key not in known:
                 described[EXPERT] = True
     return schema
+
+
+def schema_text() -> str:
+    """Return the JSON Schema as editors read it; a file that extends another one needs no key of its own."""
+    schema = schema_with_experts()
+    needed = {"if": {"required": [EXTENDS]}, "else": {"required": schema.pop("required")}}
+    return json.dumps({"$schema": DRAFT, **schema, **needed}, indent=2) + "\n"
 
 
 def keys_of_presets() -> dict[str, set[str]]:

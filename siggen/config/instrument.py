@@ -61,4 +61,3 @@ class Inverter(Section):
     amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
         description="of the carrier, drawn per record and axis; the k-th sidebands have 1/(1 + k) of it"
     )
-    sidebands: Annotated[Whole, Field(ge=0, le=20)] = Field(default=2, description="on either side")

@@ -7,49 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from siggen.errors import Problem
-from siggen.keys.distributions import Choice, LogUniform, Uniform
+from siggen.keys.distributions import Choice, Uniform
 from siggen.keys.number import Number, Within, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.section import Section
-
-
-class FlankWaves(Section):
-    """Waves over all teeth of each gear (ghosts), and forms of the teeth that fall with their order."""
-
-    ghosts: Annotated[Number, Within(least=0, most=20)] = Field(
-        default=3.0, description="mean number per gear, Poisson (assumed; measured: 0 to 8 lines beside the mesh)"
-    )
-    order_over_teeth: Annotated[Number, Within(above=0, most=40)] = Field(
-        default=LogUniform(low=2.3, high=15.0),
-        description="waves per revolution over the number of teeth, drawn per ghost, made whole (measured: 7 to 16)",
-    )
-    ghost_um: Annotated[Number, Within(least=0, most=20)] = Field(
-        default=LogUniform(low=0.02, high=0.3),
-        description="amplitude per ghost where waves are 2.3 times as many as teeth; falls as their number "
-        "(source: ripple of some tenths; fall assumed)",
-    )
-    lag_over_face_rad: Annotated[Number, Within(least=0, most=50)] = Field(
-        default=Uniform(low=0.0, high=3.0),
-        description="by how much a ghost's phase differs between the ends of the face; weakens it (assumed)",
-    )
-    clamping_um: Annotated[Number, Within(least=0, most=50)] = Field(
-        default=LogUniform(low=0.5, high=3.0),
-        description="amplitude of each of 2, 3 and 4 waves per revolution (orders: source; size assumed)",
-    )
-    common_um: Annotated[Number, Within(least=0, most=20)] = Field(
-        default=LogUniform(low=0.3, high=3.0),
-        description="amplitude of one cycle over the flank in the form of all teeth (assumed, within class 5 to 7)",
-    )
-    common_exponent: Annotated[Number, Within(least=0, most=6)] = Field(
-        default=Uniform(low=1.0, high=2.2), description="cycle h has h to minus this (measured: 6 to 13 dB per octave)"
-    )
-    own_um: Annotated[Number, Within(least=0, most=20)] = Field(
-        default=LogUniform(low=0.1, high=1.0),
-        description="the same of each tooth's own form (assumed: at four cycles the size of a ghost)",
-    )
-    own_exponent: Annotated[Number, Within(least=0, most=6)] = Field(
-        default=Uniform(low=0.9, high=1.6), description="the same (measured: sidebands pass mesh lines above mesh 5)"
-    )
 
 
 class Manufacture(Section):
@@ -66,13 +27,6 @@ class Manufacture(Section):
     tolerance_share: Annotated[Number, Within(least=0, most=1)] = Field(
         default=Uniform(low=0.3, high=0.5), description="deviations over what the class allows, for each gear"
     )
-    runout_share: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=Uniform(low=0.3, high=0.8),
-        description="runout over what class and tolerance_share allow; the first harmonic of the pitch deviations",
-    )
-    profile_waves: Annotated[Number, Within(above=0, most=10)] = Field(
-        default=Uniform(low=2.5, high=3.5), description="cycles of the profile's form over the flank, for each tooth"
-    )
     crowning_um: Annotated[Number, Within(least=0, most=200)] = Field(
         default=0.0,
         description="lead crowning of the pinion: a parabola across the face that takes so much at both ends and "
@@ -86,17 +40,15 @@ class Manufacture(Section):
         description="iso_1328: helix slope and form of each gear, alike on its teeth, within tolerance_share of its "
         "class; the slope anywhere up to its limit, either way, the form at its limit",
     )
-    # A distribution as a default would count in the identities of sets that do not use it.
-    helix_waves: Annotated[Number | None, Within(above=0, most=5, words=(None,))] = Field(
-        default=None, description="cycles of the helix form over the face; null: uniform from 0.7 to 2 (assumed)"
-    )
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",))] = Field(
         default=0.0,
         description="by how much the flanks are apart at one end of the face, either end; iso_1328: what the helix "
         "slopes of both gears make together, each drawn within tolerance_share of its class",
     )
-    flank_waves: FlankWaves | None = Field(
-        default=None, description="null: none; part of no tolerance, and of no other label"
+    flank_waves: Literal["off", "on"] = Field(
+        default="off",
+        description="waves over all teeth of each gear (ghosts, chuck), and forms of the teeth that fall with their "
+        "order; part of no tolerance, and of no other label",
     )
     draw: Literal["specimen", "state"] = Field(
         default="specimen",
@@ -128,11 +80,6 @@ class Manufacture(Section):
     def crowning_of_gear(self) -> Number:
         """Crowning of the driven gear, as given or as for the pinion."""
         return self.crowning_um if self.crowning_gear_um is None else self.crowning_gear_um
-
-    @property
-    def form_waves(self) -> Number:
-        """Cycles of the helix form, as given or as assumed."""
-        return Uniform(low=0.7, high=2.0) if self.helix_waves is None else self.helix_waves
 
     @property
     def has_crowning(self) -> bool:

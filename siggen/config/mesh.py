@@ -21,19 +21,11 @@ class Mesh(Section):
         "and Banaschek, with elastic edges of damage",
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
-        default=8.0, description="parabolic relief at the tips of both gears"
-    )
-    tip_relief_length: Annotated[Number, Within(above=0, most=1)] = Field(
-        default=0.25, description="length of the relief along the line of action, in base pitches"
-    )
-    corner_contact: Literal["on", "off"] = Field(
-        default="on", description="whether deflected teeth meet with their tip corners outside the path of contact"
+        default=8.0, description="parabolic relief at the tips of both gears, over a quarter of a base pitch"
     )
     squeeze_film: Literal["off", "on"] = Field(
         default="off", description="whether oil damps flanks that approach without touching"
     )
-    oil_viscosity_pa_s: Annotated[Number, Within(above=0)] = Field(default=0.112, description="of the squeezed film")
-    film_floor_um: Annotated[Number, Within(above=0)] = Field(default=0.8, description="thinnest squeezed film")
     damage: Literal["all", "geometry"] = Field(
         default="all",
         description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "
@@ -67,15 +59,6 @@ class Friction(Section):
         "with the law pairs, off with the law linear",
     )
     coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(default=0.05, description="of the model constant")
-    regular_speed_m_s: Annotated[Number, Within(above=0)] = Field(
-        default=0.02, description="sliding speed over which friction builds up around the pitch point"
-    )
-    boundary_coefficient: Annotated[Number, Within(least=0, most=0.5)] = Field(
-        default=0.11, description="of the asperities (mixed_ehl)"
-    )
-    fluid: Literal["constant", "eyring", "xu_kahraman", "benedict_kelley"] = Field(
-        default="constant", description="friction of the oil film (mixed_ehl); constant: 0.02"
-    )
     oil: Oil = Field(
         default="ISO VG 220", description="mineral gear oil (mixed_ehl); a list: each gearbox draws one of them"
     )
@@ -85,7 +68,6 @@ class Friction(Section):
     roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=0.4, description="rms roughness of either flank (mixed_ehl)"
     )
-    hardness_gpa: Annotated[Number, Within(above=0)] = Field(default=7.0, description="of the flanks (mixed_ehl)")
     pit_roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=2.0,
         description="rms roughness of a flank's lands inside damage (mixed_ehl)",

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import Field
 
 from siggen.keys.number import Number, Within
-from siggen.keys.problems import refusal, section_problems
-from siggen.keys.section import Section, Whole
+from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 
@@ -20,34 +18,4 @@ class OperatingRange(Section):
     torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque on the pinion shaft")
 
 
-class OperatingGrid(OperatingRange):
-    """Several operating points with the same ranges, drawn independently of each other."""
-
-    count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="number of operating points per specimen")
-
-    def points(self) -> tuple[OperatingRange, ...]:
-        """Return the operating points one by one."""
-        return (OperatingRange(speed_hz=self.speed_hz, torque_nm=self.torque_nm),) * self.count
-
-
-def _listed(value: object) -> object:
-    """Turn a mapping with `count` into the list it stands for; leave anything else to validation."""
-    if not isinstance(value, Mapping):
-        return value
-    try:
-        return OperatingGrid.model_validate(value).points()
-    except ValidationError as error:
-        raise refusal(section_problems(OperatingGrid, error.errors())) from None
-
-
-OperatingRanges = Annotated[
-    tuple[OperatingRange, ...],
-    Field(min_length=1),
-    BeforeValidator(
-        _listed, json_schema_input_type=Annotated[list[OperatingRange], Field(min_length=1)] | OperatingGrid
-    ),
-]
-
-OPERATING_POINTS = AllowedText(
-    "a list of at least one mapping with speed_hz and torque_nm, or one mapping that has count too"
-)
+OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")

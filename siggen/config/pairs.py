@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from math import gcd
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import BeforeValidator, Field, ValidationError
 
@@ -15,6 +15,8 @@ from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.seeding import Stage, named_uniforms
 
+SEED = 0
+"""Of the pairs alone, so that another seed of the set keeps them."""
 ATTEMPTS = 100
 """Draws of one pair until it is none of those before; ranges that give fewer pairs are refused."""
 
@@ -43,17 +45,13 @@ class DrawnPairs(Section):
     """Ranges from which pairs are drawn, all different, once for the whole set; the set's own file lists them."""
 
     count: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="number of pairs")
-    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(
-        default=0, description="of the pairs alone, so that another seed of the set keeps them"
-    )
     pinion_teeth: Annotated[Number, Within(least=5, most=1000)] = Field(description="rounded to a whole number")
-    ratio: Annotated[Number, Within(least=0.1, most=20)] = Field(description="teeth of the gear over the pinion's")
+    ratio: Annotated[Number, Within(least=0.1, most=20)] = Field(
+        description="teeth of the gear over the pinion's; moved to the nearest number without a common divisor"
+    )
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module, such as a choice of ISO 54")
     face_width_over_module: Annotated[Number, Within(above=0, most=100)] = Field(
         description="face width in modules; the width is rounded to whole mm"
-    )
-    hunting: Literal["on", "off"] = Field(
-        default="on", description="on: the gear's teeth are moved to the nearest number without a common divisor"
     )
 
     def pairs(self) -> tuple[Pair, ...]:
@@ -66,7 +64,7 @@ class DrawnPairs(Section):
         """
         found: dict[Pair, None] = {}
         for index in range(self.count):
-            drawn = self._drawn(named_uniforms(self.seed, Stage.PAIRS, index))
+            drawn = self._drawn(named_uniforms(SEED, Stage.PAIRS, index))
             pair = next((one for one in drawn if one not in found), None)
             if pair is None:
                 received = f"{self.count}, of which {len(found)} different ones were found"
@@ -86,14 +84,14 @@ class DrawnPairs(Section):
                 )
             )
             pinion = round(teeth)
-            gear = _gear_teeth(pinion, max(5, round(pinion * ratio)), hunting=self.hunting == "on")
+            gear = _gear_teeth(pinion, max(5, round(pinion * ratio)))
             yield Pair(teeth=(pinion, gear), module_mm=module, face_width_mm=float(max(1, round(width * module))))
 
 
-def _gear_teeth(pinion: int, wanted: int, *, hunting: bool) -> int:
+def _gear_teeth(pinion: int, wanted: int) -> int:
     """Return the number of teeth nearest to the wanted one, the larger of two, that has no divisor in common."""
     tried = (wanted + sign * step for step in range(pinion) for sign in (1, -1))
-    return next(z for z in tried if z >= 5 and gcd(pinion, z) == 1) if hunting else wanted
+    return next(z for z in tried if z >= 5 and gcd(pinion, z) == 1)
 
 
 def _listed(value: object) -> object:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Callable, Iterator
+from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
 from siggen.config.density import LineTable, SensorDensity
 from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
@@ -25,27 +25,7 @@ SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a le
 class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
-    branch: ClassVar[str] = "noise_floor"
-
     floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
-
-
-class NoiseRatio(Section):
-    """White noise in proportion to the signal; a distribution is drawn for every record and axis."""
-
-    branch: ClassVar[str] = "noise_ratio"
-
-    snr_db: Annotated[Number, Within(least=-100, most=200)] = Field(description="power of signal over noise")
-
-
-def _noise_branch(value: object) -> str:
-    has_ratio = "snr_db" in value if isinstance(value, Mapping) else isinstance(value, NoiseRatio)
-    return "noise_ratio" if has_ratio else "noise_floor"
-
-
-Noise = Annotated[
-    Annotated[NoiseFloor, Tag("noise_floor")] | Annotated[NoiseRatio, Tag("noise_ratio")], Discriminator(_noise_branch)
-]
 
 
 class Sensor(Section):
@@ -59,12 +39,9 @@ class Sensor(Section):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
         description="part of the channel's name"
     )
-    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim", "pinion_cap", "gear_cap"] = (
-        Field(
-            default="pinion_bearing",
-            description="where it is mounted; casing needs the model casing or a path, caps its caps, rims the model "
-            "torsional",
-        )
+    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
+        default="pinion_bearing",
+        description="where it is mounted; casing needs the model casing or a path, rims the model torsional",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION] = Field(
         default=None,
@@ -78,7 +55,7 @@ class Sensor(Section):
         default=1.0,
         description="reading per true acceleration, drawn per specimen and axis; a list: one number per axis",
     )
-    noise: Annotated[Noise | None, AllowedText("null, or a mapping with floor_m_s2 or with snr_db")] = Field(
+    noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
         default=None, description="added before clipping and quantisation"
     )
     range_m_s2: Annotated[Real, Field(gt=0)] = Field(

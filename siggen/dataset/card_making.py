@@ -59,7 +59,7 @@ def making(config: Config) -> str:
 
 
 def _gears_text(config: Config) -> str:
-    models = f"`{config.stiffness.beam}`, `{config.stiffness.foundation}`"
+    models = f"`{config.stiffness.beam}`, `sainsot`"
     return (
         f"{_teeth_text(config)} Mesh stiffness by the "
         f"potential energy method (bending, shear, axial compression, Hertz contact, tooth foundation: {models}), "

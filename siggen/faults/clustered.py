@@ -11,13 +11,13 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    MIDDLE_HEIGHT,
     MM,
     READING,
     AnyGear,
     Height,
     HeightReading,
     Length,
-    OptionalLengthAcross,
     drawn_height_m,
     heights_m,
 )
@@ -43,12 +43,9 @@ class ClusteredPits(PitSize, Fault):
     gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
-    centre_height_mm: Height = Field(default="pitch", description="height above the base circle around which they lie")
+    centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     height_reading: HeightReading = Field(default="axial", description=READING)
-    spread_profile_mm: Length = Field(description="standard deviation of the heights")
-    spread_face_mm: OptionalLengthAcross = Field(
-        default=None, description="standard deviation across the face about its middle; null: evenly over the face"
-    )
+    spread_profile_mm: Length = Field(description="standard deviation of the heights; across the face pits lie evenly")
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return 'count' for no more pits than the milder state has on the same teeth."""
@@ -62,7 +59,7 @@ class ClusteredPits(PitSize, Fault):
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with pits in the middle and at either end of the flank."""
-        middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_face_mm", "depth_mm")
+        middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_profile_mm", "depth_mm")
         for height_m in heights_m(pair, self.gear, self.centre_height_mm, self.height_reading):
             yield from pit_place_problems(pair, PitPlace(self.gear, height_m, middle_m, self, *keys))
         for height_m in flank_heights(pair.member(self.gear)):
@@ -76,7 +73,7 @@ class ClusteredPits(PitSize, Fault):
             yield drawn_pit(self, self.gear, growth.pair, tooth, centre, rng)
 
     def _centres_m(self, growth: Growth, tooth: int, count: int) -> list[tuple[float, float]]:
-        """Return centres [m] scattered around a height, over the face or around its middle."""
+        """Return centres [m] scattered around a height and over the face."""
         if count == 0:
             return []
         uniform, pair = growth.place(self.gear, ClusteredPits), growth.pair
@@ -90,7 +87,6 @@ class ClusteredPits(PitSize, Fault):
             pair.face_width_m,
             height_low_m=low,
             height_high_m=high,
-            face_spread_m=None if self.spread_face_mm is None else _at(self, "spread_face_mm", uniform),
         )
         return list(zip(heights.tolist(), faces.tolist(), strict=True))
 

@@ -37,7 +37,17 @@ OptionalLengthAcross = Annotated[Number | None, Within(above=0, words=(None,)), 
 Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",)), Grows(MODULE)]
 PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FACE_WIDTH)]
 
-READING = "how heights above the base circle are measured: along the tooth's axis, along the radius, along the flank"
+FloorShape: TypeAlias = Literal["flat", "dish"]
+
+READING = (
+    "how heights above the base circle, and lengths of spalls along the profile, are measured: along the tooth's axis, "
+    "along the radius, along the flank"
+)
+MIDDLE_HEIGHT = "height of the middle above the base circle"
+FACE_CENTRE = "middle across the face; null: of the face"
+PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"
+DEPTH = "depth normal to the tooth's middle plane"
+FLOOR = "flat floor, or a dish that is deepest in the middle"
 
 MM = 1e-3
 PROBE_M = 1e-9

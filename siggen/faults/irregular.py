@@ -19,12 +19,16 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    FACE_CENTRE,
+    FLOOR,
     MM,
     MODULE,
     PROBE_M,
+    PROFILE_LENGTH,
     READING,
     SKEW,
     AnyGear,
+    FloorShape,
     HeightReading,
     Length,
     OptionalLength,
@@ -81,11 +85,11 @@ class IrregularSpalls(Fault):
         description="height of the middle above the base circle; pitch; or below_pitch: half way along the flank from "
         "the lowest point of single contact to the pitch line, where the full load meets negative sliding",
     )
-    height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
-    profile_length_mm: Length = Field(description="mean length along the profile")
+    height_reading: HeightReading = Field(default="arc", description=READING)
+    profile_length_mm: Length = Field(description=PROFILE_LENGTH)
     face_length_mm: OptionalLengthAcross = Field(default=None, description="length across the face; or face_share")
     face_share: Share = Field(default=None, description="length across the face over the face width; or face_length_mm")
-    face_centre_mm: PlaceOnFace = Field(default=None, description="middle across the face; null: of the face")
+    face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     leading_skew_mm_per_10mm: Skew = Field(
         default=Uniform(low=-0.15, high=0.15),
         description="rise of the edge that the contact reaches first (lower on the pinion, upper on the gear) towards "
@@ -111,7 +115,7 @@ class IrregularSpalls(Fault):
     depth_share: Annotated[Number, Within(above=0, most=0.5)] = Field(
         default=0.05, description="depth over the root of profile length x face length; the default is assumed"
     )
-    floor: Literal["dish", "flat"] = Field(default="dish", description="dish: deepest half way between its ends")
+    floor: FloorShape = Field(default="dish", description=FLOOR)
     floor_roughness: Annotated[Number, Within(least=0, most=0.5)] = Field(
         default=0.15, description="rms of the depth from strip to strip across the face, over it; assumed"
     )

@@ -12,6 +12,7 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
+    FACE_CENTRE,
     MM,
     MODULE,
     READING,
@@ -54,9 +55,7 @@ class LayeredPits(PitSize, Fault):
     jitter_mm: Annotated[Number, Within(least=0), Grows(MODULE)] = Field(
         default=0.0, description="every pit is moved by up to this, along both directions"
     )
-    face_centre_mm: PlaceOnFace = Field(
-        default=None, description="middle of the rows across the face; null: of the face"
-    )
+    face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return 'layers' for no more layers nor pits than the milder state has on the same teeth."""

@@ -7,13 +7,21 @@ A distribution of a size is drawn once per pit.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from siggen.errors import Problem
-from siggen.faults.flank_place import MM, PROBE_M, Length, found_problems, height_m_of
+from siggen.faults.flank_place import (
+    DEPTH,
+    FLOOR,
+    MM,
+    PROBE_M,
+    FloorShape,
+    Length,
+    found_problems,
+    height_m_of,
+)
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.pit import Pit
 from siggen.gears.geometry.gear_pair import GearPair
@@ -26,10 +34,8 @@ class PitSize(Section):
 
     semi_axis_face_mm: Length = Field(description="half the length across the face")
     semi_axis_profile_mm: Length = Field(description="half the length along the profile")
-    depth_mm: Length = Field(description="depth normal to the tooth's middle plane")
-    floor: Literal["flat", "dish"] = Field(
-        default="flat", description="flat floor, or a dish that is deepest in the middle"
-    )
+    depth_mm: Length = Field(description=DEPTH)
+    floor: FloorShape = Field(default="flat", description=FLOOR)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,6 @@ from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import at, constant
-from siggen.keys.problems import refusal
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 
 
@@ -30,14 +29,12 @@ class Spalls(SpallSize, Fault):
 
     kind: Literal["spall"] = "spall"
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    height_reading: HeightReading = Field(default="arc", description=f"{READING}; so are lengths along the profile")
-    stages: Stages = Field(default=1.0, description=f"{STAGES}; not of a polygon")
+    height_reading: HeightReading = Field(default="arc", description=READING)
+    stages: Stages = Field(default=1.0, description=STAGES)
 
     @model_validator(mode="after")
     def _a_stage_for_each_tooth(self) -> Spalls:
         refuse_stages(self.stages, self.teeth)
-        if self.shape == "polygon" and self.stages != 1.0:
-            raise refusal([Problem("stages", "a value", "allowed: nothing, a polygon is as large as its vertices say")])
         return self
 
     def drawn(self, growth: Growth) -> Damage:
@@ -62,6 +59,6 @@ class Spalls(SpallSize, Fault):
         return spall_on_tooth(growth.pair, draw(self, uniform, name)._at_stage(stage), self.height_reading, tooth)
 
     def _at_stage(self, stage: float) -> Spalls:
-        """Return drawn sizes at a stage: lengths and depth shrink alike; a depth by length follows its own law."""
-        given = {key: value for key in SIZE_KEYS if (value := getattr(self, key)) is not None}
-        return self if stage == 1.0 else self.model_copy(update={key: stage * constant(v) for key, v in given.items()})
+        """Return drawn sizes at a stage: lengths and depth shrink alike."""
+        shrunk = {key: stage * constant(getattr(self, key)) for key in SIZE_KEYS}
+        return self if stage == 1.0 else self.model_copy(update=shrunk)

@@ -24,7 +24,7 @@ MOST_PROBLEMS = 1_000
 SHOWN_NUMBERS = 4
 """Lists of up to as many numbers are shown as they came."""
 
-BRANCHES = {"noise_floor", "noise_ratio", "modal", "measured"}
+BRANCHES = {"modal", "measured"}
 """Tags by which pydantic names the branch of a union it took, to which every kind of damage adds its own.
 
 No key of the file has such a name (tested).
@@ -168,7 +168,7 @@ def _model_at(model: type[BaseModel], location: Location) -> type[BaseModel]:
 
 def _is_branch(model: type[BaseModel], tag: str) -> bool:
     kind = model.model_fields.get("kind")
-    return tag in get_args(kind.annotation) if kind else tag == getattr(model, "branch", "")
+    return kind is not None and tag in get_args(kind.annotation)
 
 
 def _short_path(path: str) -> str:

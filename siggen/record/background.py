@@ -11,7 +11,7 @@ from math import pi, sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Background, Config, Floor, ForeignMesh, ShaftLines
+from siggen.config import Config, Floor
 from siggen.dynamics.drive.comb import Comb, turns_of
 from siggen.keys.drawing import draw
 from siggen.keys.number import constant
@@ -21,6 +21,14 @@ from siggen.record.background_course import Course, course_at
 from siggen.record.force_floor import bearing_strength, floor_levels, random_levels
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, FLOOR_INPUTS, SpecimenBackground
+from siggen.specimen.background_numbers import (
+    FOREIGN_LINES,
+    BackgroundNumbers,
+    FloorNumbers,
+    ForeignNumbers,
+    ShaftNumbers,
+    background_numbers,
+)
 from siggen.specimen.block_responses import BACKGROUND, FLOOR, Input
 
 
@@ -44,14 +52,14 @@ class BackgroundBlocks:
         assert config.background is not None
         course = self._course(1)
         self._asked = config.background.floor
-        self._section = with_levels(config.background, background.section, course)
+        self._section = with_levels(background_numbers(config.background), background.section, course)
         self._levels = {} if self._section.floor is None else random_levels(self._section.floor, course)
         self._generators = {name: course.of_record(f"background.floor.{name}") for name in FLOOR_INPUTS}
         self._rubbing: RubbingForce | None = None
         self.labels: dict[str, object] = {}
 
     @property
-    def floor(self) -> Floor | None:
+    def floor(self) -> FloorNumbers | None:
         """The floor as drawn for the record."""
         return self._section.floor
 
@@ -61,7 +69,7 @@ class BackgroundBlocks:
         forces, labels = line_forces(self._section, course, self._background)
         if self._section.rubbing is not None:
             if self._rubbing is None:
-                self._rubbing = RubbingForce(self._section, self._section.rubbing, course, self._length)
+                self._rubbing = RubbingForce(self._section.rubbing, course, self._length)
             forces["mesh"] = self._rubbing.take(course)
             labels |= self._rubbing.labels
         found = {Input(BACKGROUND, name): force for name, force in forces.items()}
@@ -75,7 +83,7 @@ class BackgroundBlocks:
     def _course(self, count: int) -> Course:
         return course_at(*self._of_record, self._next, count)
 
-    def _white(self, floor: Floor, course: Course) -> dict[Input, FloatArray]:
+    def _white(self, floor: FloorNumbers, course: Course) -> dict[Input, FloatArray]:
         """Return noise of the floor's density above its low corner, modulated where shafts do that."""
         found = {}
         random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
@@ -89,7 +97,7 @@ class BackgroundBlocks:
         return found
 
 
-def with_levels(section: Background, drawn: Background, course: Course) -> Background:
+def with_levels(section: BackgroundNumbers, drawn: BackgroundNumbers, course: Course) -> BackgroundNumbers:
     """Return what was drawn for the gearbox, its noise drawn anew if levels belong to the record."""
     if section.redraw == "gearbox":
         return drawn
@@ -97,7 +105,7 @@ def with_levels(section: Background, drawn: Background, course: Course) -> Backg
     return drawn.model_copy(update={"rubbing": levels.rubbing, "floor": levels.floor})
 
 
-def floor_labels(asked: Floor | None, floor: Floor) -> dict[str, object]:
+def floor_labels(asked: Floor | None, floor: FloorNumbers) -> dict[str, object]:
     """Return the labels of a drawn floor; one that was `asked` to have random levels says how large they are."""
     random = asked is not None and asked.level_std != 0.0
     return {
@@ -108,7 +116,7 @@ def floor_labels(asked: Floor | None, floor: Floor) -> dict[str, object]:
 
 
 def line_forces(
-    section: Background, course: Course, background: SpecimenBackground
+    section: BackgroundNumbers, course: Course, background: SpecimenBackground
 ) -> tuple[dict[str, FloatArray], dict[str, object]]:
     """Return input -> force (length,) of what follows the angle alone, and labels."""
     forces: dict[str, FloatArray] = {}
@@ -132,11 +140,11 @@ def line_forces(
     return forces, labels
 
 
-def _coupling_force_n(drawn: ShaftLines) -> float:
+def _coupling_force_n(drawn: ShaftNumbers) -> float:
     return constant(drawn.coupling_stiffness_n_per_um) * constant(drawn.offset_um)
 
 
-def _shaft(drawn: ShaftLines, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
+def _shaft(drawn: ShaftNumbers, course: Course, shaft: str) -> list[tuple[str, FloatArray]]:
     """Return the forces of one coupling along both axes, and of the rotor on its shaft on the base."""
     order = course.orders[shaft]
     decibels = [0.0, *(constant(level) for level in (drawn.second_db, drawn.third_db, drawn.fourth_db))]
@@ -155,14 +163,14 @@ def _shaft(drawn: ShaftLines, course: Course, shaft: str) -> list[tuple[str, Flo
     return found
 
 
-def _foreign(mesh: ForeignMesh, course: Course, name: str) -> Comb:
-    number = np.arange(1.0, mesh.harmonics + 1.0)
+def _foreign(mesh: ForeignNumbers, course: Course, name: str) -> Comb:
+    number = np.arange(1.0, FOREIGN_LINES + 1.0)
     amplitude = constant(mesh.force_share) * course.mesh_force_n * number ** -constant(mesh.decay_exponent)
     shaft = course.orders["gear"] if mesh.shaft_order is None else constant(mesh.shaft_order)
     return Comb(
         constant(mesh.order),
         amplitude,
-        course.phases(name, mesh.harmonics),
+        course.phases(name, FOREIGN_LINES),
         10.0 ** (constant(mesh.sideband_db) / 20.0),
         shaft,
         2.0 * pi * course.uniform(f"background.{name}.sideband.phase"),

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from siggen.config import Config, MeasuredPath, NoiseFloor, NoiseRatio
+from siggen.config import Config, MeasuredPath
 from siggen.keys.number import at
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import noise_levels
@@ -31,12 +31,11 @@ def channel_draws(config: Config, record: PlannedRecord, channel: str) -> Draws:
 
 def white_noise(
     config: Config, record: PlannedRecord, channel: ChannelInstrument, draws: Draws
-) -> tuple[np.random.Generator, float | None, float | None]:
-    """Return the generator of a channel's white noise, and its floor [m/s²] or its level below the signal [dB]."""
+) -> tuple[np.random.Generator, float | None]:
+    """Return the generator of a channel's white noise, and its floor [m/s²]; None without one."""
     rng = named_generator(config.seed, Stage.NOISE, *record_owner(record), name=channel.name)
     noise, u = channel.sensor.noise, draws.level("noise", rng)
-    floor = at(noise.floor_m_s2, u) if isinstance(noise, NoiseFloor) else None
-    return rng, floor, at(noise.snr_db, u) if isinstance(noise, NoiseRatio) else None
+    return rng, None if noise is None else at(noise.floor_m_s2, u)
 
 
 def _named(seed: int, owner: tuple[int, ...], channel: str, part: str) -> np.random.Generator:

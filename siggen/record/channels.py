@@ -78,13 +78,12 @@ def _disturbances(
     for channel in instrument.channels:
         draws = channel_draws(config, record, channel.name)
         found[channel.name] = ChannelDisturbance(channel, draws, turning, noise_length)
-        rng, floor, snr_db = white_noise(config, record, channel, draws)
+        rng, floor = white_noise(config, record, channel, draws)
         recorders[channel.name].finish(
             range_m_s2=channel.sensor.range_m_s2,
             bits=channel.sensor.bits,
             rng=rng,
             noise_floor_m_s2=floor,
-            snr_db=snr_db,
         )
     return found
 

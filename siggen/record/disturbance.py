@@ -23,6 +23,8 @@ from siggen.sensing.spread import Spread
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
+CARRIER_SIDEBANDS = 2
+"""On either side of the carrier of an inverter (assumed)."""
 SPECTRUM_TAPS = 16_384
 """Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
 
@@ -157,7 +159,7 @@ def _inverter(section: Inverter, draws: Draws) -> Lines:
     carrier_hz = at(section.carrier_hz, draws.specimen("inverter.carrier_hz"))
     # the electrical frequency belongs to the record: all sensors see the same motor
     modulation_hz = at(section.modulation_hz, draws.shared("inverter.modulation_hz"))
-    return carrier_lines(carrier_hz, modulation_hz, amplitude, section.sidebands, rng)
+    return carrier_lines(carrier_hz, modulation_hz, amplitude, CARRIER_SIDEBANDS, rng)
 
 
 def _between(values: ComplexArray, bins: FloatArray) -> ComplexArray:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
-from siggen.config import Background, Bursts, Rubbing
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.keys.number import at, constant
 from siggen.record.background_course import Course
@@ -23,6 +22,7 @@ from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, sh
 from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies
+from siggen.specimen.background_numbers import MESH_STIFFNESS_N_PER_UM_MM, BurstNumbers, RubbingNumbers
 
 REFERENCE_SPEED_M_S = 3.0
 REFERENCE_LINE_LOAD_N_PER_M = 5e4
@@ -34,8 +34,8 @@ CONTACT_TAPS = 1024
 class RubbingForce:
     """The force of one record from the first sample of `course` on, over `length` samples, and its labels."""
 
-    def __init__(self, section: Background, rubbing: Rubbing, course: Course, length: int) -> None:
-        self._rubbing, self._size = rubbing, force_size_n(section, rubbing, course)
+    def __init__(self, rubbing: RubbingNumbers, course: Course, length: int) -> None:
+        self._rubbing, self._size = rubbing, force_size_n(rubbing, course)
         corner_hz, steepness = constant(rubbing.corner_hz), constant(rubbing.steepness)
         unit = 1.0 / sqrt(contact_bandwidth_hz(corner_hz, steepness))
         taps = shape_taps(lambda f: unit * contact_filter(f, corner_hz, steepness), CONTACT_TAPS, course.fs_hz)
@@ -64,7 +64,7 @@ class RubbingForce:
         return np.asarray(self._size * noise * strength)
 
 
-def rubbing_labels(rubbing: Rubbing, size_n: float) -> dict[str, object]:
+def rubbing_labels(rubbing: RubbingNumbers, size_n: float) -> dict[str, object]:
     """Return the labels but for bursts."""
     return {
         "rubbing_force_n": size_n,
@@ -74,10 +74,10 @@ def rubbing_labels(rubbing: Rubbing, size_n: float) -> dict[str, object]:
     }
 
 
-def force_size_n(section: Background, rubbing: Rubbing, course: Course) -> float:
+def force_size_n(rubbing: RubbingNumbers, course: Course) -> float:
     """Return the rms force [N] without bursts, over all frequencies."""
     face_m = course.pair.face_width_m
-    stiffness = 1e9 * constant(section.mesh_stiffness_n_per_um_mm) * face_m
+    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * face_m
     averaged = max(face_m / (1e-3 * constant(rubbing.correlation_mm)), 1.0)
     roughness_m = 1e-6 * constant(rubbing.roughness_um) / sqrt(averaged)
     # both flanks roll over the pitch point at R_b1 tan(α_w) Ω_1
@@ -107,13 +107,13 @@ def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str
     return np.asarray(np.fft.irfft(spectrum * density, points))
 
 
-def level_process(rubbing: Rubbing, course: Course) -> LevelCourse:
+def level_process(rubbing: RubbingNumbers, course: Course) -> LevelCourse:
     """Return the random level, from the first sample on."""
     memory = 1e-3 * constant(rubbing.level_time_ms) * course.fs_hz
     return LevelCourse(constant(rubbing.level_std), memory, course.of_record("background.rubbing.level"))
 
 
-def modulation(rubbing: Rubbing, course: Course, level: FloatArray) -> FloatArray:
+def modulation(rubbing: RubbingNumbers, course: Course, level: FloatArray) -> FloatArray:
     """Return M (length,) of a random level (length,)."""
     table = rubbing_course(course.pair, constant(rubbing.sliding_exponent))
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
@@ -131,7 +131,7 @@ class DrawnBursts(NamedTuple):
     recorded: int
 
 
-def drawn_bursts(bursts: Bursts, course: Course, length: int) -> DrawnBursts:
+def drawn_bursts(bursts: BurstNumbers, course: Course, length: int) -> DrawnBursts:
     """Return the bursts of `length` samples from the first one of the course on."""
     rng = course.of_record("background.rubbing.bursts")
     count = int(rng.poisson(constant(bursts.rate_hz) * length / course.fs_hz))

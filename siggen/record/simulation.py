@@ -19,6 +19,7 @@ from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
@@ -91,7 +92,7 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
         errors = made.errors(state_id)
         lead = None if errors is None or errors.even else errors.lead_m
         tables = tooth_tables(
-            specimen.dynamics, pair, damage, options, specimen.stiffness.table_points,
+            specimen.dynamics, pair, damage, options, TABLE_POINTS,
             largest_force_n(config.operating_points, pair), lead,
         )  # fmt: skip
         labels = damage_labels(config.states[state_id], pair, damage, options, tables.sink_depth_m)
@@ -108,12 +109,12 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     """
     made = made or MadeGears(config, specimen)
     teeth = state_teeth(config, specimen, state_id, made)
-    pair, tables, points = teeth.pair, teeth.tables, specimen.stiffness.table_points
+    pair, tables = teeth.pair, teeth.tables
     with refused_as("outside_model"):
         missing = made.missing(state_id)
         assembled = structure(specimen.dynamics, pair, specimen.sensors)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
-        static = static_mesh(specimen.dynamics, pair, tables, points)
+        static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
     return SpecimenState(
         pair,
         teeth.options,

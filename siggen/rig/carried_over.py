@@ -102,13 +102,9 @@ def _dynamics(scales: PairScales) -> dict[str, float]:
         "backlash_um": scales.module,
         "casing.mass_kg": mass,
         "casing.inertia_kg_m2": size**5,
-        "casing.pinion_position_mm": size,
         "casing.bolts.shear_stiffness_n_per_m": size,
         "casing.bolts.axial_stiffness_n_per_m": size,
         "casing.bolts.positions_mm": size,
-        "casing.caps.mass_kg": mass,
-        "casing.caps.horizontal_stiffness_n_per_m": size,
-        "casing.caps.vertical_stiffness_n_per_m": size,
         "mesh.tip_relief_um": scales.load / scales.face_width,
         "mesh.pit_edge_radius_mm": scales.module,
     }

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_numbers
 
+SCHEMA_FILE = "siggen.schema.json"
+"""Beside the file of a rig, whose first line names it to editors (`yaml-language-server`)."""
 PLACES_MM = (
     (60.0, 50.0, "vertical"),
     (-100.0, -20.0, "horizontal"),
@@ -46,6 +48,7 @@ def _head(rig: Rig, name: str, base: str, numbers: RigNumbers, why: Mapping[str,
     cut = f"less than the hunting period of {rig.hunting_turns} turns"
     whole = "one hunting period and a turn more" if turns > rig.hunting_turns else cut
     return f"""\
+# yaml-language-server: $schema={SCHEMA_FILE}
 # Made by `siggen init`. What stands here differs from the preset {base}; all else is its own.
 # `siggen plan` says what follows from it and what is implausible. Numbers that you know better: change them here.
 

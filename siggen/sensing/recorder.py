@@ -39,12 +39,11 @@ class Recorder:
         bits: int | None,
         rng: np.random.Generator,
         noise_floor_m_s2: float | None,
-        snr_db: float | None,
     ) -> None:
         """Begin to convert what was taken; arguments as those of `measurement.measure`."""
         self._range_m_s2, self._bits, self._rng = range_m_s2, bits, rng
         self._rms = self._spread.std
-        self._floor = noise_floor_m_s2 if snr_db is None else self._rms / 10.0 ** (snr_db / 20.0)
+        self._floor = noise_floor_m_s2
         self._clipped, self._step, self._done = 0, 0.0, 0
 
     def convert(self, count: int, added_m_s2: FloatArray | None) -> None:

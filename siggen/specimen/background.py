@@ -13,8 +13,7 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, Dynamics, ShaftLines
-from siggen.config import Base as BaseSection
+from siggen.config import Background, Config, Dynamics
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
 from siggen.dynamics.structure.casing_structure import bolt_elements
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
@@ -27,6 +26,13 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
+from siggen.specimen.background_numbers import (
+    MESH_STIFFNESS_N_PER_UM_MM,
+    BackgroundNumbers,
+    BaseNumbers,
+    ShaftNumbers,
+    background_numbers,
+)
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.measured_path import INPUTS
 from siggen.specimen.structure import casing_numbers, structure
@@ -52,21 +58,21 @@ class SpecimenBackground:
     Responses end before the sensor.
     """
 
-    section: Background
-    shafts: Mapping[str, ShaftLines]
+    section: BackgroundNumbers
+    shafts: Mapping[str, ShaftNumbers]
     inputs: tuple[str, ...]
     responses: Mapping[str, ComplexArray]
 
 
-def drawn_background(config: Config, specimen_id: int) -> Background | None:
+def drawn_background(config: Config, specimen_id: int) -> BackgroundNumbers | None:
     """Return the section with what belongs to the gearbox; None without one."""
     if config.background is None:
         return None
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen_id)
-    return draw(config.background, uniform, "background")
+    return draw(background_numbers(config.background), uniform, "background")
 
 
-def background_history_s(section: Background | None) -> float:
+def background_history_s(section: BackgroundNumbers | None) -> float:
     """Return the time before the first sample over which forces on the base must be followed [s]."""
     if section is None or section.base is None:
         return 0.0
@@ -78,7 +84,7 @@ def background_history_s(section: Background | None) -> float:
 def specimen_background(
     config: Config,
     specimen: Specimen,
-    section: Background,
+    section: BackgroundNumbers,
     channels: Mapping[str, tuple[Mapping[str, float], ComplexArray | None, ComplexArray | None]],
     frequency_hz: FloatArray,
 ) -> SpecimenBackground:
@@ -102,7 +108,7 @@ def specimen_background(
     if not directions:
         return SpecimenBackground(section, shafts, (), {})
     seen = tuple(dict.fromkeys(motion for motions, _, _ in channels.values() for motion in motions))
-    mesh = mean_mesh(section, specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
+    mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
     names, rows = tuple(directions), np.array(list(directions.values()))
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
     for first in range(0, frequency_hz.size, BLOCK):
@@ -114,21 +120,22 @@ def specimen_background(
     return SpecimenBackground(section, shafts, names, responses)
 
 
-def _shafts(section: Background | None, uniform: Callable[[str], float]) -> dict[str, ShaftLines]:
+def _shafts(section: Background | None, uniform: Callable[[str], float]) -> dict[str, ShaftNumbers]:
     """Return the section of each shaft, each with its own draws."""
-    if section is None or section.shafts is None:
+    shafts = None if section is None else background_numbers(section).shafts
+    if shafts is None:
         return {}
-    return {shaft: draw(section.shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
+    return {shaft: draw(shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
 
 
-def mean_mesh(section: Background, dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
+def mean_mesh(dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
     """Return the mesh as a constant spring and damper; no state may show in it, so it knows no damage."""
-    stiffness = 1e9 * constant(section.mesh_stiffness_n_per_um_mm) * pair.face_width_m
+    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * pair.face_width_m
     ratio = constant(dynamics.mesh_damping_ratio)
     return MeanMesh(stiffness, 2.0 * ratio * sqrt(stiffness * equivalent_mass_kg))
 
 
-def _base(section: BaseSection) -> Base:
+def _base(section: BaseNumbers) -> Base:
     mass = constant(section.mass_kg)
     return Base(
         mass,
@@ -139,7 +146,7 @@ def _base(section: BaseSection) -> Base:
 
 
 def _directions(
-    assembled: Structure, section: Background, uniform: Callable[[str], float], arm_m: float
+    assembled: Structure, section: BackgroundNumbers, uniform: Callable[[str], float], arm_m: float
 ) -> dict[str, FloatArray]:
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Floor
 from siggen.keys.number import constant
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, limited
 from siggen.sensing.force_density import rising_floor, tabulated
 from siggen.sensing.shaped_noise import FINER, least_phase
 from siggen.sensing.spectral_filter import frequencies
+from siggen.specimen.background_numbers import FloorNumbers
 
 MOTION, FORCE, BACKGROUND, FLOOR = "motion", "force", "background", "floor"
 
@@ -51,7 +51,7 @@ def _filters(grid: BlockGrid, ways: Mapping[Input, ComplexArray]) -> dict[Input,
     return dict(zip(names, (row for part in parts for row in limited(part, grid)), strict=True))
 
 
-def floor_shape(floor: Floor, frequency_hz: FloatArray) -> FloatArray:
+def floor_shape(floor: FloorNumbers, frequency_hz: FloatArray) -> FloatArray:
     """Return how all densities of a floor run over frequency (k,), 1 above the low corner."""
     shape = rising_floor(frequency_hz, constant(floor.low_corner_hz), constant(floor.low_exponent))
     if floor.spectrum is not None:
@@ -59,7 +59,7 @@ def floor_shape(floor: Floor, frequency_hz: FloatArray) -> FloatArray:
     return shape
 
 
-def floor_response(floor: Floor, memory: int, fs_hz: float) -> ComplexArray:
+def floor_response(floor: FloorNumbers, memory: int, fs_hz: float) -> ComplexArray:
     """Return the causal response (memory // 2 + 1,) with this shape: what white noise passes before the paths.
 
     Together with a path, which falls as f² towards frequency 0, it is remembered no longer than the path alone.

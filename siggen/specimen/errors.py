@@ -17,8 +17,16 @@ from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
 from siggen.gears.errors.tooth_errors import with_errors
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import at
 from siggen.seeding import Stage, named_generator
+
+RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
+"""Runout over what class and tolerance share allow; the first harmonic of the pitch deviations (assumed)."""
+PROFILE_WAVES = Uniform(low=2.5, high=3.5)
+"""Cycles of the profile's form over the flank, for each tooth (assumed)."""
+HELIX_WAVES = Uniform(low=0.7, high=2.0)
+"""Cycles of the helix form over the face (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,11 +137,9 @@ def _made(section: Manufacture, pair: GearPair, which: str, draws: Draws) -> Mad
     accuracy_class, share = round(at(number, uniform("accuracy_class"))), at(section.tolerance_share, uniform("share"))
     tolerances = flank_tolerances(pair.member(which), pair.face_width_m, accuracy_class)
     of_teeth = draws(f"{which}.waves").random(pair.member(which).teeth)
-    waves = np.array([at(section.profile_waves, float(u)) for u in of_teeth])
+    waves = np.array([PROFILE_WAVES.at(float(u)) for u in of_teeth])
     shapes = error_shapes(waves, lambda name: draws(f"{which}.{name}"))
-    errors = gear_errors(
-        pair, which, shapes, tolerances.times(share), at(section.runout_share, uniform("runout_share"))
-    )
+    errors = gear_errors(pair, which, shapes, tolerances.times(share), RUNOUT_SHARE.at(uniform("runout_share")))
     helix = _helix(section, which, tolerances.times(share), uniform)
     return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors), helix)
 
@@ -144,7 +150,7 @@ def _helix(section: Manufacture, which: str, limits: FlankTolerances, uniform: C
     crowning = 1e-6 * at(number, uniform("crowning_um"))
     if not section.has_helix:
         return straight_helix(crowning)
-    waves, phase = at(section.form_waves, uniform("helix_waves")), 2.0 * pi * uniform("helix_form")
+    waves, phase = HELIX_WAVES.at(uniform("helix_waves")), 2.0 * pi * uniform("helix_form")
     return drawn_helix(crowning, 2.0 * uniform("helix") - 1.0, waves, phase, limits)
 
 

@@ -6,21 +6,39 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.config import Config, FlankWaves
+from siggen.config import Config
 from siggen.gears.errors.error_shapes import Draws
 from siggen.gears.errors.flank_waves import ORDERS, with_waves
 from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
-from siggen.keys.number import at
+from siggen.keys.distributions import LogUniform, Uniform
 from siggen.seeding import Stage, named_generator
 from siggen.specimen.contact import mean_line_load_n_per_m
 
 CLAMPING = (2, 3, 4)
 """Waves per revolution that the jaws of a chuck leave."""
+GHOSTS = 3.0
+"""Mean number per gear, Poisson (assumed; measured: 0 to 8 lines beside the mesh)."""
 MOST_GHOSTS = 8
+ORDER_OVER_TEETH = LogUniform(low=2.3, high=15.0)
+"""Waves of a ghost per revolution over the number of teeth, made whole (measured: 7 to 16)."""
+GHOST_UM = LogUniform(low=0.02, high=0.3)
+"""Amplitude per ghost (source: ripple of some tenths)."""
+LAG_OVER_FACE_RAD = Uniform(low=0.0, high=3.0)
+"""By how much a ghost's phase differs between the ends of the face, which weakens it (assumed)."""
+CLAMPING_UM = LogUniform(low=0.5, high=3.0)
+"""Amplitude of each of the chuck's waves (orders: source; size assumed)."""
+COMMON_UM = LogUniform(low=0.3, high=3.0)
+"""Amplitude of one cycle over the flank in the form of all teeth (assumed, within class 5 to 7)."""
+COMMON_EXPONENT = Uniform(low=1.0, high=2.2)
+"""Cycle h of that form has h to minus this (measured: 6 to 13 dB per octave)."""
+OWN_UM = LogUniform(low=0.1, high=1.0)
+"""The amplitude of each tooth's own form (assumed: at four cycles the size of a ghost)."""
+OWN_EXPONENT = Uniform(low=0.9, high=1.6)
+"""Its fall (measured: sidebands pass mesh lines above mesh 5)."""
 REFERENCE_OVER_TEETH = 2.3
-"""Waves over teeth at which a ghost has the amplitude that is drawn; with more, it is smaller in proportion."""
+"""Waves over teeth at which a ghost has the amplitude that is drawn; more make it smaller in proportion (assumed)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +52,14 @@ class SpecimenWaves:
 
 def specimen_waves(config: Config, pair: GearPair, specimen_id: int, state_id: int) -> SpecimenWaves | None:
     """Return the waves of a specimen in a state; None without them. Every draw has a name."""
-    section = None if config.manufacture is None else config.manufacture.flank_waves
-    if section is None or config.manufacture is None:
+    if config.manufacture is None or config.manufacture.flank_waves == "off":
         return None
     owner = (specimen_id, state_id if config.manufacture.draw == "state" else 0)
 
     def draws(name: str) -> np.random.Generator:
         return named_generator(config.seed, Stage.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
 
-    pinion, gear = (_drawn(section, pair.member(which).teeth, which, draws) for which in ("pinion", "gear"))
+    pinion, gear = (_drawn(pair.member(which).teeth, which, draws) for which in ("pinion", "gear"))
     counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in (("pinion", pinion), ("gear", gear))}
     return SpecimenWaves(pinion, gear, counts)
 
@@ -69,22 +86,22 @@ def wave_labels(waves: SpecimenWaves | None) -> dict[str, object]:
     return labels
 
 
-def _drawn(section: FlankWaves, teeth: int, which: str, draws: Draws) -> DrawnWaves:
+def _drawn(teeth: int, which: str, draws: Draws) -> DrawnWaves:
     def uniform(name: str) -> float:
         return float(draws(f"{which}.{name}").random())
 
-    count = min(int(draws(f"{which}.ghosts").poisson(at(section.ghosts, uniform("ghosts.mean")))), MOST_GHOSTS)
+    count = min(int(draws(f"{which}.ghosts").poisson(GHOSTS)), MOST_GHOSTS)
     ghosts = [f"ghost.{k}" for k in range(count)]
-    orders = [round(teeth * at(section.order_over_teeth, uniform(f"{ghost}.order"))) for ghost in ghosts]
+    orders = [round(teeth * ORDER_OVER_TEETH.at(uniform(f"{ghost}.order"))) for ghost in ghosts]
     sizes = [
-        at(section.ghost_um, uniform(f"{ghost}.size"))
+        GHOST_UM.at(uniform(f"{ghost}.size"))
         * min(REFERENCE_OVER_TEETH * teeth / order, 1.0)
-        * float(np.sinc(at(section.lag_over_face_rad, uniform(f"{ghost}.lag")) / (2.0 * np.pi)))
+        * float(np.sinc(LAG_OVER_FACE_RAD.at(uniform(f"{ghost}.lag")) / (2.0 * np.pi)))
         for ghost, order in zip(ghosts, orders, strict=True)
     ]
-    clamping = [at(section.clamping_um, uniform(f"clamping.{n}")) for n in CLAMPING]
-    common = at(section.common_um, uniform("common")) * ORDERS ** -at(section.common_exponent, uniform("common.fall"))
-    own = at(section.own_um, uniform("own")) * ORDERS ** -at(section.own_exponent, uniform("own.fall"))
+    clamping = [CLAMPING_UM.at(uniform(f"clamping.{n}")) for n in CLAMPING]
+    common = COMMON_UM.at(uniform("common")) * ORDERS ** -COMMON_EXPONENT.at(uniform("common.fall"))
+    own = OWN_UM.at(uniform("own")) * ORDERS ** -OWN_EXPONENT.at(uniform("own.fall"))
     turn = 2.0j * np.pi
     return DrawnWaves(
         waves=np.array([*orders, *CLAMPING], dtype=float),

@@ -33,14 +33,7 @@ def gear_pair(gears: Gears) -> GearPair:
 
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     """Return the options of the stiffness model that a section `stiffness` names."""
-    return StiffnessOptions(
-        stiffness.beam,
-        stiffness.foundation,
-        stiffness.foundation_angle,
-        stiffness.hertz,
-        stiffness.hertz_force_n,
-        stiffness.coupled_by,
-    )
+    return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
 
 
 def model_notes(config: Config) -> tuple[str, ...]:

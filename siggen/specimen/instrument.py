@@ -10,7 +10,7 @@ from math import cos, pi, sin
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, Floor, MeasuredPath, ModalPath, Resonance, Sensor
+from siggen.config import Config, MeasuredPath, ModalPath, Resonance, Sensor
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import Number, at, constant
 from siggen.planning.specimen import Specimen
@@ -27,6 +27,7 @@ from siggen.specimen.background import (
     drawn_background,
     specimen_background,
 )
+from siggen.specimen.background_numbers import FloorNumbers
 from siggen.specimen.block_responses import (
     BACKGROUND,
     FLOOR,
@@ -144,7 +145,7 @@ def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
     return block_responses(grid, instrument_ways(instrument, floor))
 
 
-def instrument_ways(instrument: Instrument, floor: Floor | None) -> dict[str, dict[Input, ComplexArray]]:
+def instrument_ways(instrument: Instrument, floor: FloorNumbers | None) -> dict[str, dict[Input, ComplexArray]]:
     """Return channel -> input -> response (length // 2 + 1,), sensor included, but for motions of a plain one."""
     shape = None if floor is None else floor_response(floor, instrument.length, instrument.fs_hz)
     return {channel.name: _ways(instrument, channel, shape) for channel in instrument.channels}

@@ -8,6 +8,7 @@ from siggen.config import Config
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.specimen.damage import grown_damage
 from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
@@ -70,6 +71,6 @@ class MadeGears:
 
     def _computed_missing(self, drawn_for: int) -> tuple[SpecimenWaves | None, MissingMaterial]:
         config, specimen, pair = self._config, self._specimen, self.pair
-        plain = teeth_missing(specimen.dynamics, pair, specimen.stiffness.table_points)
+        plain = teeth_missing(specimen.dynamics, pair, TABLE_POINTS)
         waves = specimen_waves(config, pair, specimen.specimen_id, drawn_for)
         return waves, wavy_teeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), config, pair, waves)

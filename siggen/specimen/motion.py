@@ -30,6 +30,13 @@ from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.drive import RecordDrive
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
 
+RELIEF_LENGTH = 0.25
+"""Length of the tip relief along the line of action, in base pitches (assumed)."""
+FILM_VISCOSITY_PA_S = 0.112
+"""Of the squeezed film: ISO VG 220 at 50 °C."""
+FILM_FLOOR_M = 0.8e-6
+"""Thinnest squeezed film: of the size of the flanks' roughness (assumed)."""
+
 
 @dataclass(frozen=True, slots=True)
 class SpecimenMesh:
@@ -46,8 +53,8 @@ class SpecimenMesh:
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
     """Return the missing material of the teeth of a drawn `dynamics` section."""
     mesh = dynamics.mesh
-    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), constant(mesh.tip_relief_length) * pair.base_pitch_m)
-    return missing_material(pair, relief, corner_contact=mesh.corner_contact == "on", points=points)
+    relief = TipRelief(1e-6 * constant(mesh.tip_relief_um), RELIEF_LENGTH * pair.base_pitch_m)
+    return missing_material(pair, relief, points=points)
 
 
 def specimen_motion(
@@ -105,9 +112,7 @@ def _contact(dynamics: Dynamics, pair: GearPair, point: OperatingPoint) -> PairC
 
 def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairLaw:
     section = dynamics.mesh
-    film = SqueezeFilm(
-        constant(section.oil_viscosity_pa_s), mesh.pair.face_width_m, 1e-6 * constant(section.film_floor_um)
-    )
+    film = SqueezeFilm(FILM_VISCOSITY_PA_S, mesh.pair.face_width_m, FILM_FLOOR_M)
     return pair_law(
         mesh.tables,
         mesh.missing,

@@ -25,7 +25,13 @@ from siggen.seeding import Stage, named_generator, named_uniforms
 
 WEAKEST_TONE = 0.2
 """Amplitudes of the tones lie between this share of `level` and all of it, uniform per specimen, tone and axis."""
+CAGE_SLIP = (0.01, 0.02)
+"""Share by which the cage lags, uniform per record (assumed)."""
+JITTER_RAD = 0.5
+"""Of the slow wandering of the phases, rms (assumed)."""
 JITTER_CORNER_HZ = 1.0
+RATED_SPEED_HZ = 50.0
+"""Of the pinion shaft, to which a grade of balance belongs; the gear's by the ratio."""
 MARGIN_S = 1.0
 
 
@@ -59,7 +65,7 @@ def _unbalance(config: Config, specimen: Specimen, structure: Structure, place: 
     section = specimen.dynamics.unbalance
     uniform = named_uniforms(config.seed, Stage.SUPPORTS, specimen.specimen_id)
     mass_kg = structure.mass[(structure.coordinates.index("x_1" if order == 1.0 else "x_2"),) * 2]
-    rated_rad_s = 2.0 * pi * constant(section.rated_speed_hz) * order
+    rated_rad_s = 2.0 * pi * RATED_SPEED_HZ * order
     return Unbalance(
         directions=shaft_directions(structure, place),
         moment_kg_m=float(mass_kg) * 1e-3 * constant(section.grade_mm_s) / rated_rad_s,
@@ -82,11 +88,10 @@ def _tones(
     owner = (record.specimen_id, record.state_id, record.operating_point_id, record.repeat)
     share = named_uniforms(config.seed, Stage.BEARING_TONES, specimen.specimen_id)
     course = named_uniforms(config.seed, Stage.DRIVE, *owner)
-    low, high = section.cage_slip
+    low, high = CAGE_SLIP
     orders = tone_orders(section, low + (high - low) * course(f"{name}.slip"))
     rng = named_generator(config.seed, Stage.DRIVE, *owner, name=f"{name}.jitter")
     wander = slow_variation(rng, JITTER_CORNER_HZ, -TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S)
-    jitter_rad = constant(section.phase_jitter_rad)
     return [
         HarmonicForce(
             bearing_direction(structure, place, axis),
@@ -95,7 +100,7 @@ def _tones(
                     force_n * (WEAKEST_TONE + (1.0 - WEAKEST_TONE) * share(f"{name}.{axis}.{tone}")),
                     shaft_order * order,
                     2.0 * pi * course(f"{name}.{axis}.{tone}.phase"),
-                    jitter_rad,
+                    JITTER_RAD,
                 )
                 for tone, order in orders.items()
             ),
@@ -111,10 +116,10 @@ def tone_orders(section: BearingTones, cage_slip: float) -> dict[str, float]:
     Balls pass the outer race with the cage and spin with it; Z balls pass the inner race at the shaft's speed less the
     cage's: Z (1 - (1 - s) f_c) = f_i + s f_o.
     """
-    outer = constant(section.outer_race_order)
+    outer, inner, ball, cage = section.orders
     return {
         "outer_race": outer * (1.0 - cage_slip),
-        "inner_race": constant(section.inner_race_order) + cage_slip * outer,
-        "ball": constant(section.ball_order) * (1.0 - cage_slip),
-        "cage": constant(section.cage_order) * (1.0 - cage_slip),
+        "inner_race": inner + cage_slip * outer,
+        "ball": ball * (1.0 - cage_slip),
+        "cage": cage * (1.0 - cage_slip),
     }

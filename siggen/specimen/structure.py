@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 
-from siggen.config import Caps as CapsSection
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Dynamics, Rotor, Sensor
 from siggen.config import Shaft as ShaftSection
-from siggen.dynamics.structure.bearing_caps import Caps
 from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
@@ -99,7 +97,7 @@ def _coupling(section: CouplingSection) -> Coupling:
 
 def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
     """Return a drawn casing in SI."""
-    bolts, pinion, inertia = section.bolts, section.pinion_position_mm, section.inertia_kg_m2
+    bolts, inertia = section.bolts, section.inertia_kg_m2
     mass, gyration_m = constant(section.mass_kg), CASING_GYRATION * pair.working_centre_distance_m
     return Casing(
         mass_kg=mass,
@@ -110,18 +108,8 @@ def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sen
             damping_ratio=constant(bolts.damping_ratio),
             places_m=tuple(_metres(place) for place in bolts.positions_mm),
         ),
-        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0) if pinion is None else _metres(pinion),
+        pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0),
         sensor_places_m={s.name: _sensor_metres(s.position_mm) for s in sensors if s.position_mm is not None},
-        caps=None if section.caps is None else _caps(section.caps),
-    )
-
-
-def _caps(section: CapsSection) -> Caps:
-    return Caps(
-        mass_kg=constant(section.mass_kg),
-        horizontal_stiffness_n_per_m=constant(section.horizontal_stiffness_n_per_m),
-        vertical_stiffness_n_per_m=constant(section.vertical_stiffness_n_per_m),
-        damping_ratio=constant(section.damping_ratio),
     )
 
 

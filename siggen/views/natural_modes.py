@@ -42,7 +42,7 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     """Return the modes of one specimen without damage, undamped, at the mean over the angle of its mesh stiffness."""
     specimen = draw_specimen(config, specimen_id)
     pair = gear_pair(specimen.gears)
-    tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=specimen.stiffness.table_points)
+    tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness))
     stiffness = mean_mesh_stiffness(tables)
     assembled = structure(specimen.dynamics, pair)
     return SpecimenModes(assembled.coordinates, stiffness, assembled.mass, natural_modes(assembled, stiffness))

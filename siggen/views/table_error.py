@@ -9,7 +9,7 @@ from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.contact_table_error import ContactTableError, contact_table_error
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import Damage, has_extent
-from siggen.gears.stiffness.mesh_tables import mesh_tables, table_error
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables, table_error
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.specimen.contact import face_options, largest_force_n, solves_across_the_face
@@ -23,7 +23,7 @@ PLACES = 8
 """Per kind of pair, at which a table of the contact is compared with its solver."""
 
 
-def worst_table_error(config: Config, specimen_id: int = 0) -> float:
+def worst_table_error(config: Config, specimen_id: int = 0, points: int = TABLE_POINTS) -> float:
     """Return the largest relative error of the interpolated stiffness tables of one specimen over all its states.
 
     Of healthy teeth where the contact is solved across the face, which has tables of its own.
@@ -37,7 +37,6 @@ def worst_table_error(config: Config, specimen_id: int = 0) -> float:
     damages: dict[Damage, None] = {(): None}
     if not solves_across_the_face(specimen.dynamics):
         damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
-    points = specimen.stiffness.table_points
     return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
 
 
@@ -50,12 +49,14 @@ def table_error_text(config: Config, specimen_id: int = 0) -> str:
     except ValueError as refusal:
         error = f"nowhere: {refusal}"
     return (
-        f"tables of {config.stiffness.table_points} points, as simulations use them, interpolate the stiffness of "
+        f"tables of {TABLE_POINTS} points, as simulations use them, interpolate the stiffness of "
         f"teeth in all states of specimen {specimen_id} {error}"
     )
 
 
-def worst_contact_table_error(config: Config, specimen_id: int = 0) -> tuple[ContactTableError, tuple[str, ...]]:
+def worst_contact_table_error(
+    config: Config, specimen_id: int = 0, points: int = TABLE_POINTS
+) -> tuple[ContactTableError, tuple[str, ...]]:
     """Return the errors of one specimen's contact tables over the force of its first operating point, and the states.
 
     The worst of sound teeth, which err at the ends of the path, where tips are near, and of the last `STATES` states
@@ -80,7 +81,7 @@ def worst_contact_table_error(config: Config, specimen_id: int = 0) -> tuple[Con
         errors = specimen_errors(config, pair, specimen_id, index or 0)
         slices = face_slices(pair, options)
         lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
-        table = contact_table(pair, damage, teeth, options, specimen.stiffness.table_points, lead)
+        table = contact_table(pair, damage, teeth, options, points, lead)
         found.append(contact_table_error(pair, damage, teeth, options, table, force_n, PLACES, lead))
     worst = ContactTableError(*(max(values) for values in zip(*found, strict=True)))
     return worst, ("sound teeth", *(config.states[index].name for index in damaged[-STATES:]))

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 from typer.testing import CliRunner
 
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import _hertz_pa, implausible
 from siggen.cli.app import app
+from siggen.config import read_yaml
 from siggen.errors import UsageError
 from siggen.specimen.gears import gear_pair
 
@@ -37,6 +40,21 @@ def test_a_machine_of_a_few_numbers_can_be_simulated_and_is_plausible(tmp_path: 
     assert implausible(config) == ()
     assert len(config.channels) == 3
     assert [state.severity for state in config.states] == ["healthy", "healthy", "slight", "moderate", "severe"]
+
+
+def test_an_editor_completes_and_checks_a_rig_by_the_schema_beside_it(tmp_path: Path) -> None:
+    file = tmp_path / "machines" / "rig.yaml"
+    assert run(*RIGS["25/56"], "--out", str(file)).exit_code == 0
+    first, *_ = file.read_text(encoding="utf-8").splitlines()
+    assert first == "# yaml-language-server: $schema=siggen.schema.json"
+    schema = json.loads((file.parent / first.partition("$schema=")[2]).read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    rig = read_yaml(file)
+    jsonschema.validate(rig, schema)
+    with pytest.raises(jsonschema.ValidationError, match="modul_mm"):
+        jsonschema.validate({**rig, "gears": {**rig["gears"], "modul_mm": 2.0}}, schema)
+    with pytest.raises(jsonschema.ValidationError, match="'seed' is a required property"):
+        jsonschema.validate({key: value for key, value in rig.items() if key != "extends"}, schema)
 
 
 SIGGEN = str(Path(sys.executable).parent / "siggen")

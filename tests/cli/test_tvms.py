@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.errors import UsageError
+from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.views.stiffness_curves import StiffnessCurve
 from siggen.views.stiffness_figure import stiffness_figure
 
@@ -46,17 +47,12 @@ def test_the_stiffness_is_the_same_until_the_contact_reaches_the_pits(tmp_path: 
     assert np.array_equal(table["healthy_n_per_m"].to_numpy()[before], table["severe_n_per_m"].to_numpy()[before])
 
 
-def test_the_interpolation_error_of_the_tables_is_told_and_falls_with_their_points(tmp_path: Path) -> None:
-    errors = []
-    for points in (129, 4097):
-        said = run(
-            "configs/linear_pits.yaml", "--out", tmp_path / "tvms.csv", "--set", f"stiffness.table_points={points}"
-        )
-        found = re.search(r"tables of (\d+) points, .* within ([\d.e-]+) %", said)
-        assert found is not None
-        assert int(found[1]) == points
-        errors.append(float(found[2]))
-    assert 0.0 < errors[1] < 0.5 * errors[0]
+def test_the_interpolation_error_of_the_tables_is_told(tmp_path: Path) -> None:
+    said = run("configs/linear_pits.yaml", "--out", tmp_path / "tvms.csv")
+    found = re.search(r"tables of (\d+) points, .* within ([\d.e-]+) %", said)
+    assert found is not None
+    assert int(found[1]) == TABLE_POINTS
+    assert 0.0 < float(found[2]) < 1.0
 
 
 def test_coupled_teeth_are_softer_in_double_contact_and_the_same_in_single_contact(tmp_path: Path) -> None:

@@ -39,8 +39,8 @@ def test_null_is_the_set_without_the_section() -> None:
 
 def test_every_key_changes_the_identity() -> None:
     changes: list[dict[str, object]] = [
-        {}, {"accuracy_class": 7}, {"accuracy_class_gear": 7}, {"tolerance_share": 0.4}, {"runout_share": 0.5},
-        {"profile_waves": 3.0}, {"draw": "state"},
+        {}, {"accuracy_class": 7}, {"accuracy_class_gear": 7}, {"tolerance_share": 0.4},
+        {"draw": "state"},
     ]  # fmt: skip
     found = [parse(with_section(**({"accuracy_class": 6} | change))).config for change in changes]
     assert len({one.identity for one in found if one is not None} | {config(**PAIRS).identity}) == len(changes) + 1
@@ -66,7 +66,7 @@ def test_shares_beyond_the_tolerance_and_unknown_keys_are_refused() -> None:
     assert "tolerance_share: received 1.2; allowed: a number from 0 to 1" in problem(
         accuracy_class=6, tolerance_share=1.2
     )
-    assert "did you mean 'runout_share'" in problem(accuracy_class=6, runout_shar=0.2)
+    assert "did you mean 'tolerance_share'" in problem(accuracy_class=6, tolerance_shar=0.2)
     assert "manufacture.accuracy_class: received nothing; this key is needed" in problem(tolerance_share=0.4)
 
 

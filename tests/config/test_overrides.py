@@ -24,7 +24,7 @@ from tests.config.minimal import MINIMAL, minimal
             {"gears__module_mm": {"kind": "uniform", "low": 2, "high": 4}},
         ),
         ("sensors.0.bits=null", {"sensors__0__bits": None}),
-        ("sensors.0.noise.snr_db=2e1", {"sensors__0__noise": {"snr_db": 20.0}}),
+        ("sensors.0.noise.floor_m_s2=2e1", {"sensors__0__noise": {"floor_m_s2": 20.0}}),
         ("name=a=b", {"name": "a=b"}),
     ],
 )

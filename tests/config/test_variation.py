@@ -62,10 +62,6 @@ def test_forces_of_shafts_need_bearings():
     assert paths(**changes) == ["dynamics.unbalance.grade_mm_s", "dynamics.bearing_tones.level"]
 
 
-def test_a_cage_slip_that_is_no_range_is_refused():
-    assert paths(dynamics__bearing_tones={"cage_slip": [0.02, 0.01]}) == ["dynamics.bearing_tones.cage_slip"]
-
-
 def test_a_run_down_that_the_load_would_drive_is_refused_by_name():
     (said,) = physical(variation={"speed": {"end_ratio": 0.1}}, operating_points__0__torque_nm=0.1)
     assert said.startswith("variation.speed.end_ratio: received -0.9 of 30 Hz in 1 s")

@@ -151,7 +151,7 @@ def test_without_skew_waves_and_roughness_it_is_the_rectangle_in_labels_and_in_t
     same = {"profile_length_mm": 1.0, "face_length_mm": 20.0, "depth_mm": 0.2, "centre_height_mm": "pitch"}
     straight = {**same, **STRAIGHT, "kind": "irregular", "floor": floor, "edge_radius_mm": 0.1}
     states = []
-    for damage in (straight, {**same, "kind": "spall", "depth_law": floor}):
+    for damage in (straight, {**same, "kind": "spall", "floor": floor}):
         config = config_with(damage)
         states.append(specimen_state(config, draw_specimen(config, 0), 1))
     irregular, rectangle = states

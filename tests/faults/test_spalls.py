@@ -19,16 +19,6 @@ from siggen.specimen.gears import gear_pair
 from tests.faults.test_damage import config_with, damage_of
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.1}
-V: dict[str, Any] = {
-    "kind": "spall",
-    "shape": "v",
-    "lower_width_mm": 2.0,
-    "upper_width_mm": 8.0,
-    "profile_length_mm": 1.5,
-    "depth_mm": 0.1,
-}
-CORNERS = [{"height_mm": h, "face_mm": w} for h, w in ((1.0, 2.0), (2.0, 8.0), (1.5, 12.0))]
-POLYGON: dict[str, Any] = {"kind": "spall", "shape": "polygon", "vertices": CORNERS, "depth_mm": 0.1}
 DRAWN = {"kind": "uniform", "low": 0.5, "high": 1.5}
 
 
@@ -44,7 +34,7 @@ def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point(shape: str) -
     assert not damage_problems(pair, (spall,))
 
 
-@pytest.mark.parametrize("shape", [BOX, {**BOX, "shape": "ellipse"}, V])
+@pytest.mark.parametrize("shape", [BOX, {**BOX, "shape": "ellipse"}])
 def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one(shape: dict[str, Any]) -> None:
     config = config_with({**shape, "teeth": 3, "stages": [0.9, 0.5, 0.3]}, {**shape, "teeth": 3})
     slight, severe = damage_of(config, 1), damage_of(config, 2)
@@ -71,13 +61,6 @@ def test_axial_lengths_are_heights() -> None:
     assert spall.outline.height_range_m == pytest.approx((1.5e-3, 2.5e-3), rel=1e-12)
 
 
-def test_length_squared_depths_follow_the_length() -> None:
-    base = {key: value for key, value in BOX.items() if key != "depth_mm"}
-    (spall,) = damage_of(config_with({**base, "profile_length_mm": 2.0, "depth_law": "length_squared"}), 1)
-    assert spall.depth_m == pytest.approx(16.3e-6 * 4.0, rel=1e-9)
-    assert spall.floor == "length_squared"
-
-
 def test_a_longer_spall_over_the_same_centre_takes_the_place_of_the_shorter_one() -> None:
     config = config_with(BOX, {**BOX, "profile_length_mm": 1.6, "depth_mm": 0.2})
     slight, moderate = damage_of(config, 1), damage_of(config, 2)
@@ -90,7 +73,11 @@ def test_a_longer_spall_over_the_same_centre_takes_the_place_of_the_shorter_one(
     "ladder",
     [
         [{**BOX, "face_centre_mm": {"kind": "uniform", "low": 5.0, "high": 15.0}, "profile_length_mm": DRAWN}] * 2,
-        [BOX, {**V, "depth_mm": 0.05}, {**BOX, "teeth": 2, "profile_length_mm": 2.0, "shape": "ellipse"}],
+        [
+            BOX,
+            {**BOX, "depth_mm": 0.05, "face_length_mm": 8.0},
+            {**BOX, "teeth": 2, "profile_length_mm": 2.0, "shape": "ellipse"},
+        ],
         [
             {
                 "kind": "clustered",
@@ -127,25 +114,11 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
         (BOX, {"centre_height_mm": 9.0, "height_reading": "axial"}, "centre_height_mm", "9 mm", "4.74319 mm"),
         (BOX, {"face_centre_mm": 20.5}, "face_centre_mm", "20.5 mm", "0 to 20 mm"),
         (BOX, {"depth_mm": 4.0}, "depth_mm", "4 mm", "half tooth thickness"),
-        (BOX, {"depth_mm": None}, "depth_mm", "nothing", "needs depth_mm"),
-        (BOX, {"depth_law": "length_squared"}, "depth_mm", "a value", "depth_coefficient_um_per_mm2"),
-        (BOX, {"depth_coefficient_um_per_mm2": 20.0}, "depth_coefficient_um_per_mm2", "a value", "takes depth_mm"),
-        (BOX, {"upper_width_mm": 3.0}, "upper_width_mm", "a value", "shape rectangle takes face_length_mm"),
+        (BOX, {"depth_mm": None}, "depth_mm", "null", "above 0"),
+        (BOX, {"depth_law": "flat"}, "depth_law", "the text 'flat'", "known keys: gear, shape"),
         (BOX, {"teeth": 3, "stages": [1.0, 0.5]}, "stages", "a list of 2", "one for each of the 3 damaged teeth"),
-        (POLYGON, {"teeth": 1, "stages": 0.5}, "stages", "a value", "a polygon is as large as its vertices say"),
-        (BOX, {"shape": "star"}, "shape", "'star'", "rectangle, ellipse, v, polygon"),
+        (BOX, {"shape": "star"}, "shape", "'star'", "rectangle, ellipse"),
         (BOX, {"teeth": [18]}, "teeth", "tooth 18", "0 to 17"),
-        (V, {"lower_width_mm": 0.0, "upper_width_mm": 0.0}, "upper_width_mm", "0.0", "at least one width above 0"),
-        (V, {"upper_width_mm": None}, "upper_width_mm", "nothing", "needs lower_width_mm, upper_width_mm"),
-        (POLYGON, {"vertices": CORNERS[:2]}, "vertices", "2 vertices", "at least 3"),
-        (POLYGON, {"centre_height_mm": 2.0}, "centre_height_mm", "a value", "where its vertices are"),
-        (
-            POLYGON,
-            {"vertices": [*CORNERS, {"height_mm": 1.2, "face_mm": 12.0}, {"height_mm": 1.9, "face_mm": 5.0}]},
-            "vertices",
-            "edges",
-            "simple polygon",
-        ),
     ],
     ids=str,
 )
@@ -177,19 +150,13 @@ def test_an_empty_list_is_refused() -> None:
 
 def test_rows_of_the_damage_table_tell_kind_shape_and_corners() -> None:
     pit = {"face_mm": 4.0, "semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.3}
-    spalls = [{k: v for k, v in shape.items() if k != "kind"} for shape in (BOX, V, POLYGON)]
-    config = config_with({"kind": "list", "pits": [pit], "spalls": [*spalls, {**spalls[0], "shape": "ellipse"}]})
+    box = {k: v for k, v in BOX.items() if k != "kind"}
+    config = config_with({"kind": "list", "pits": [pit], "spalls": [box, {**box, "shape": "ellipse"}]})
     rows = damage_rows(config, 1)
-    assert [(row["kind"], row["shape"]) for row in rows] == [
-        ("pit", "ellipse"),
-        ("spall", "rectangle"),
-        ("spall", "v"),
-        ("spall", "polygon"),
-        ("spall", "ellipse"),
-    ]
-    assert rows[3]["polygon_face_mm"] == pytest.approx([2.0, 8.0, 12.0])
-    assert rows[3]["polygon_height_mm"] == pytest.approx([1.0, 2.0, 1.5])
+    found = [(row["kind"], row["shape"]) for row in rows]
+    assert found == [("pit", "ellipse"), ("spall", "rectangle"), ("spall", "ellipse")]
+    assert rows[1]["polygon_face_mm"] == pytest.approx([7.0, 13.0, 13.0, 7.0])
     assert rows[1]["semi_axis_face_mm"] == pytest.approx(3.0)
-    assert [len(row["polygon_face_mm"]) for row in rows] == [0, 4, 4, 3, 0]  # type: ignore[arg-type]
+    assert [len(row["polygon_face_mm"]) for row in rows] == [0, 4, 0]  # type: ignore[arg-type]
     assert config.states[1].fault == "pitting"
-    assert config_with({"kind": "list", "spalls": spalls}).states[1].fault == "spalling"
+    assert config_with({"kind": "list", "spalls": [box]}).states[1].fault == "spalling"

@@ -35,11 +35,7 @@ def test_drawn_pairs_lie_in_their_ranges_differ_and_hunt() -> None:
     assert len(set(pairs)) == 40
     assert all(gcd(*pair.teeth) == 1 and 17 <= pair.teeth[0] <= 30 for pair in pairs)
     assert all(7.5 <= pair.face_width_mm / pair.module_mm <= 15.5 for pair in pairs)
-    assert (
-        pairs
-        == config(gears__pairs=RANGES, seed=8).gears.pairs
-        != config(gears__pairs={**RANGES, "seed": 1}).gears.pairs
-    )
+    assert pairs == config(gears__pairs=RANGES, seed=8).gears.pairs
     made = config(gears__pairs=RANGES)
     again = parse(made.canonical()).config
     assert again is not None

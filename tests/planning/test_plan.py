@@ -92,7 +92,7 @@ def test_an_index_and_its_place_determine_each_other(points, repeats, specimens,
     made = config(
         specimens=specimens,
         repeats=repeats,
-        operating_points={"count": points, "speed_hz": 30, "torque_nm": 60},
+        operating_points=[{"speed_hz": 30, "torque_nm": 60}] * points,
     )
     record_id = data.draw(st.integers(0, plan(made).count - 1))
     found = planned_record(made, record_id)
@@ -107,7 +107,7 @@ def test_an_index_and_its_place_determine_each_other(points, repeats, specimens,
 
 
 def test_all_records_are_different_places():
-    made = config(repeats=2, operating_points={"count": 3, "speed_hz": 30, "torque_nm": 60})
+    made = config(repeats=2, operating_points=[{"speed_hz": 30, "torque_nm": 60}] * 3)
     records = list(plan(made).records)
     assert [record.record_id for record in records] == list(range(20 * 2 * 3 * 2))
     places = {(r.specimen_id, r.state_id, r.operating_point_id, r.repeat) for r in records}

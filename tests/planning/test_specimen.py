@@ -16,11 +16,13 @@ SPREAD = {
     "gears__pinion__bore_radius_mm": {"kind": "choice", "values": [8, 9, 10]},
     "dynamics__mesh_damping_ratio": {"kind": "uniform", "low": 0.05, "high": 0.1},
     "dynamics__gear__bearing_stiffness_y_n_per_m": {"kind": "loguniform", "low": 6e7, "high": 1.2e8},
-    "operating_points": {
-        "count": 2,
-        "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
-        "torque_nm": {"kind": "normal", "mean": 50, "std": 10, "low": 30, "high": 80},
-    },
+    "operating_points": [
+        {
+            "speed_hz": {"kind": "uniform", "low": 20, "high": 35},
+            "torque_nm": {"kind": "normal", "mean": 50, "std": 10, "low": 30, "high": 80},
+        }
+    ]
+    * 2,
     "sensors__0__gain": {"kind": "uniform", "low": 0.9, "high": 1.1},
 }
 
@@ -72,7 +74,7 @@ def test_a_new_distribution_or_setting_leaves_all_other_draws_alone(change):
 
 
 def test_more_operating_points_leave_existing_ones_alone():
-    more = {**SPREAD, "operating_points": {**SPREAD["operating_points"], "count": 5}}
+    more = {**SPREAD, "operating_points": SPREAD["operating_points"][:1] * 5}
     for point in range(2):
         assert draw_operating_point(config(**SPREAD), 3, point) == draw_operating_point(config(**more), 3, point)
 

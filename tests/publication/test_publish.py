@@ -117,7 +117,7 @@ def test_the_card_says_what_is_on_what_was_assumed_and_who_says_so(published: Pa
         "| contact across the face | off |",
         "| background of a healthy machine | off |",
         "| `gears.module_mm` | 3 | configuration | normal module |",
-        "| `dynamics.friction.hardness_gpa` | 7 | default |",
+        "| `dynamics.friction.pit_roughness_um` | 2 | default |",
         "* Author, An, An institute (https://orcid.org/0000-0002-1825-0097)",
         "Nobody has looked for what makes this set trivially separable",
     ):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from siggen.columns.record import Record, label_names
 from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
+from siggen.keys.number import constant
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.background import BackgroundBlocks
@@ -22,6 +24,7 @@ from siggen.record.rubbing import RubbingForce, force_size_n
 from siggen.record.simulation import simulate, simulate_specimen
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import drawn_background
+from siggen.specimen.background_numbers import RubbingNumbers
 from siggen.specimen.block_responses import FLOOR
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import minimal
@@ -30,14 +33,13 @@ LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "ra
 MODAL = {**LID, "path": {"kind": "modal"}, "position_mm": [60.0, 50.0]}
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 ALL: dict[str, Any] = {
-    "base": {"damping_ratio": 0.15, "horizontal_hz": 40.0, "vertical_hz": 40.0, "rocking_hz": 40.0},
+    "base": {"mount_hz": 40.0},
     "rubbing": {"bursts": {}},
     "floor": {},
     "shafts": {},
     "second_stage": {"order": 4.13},
     "auxiliary_drive": {"order": {"kind": "uniform", "low": 12, "high": 60}, "shaft_order": 0.7},
 }
-ONE_LINE = {"second_db": -200.0, "third_db": -200.0, "fourth_db": -200.0, "rotor_mass_kg": 0.0}
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
@@ -59,6 +61,15 @@ def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], di
     inputs = BlockInputs(config, specimen, planned, Standstill(instrument), instrument)
     blocks = list(inputs.seen())
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, inputs.labels
+
+
+def rubbed(keys: dict[str, float], changes: dict[str, float], duration_s: float) -> tuple[Config, RubbingNumbers]:
+    """Return a configuration with these keys, and what is drawn for its rubbing with some numbers changed."""
+    config = loaded(background={"rubbing": keys}, duration_s=duration_s)
+    drawn = drawn_background(config, 0)
+    assert drawn is not None
+    assert drawn.rubbing is not None
+    return config, drawn.rubbing.model_copy(update=changes)
 
 
 class Standstill:
@@ -158,18 +169,19 @@ def test_records_do_not_depend_on_what_is_simulated_beside_them() -> None:
 
 
 def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass() -> None:
-    shafts = {**ONE_LINE, "coupling_stiffness_n_per_um": 0.0, "offset_um": 0.0, "rotor_mass_kg": 10.0}
-    shafts |= {"rotor_grade_mm_s": 6.3, "rated_speed_hz": 30.0}
-    base = {"mass_kg": 1000.0, "gyration_m": 10.0, "damping_ratio": 0.2}
-    base |= {"horizontal_hz": 3.0, "vertical_hz": 3.0, "rocking_hz": 3.0}
+    shafts = {"coupling_stiffness_n_per_um": 0.0, "rotor_mass_kg": 10.0}
+    base = {"mass_kg": 1000.0, "gyration_m": 10.0, "mount_hz": 3.0}
     centre = {**LID, "position_mm": [0.0, 0.0]}
     config = loaded(centre, background={"base": base, "shafts": shafts}, duration_s=1.0)
     signal = added(config)[0]["lid_vertical"]
+    background = specimen_instrument(config, draw_specimen(config, 0)).background
+    assert background is not None
+    rotor = background.shafts["pinion"]
     angle = 2.0 * np.pi * 30.0 * np.arange(signal.size) / config.fs_hz
     # the machine on the gear's shaft has its line too
     lines = np.stack([f(order * angle) for order in (1.0, 18 / 47) for f in (np.cos, np.sin)], axis=1)
     found, *_ = np.linalg.lstsq(lines, signal, rcond=None)
-    force_n = 10.0 * 6.3e-3 * 2.0 * np.pi * 30.0
+    force_n = 10.0 * 1e-3 * constant(rotor.rotor_grade_mm_s) / constant(rotor.rated_speed_hz) * 2.0 * np.pi * 30.0**2
     total_kg = 1000.0 + 20.0 + 4.0
     # mounts at a tenth of the speed: 1 %; bolts carry 24 kg at 700 Hz: 0.2 %; gears weigh what their discs weigh
     assert np.hypot(*found[:2]) == pytest.approx(force_n / total_kg, rel=0.03)
@@ -179,39 +191,27 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass() -> None:
 
 def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N, where neither speed nor load counts."""
-    rubbing = {
-        "roughness_um": 0.4,
-        "correlation_mm": 0.2,
-        "speed_exponent": 0.0,
-        "load_exponent": 0.0,
-        "level_std": 0.0,
-    }
-    rubbing |= {"pinion_depth": 0.0, "gear_depth": 0.0, "sliding_exponent": 0.0, "corner_hz": 1500.0, "steepness": 2.0}
-    config = loaded(background={"rubbing": rubbing}, duration_s=1.0)
-    drawn = drawn_background(config, 0)
-    assert drawn is not None
-    assert drawn.rubbing is not None
+    changes = {"correlation_mm": 0.2, "speed_exponent": 0.0, "load_exponent": 0.0, "pinion_depth": 0.0}
+    changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "corner_hz": 1500.0, "steepness": 2.0}
+    config, rubbing = rubbed({"roughness_um": 0.4, "level_std": 0.0}, changes, 1.0)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
-    assert force_size_n(drawn, drawn.rubbing, course) == pytest.approx(16.0)
-    force = RubbingForce(drawn, drawn.rubbing, course, course.length).take(course)
+    assert force_size_n(rubbing, course) == pytest.approx(16.0)
+    force = RubbingForce(rubbing, course, course.length).take(course)
     # 1,500 Hz over 1 s: 1,500 independent values; the band holds all but (f_c/f)^3/4 of the power
     assert force.std() == pytest.approx(16.0, rel=0.06)
     load = {"load_exponent": 0.5, "speed_exponent": 1.0}
-    again = drawn.rubbing.model_copy(update=load)
+    again = rubbing.model_copy(update=load)
     pinion = course.pair.pinion
     factor = (course.mesh_force_n / 0.02 / 5e4) ** 0.5
     factor *= 2.0 * np.pi * 30.0 * pinion.base_radius_m * np.tan(course.pair.working_pressure_angle_rad) / 3.0
-    assert force_size_n(drawn, again, course) == pytest.approx(16.0 * factor)
+    assert force_size_n(again, course) == pytest.approx(16.0 * factor)
 
 
 def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
-    rubbing = {"replayed_share": 0.5, "level_std": 0.0, "gear_depth": 0.0, "pinion_depth": 0.0, "sliding_exponent": 0.0}
-    config = loaded(background={"rubbing": rubbing}, duration_s=4.0)
-    drawn = drawn_background(config, 0)
-    assert drawn is not None
-    assert drawn.rubbing is not None
+    changes = {"replayed_share": 0.5, "gear_depth": 0.0, "pinion_depth": 0.0, "sliding_exponent": 0.0}
+    config, rubbing = rubbed({"level_std": 0.0}, changes, 4.0)
     course = course_at(config, draw_specimen(config, 0), planned_record(config, 0), 0, config.samples)
-    force = RubbingForce(drawn, drawn.rubbing, course, course.length).take(course)
+    force = RubbingForce(rubbing, course, course.length).take(course)
     turns, per_turn = 94, config.fs_hz / 30.0
     # turns of the pinion do not fall on samples: read at equal angles
     at_angles = np.interp(np.arange(turns * 1024) * per_turn / 1024, np.arange(force.size), force).reshape(turns, 1024)
@@ -238,14 +238,13 @@ def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> 
     """Kurtosis 3 exp(s²) in closed form; both bearings of a shaft swell together, those of the other shaft do not."""
     found: dict[float, dict[str, np.ndarray]] = {}
     for std in (0.0, 0.7):
-        floor = {"level_std": std, "level_time_ms": 1.0, "shaft_depth": 0.0}
-        config = loaded(background={"floor": floor}, duration_s=20.0)
-        drawn = drawn_background(config, 0)
-        assert drawn is not None
-        assert drawn.floor is not None
+        config = loaded(background={"floor": {"level_std": std}}, duration_s=20.0)
         specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
         background = specimen_instrument(config, specimen).background
         assert background is not None
+        assert background.section.floor is not None
+        floor = background.section.floor.model_copy(update={"level_time_ms": 1.0, "shaft_depth": 0.0})
+        background = replace(background, section=background.section.model_copy(update={"floor": floor}))
         blocks = BackgroundBlocks(config, specimen, planned, background, 0, config.samples)
         high = frequencies(config.samples, config.fs_hz) > 2000.0
         whites = {one.name: values for one, values in blocks.take(config.samples).items() if one.kind == FLOOR}

@@ -25,7 +25,7 @@ LID = {**SENSOR, "name": "lid", "axes": ["vertical"], "position_mm": [60.0, 50.0
        "path": {"kind": "modal", "delay_us": 63.0}, "high_pass_hz": 2.0,
        "mounting": {"frequency_hz": 9000.0, "damping_ratio": 0.05}}  # fmt: skip
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
-BASE = {"horizontal_hz": 40.0, "vertical_hz": 40.0, "rocking_hz": 40.0, "damping_ratio": 0.15}
+BASE = {"mount_hz": 40.0}
 LINES: dict[str, Any] = {"base": BASE, "shafts": {}, "second_stage": {"order": 4.13}}
 ALL = {**LINES, "rubbing": {"bursts": {"rate_hz": 20.0}}, "floor": {}}
 VARYING = {"speed": {"random_rms": 0.005, "ripple_once": 0.001}, "torque": {"random_rms": 0.02}}

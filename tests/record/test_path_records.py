@@ -297,7 +297,7 @@ def test_other_machines_and_hum_are_where_the_labels_say() -> None:
     sensor = {
         **RIGID,
         "mains": {"amplitude_m_s2": 5.0, "frequency_hz": 50.0, "harmonics": 1},
-        "inverter": {"carrier_hz": 4000.0, "amplitude_m_s2": 2.0, "sidebands": 0},
+        "inverter": {"carrier_hz": 4000.0, "amplitude_m_s2": 2.0},
     }
     channels, labels = record(loaded(sensor, housing=None)).channels, record(loaded(sensor, housing=None)).labels
     added = channels["lid_vertical"].astype(float) - record(loaded(RIGID, housing=None)).channels["lid_vertical"]
@@ -305,4 +305,4 @@ def test_other_machines_and_hum_are_where_the_labels_say() -> None:
     assert spectrum[5] == pytest.approx(5.0, rel=1e-5)
     assert spectrum[400] == pytest.approx(2.0, rel=1e-5)
     assert labels["mains_lid_vertical_m_s2"] == pytest.approx(5.0 / np.sqrt(2.0))
-    assert added.var() == pytest.approx(0.5 * (25.0 + 4.0), rel=1e-5)
+    assert added.var() == pytest.approx(0.5 * (25.0 + 4.0 * (1.0 + 2.0 / 4.0 + 2.0 / 9.0)), rel=1e-5)

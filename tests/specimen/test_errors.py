@@ -75,13 +75,6 @@ def test_the_pinion_does_not_depend_on_the_gear() -> None:
     assert changed.gear.accuracy_class == 9
 
 
-def test_a_constant_in_place_of_a_distribution_shifts_no_other_draw() -> None:
-    fixed = errors_of(made("manufacture={accuracy_class: 6, profile_waves: 3.0, runout_share: 0.0}"))
-    free = errors_of(CLASS_6)
-    assert fixed.pinion.tolerance_share == free.pinion.tolerance_share
-    assert np.corrcoef(fixed.pinion.errors.pitch_m, free.pinion.errors.pitch_m)[0, 1] == pytest.approx(1.0, abs=1e-12)
-
-
 def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
     config = made("manufacture={accuracy_class: {kind: choice, values: [5, 6, 7]}}")
     found = [errors_of(config, specimen) for specimen in range(40)]
@@ -181,7 +174,7 @@ def test_helix_slopes_are_those_of_misaligned_by_the_standard_and_forms_are_one_
 
 
 def test_new_keys_that_are_not_used_leave_identity_and_draws_as_they_were() -> None:
-    assert with_helix(CLASS_6, crowning_um=0.0, helix="off", helix_waves=None).identity == CLASS_6.identity
+    assert with_helix(CLASS_6, crowning_um=0.0, helix="off").identity == CLASS_6.identity
     plain, crowned = errors_of(CLASS_6), errors_of(with_helix(CLASS_6, crowning_um=5.0, helix="iso_1328"))
     np.testing.assert_array_equal(places(plain), places(crowned))
     assert plain.even

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record, label_names
 from siggen.config import Config
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import simulate
+from siggen.specimen import flank_waves
 from siggen.specimen.flank_waves import CLAMPING, specimen_waves
 from siggen.specimen.gears import gear_pair
+
+
+class Fixed(NamedTuple):
+    """In place of a distribution: one number."""
+
+    value: float
+
+    def at(self, _: float) -> float:
+        return self.value
+
 
 SHORT = ["specimens=20", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
 
 
-def made(waves: str, *overrides: str) -> Config:
+def made(waves: str = "on", *overrides: str) -> Config:
     section = f"manufacture={{accuracy_class: 6, tolerance_share: 0, flank_waves: {waves}}}"
     return load_config("tests/configs/casing.yaml", [*SHORT, section, *overrides])
 
@@ -27,7 +41,7 @@ def record(config: Config) -> Record:
 
 
 def test_all_states_share_their_waves_and_gearboxes_do_not() -> None:
-    config = made("{}")
+    config = made()
     pair = gear_pair(draw_specimen(config, 0).gears)
     first, second, other = (specimen_waves(config, pair, *owner) for owner in ((0, 0), (0, 1), (1, 0)))
     assert first is not None
@@ -36,11 +50,13 @@ def test_all_states_share_their_waves_and_gearboxes_do_not() -> None:
     np.testing.assert_array_equal(first.gear.own_m, second.gear.own_m)
     np.testing.assert_array_equal(first.pinion.waves, second.pinion.waves)
     assert not np.array_equal(first.pinion.common_m, other.pinion.common_m)
-    assert specimen_waves(made("null"), pair, 0, 0) is None
+    assert specimen_waves(made("off"), pair, 0, 0) is None
 
 
-def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number() -> None:
-    config = made("{ghosts: 2.0, ghost_um: 0.1, lag_over_face_rad: 0}")
+def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in (("GHOSTS", 2.0), ("GHOST_UM", Fixed(0.1)), ("LAG_OVER_FACE_RAD", Fixed(0.0))):
+        monkeypatch.setattr(flank_waves, name, value)
+    config = made()
     pair = gear_pair(draw_specimen(config, 0).gears)
     found = [specimen_waves(config, pair, specimen, 0) for specimen in range(150)]
     counts = [drawn.ghosts["gear"] for drawn in found if drawn is not None]
@@ -54,11 +70,16 @@ def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number() -> None
         np.testing.assert_allclose(waves.amplitude_m[:count], expected)
 
 
-def test_a_ghost_is_a_line_of_the_record_at_its_order() -> None:
-    still = "clamping_um: 0, common_um: 0, own_um: 0"
-    overrides = ("duration_s=0.5", "fs_hz=51200.0")
-    silent, loud = (record(made(f"{{ghosts: {n}, ghost_um: 0.3, {still}}}", *overrides)) for n in (0, 4))
-    assert set(loud.labels) == set(label_names(made("{}")))
+def test_a_ghost_is_a_line_of_the_record_at_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = {"GHOST_UM": 0.3, "CLAMPING_UM": 0.0, "COMMON_UM": 0.0, "OWN_UM": 0.0}
+    for name, size in sizes.items():
+        monkeypatch.setattr(flank_waves, name, Fixed(size))
+    found = []
+    for ghosts in (0.0, 4.0):
+        monkeypatch.setattr(flank_waves, "GHOSTS", ghosts)
+        found.append(record(made("on", "duration_s=0.5", "fs_hz=51200.0")))
+    silent, loud = found
+    assert set(loud.labels) == set(label_names(made()))
     orders = loud.labels["ghost_orders_pinion"]
     assert isinstance(orders, list)
     assert orders

@@ -2,30 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import parse
 from siggen.errors import ConfigError
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
 from siggen.gears.stiffness.mesh_tables import mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.specimen.gears import gear_pair, model_notes, stiffness_options
 from tests.config.minimal import config, minimal
-
-
-def test_every_option_of_the_section_reaches_the_model():
-    section = {
-        "beam": "root_circle",
-        "foundation": "none",
-        "foundation_angle": "rack",
-        "hertz": "weber_banaschek",
-        "hertz_force_n": 2000.0,
-    }
-    found = stiffness_options(config(stiffness=section).stiffness)
-    assert found == StiffnessOptions("root_circle", "none", "rack", "weber_banaschek", 2000.0)
 
 
 def test_defaults_of_configuration_and_physics_agree_but_for_the_coupling_of_calibrated_teeth():
@@ -64,32 +50,6 @@ def test_what_load_lets_pass_gives_tables_and_what_it_refuses_does_not():
         else:
             mesh_tables(gear_pair(usable.gears), (), stiffness_options(usable.stiffness), points=65)
     assert seen == {True, False}
-
-
-@pytest.mark.parametrize("hertz", ["weber_banaschek", "power_law"])
-def test_tables_are_made_with_the_contact_law_of_the_configuration(hertz):
-    usable = config(stiffness__hertz=hertz, stiffness__hertz_force_n=2000.0)
-    pair, options = gear_pair(usable.gears), stiffness_options(usable.stiffness)
-    tables = mesh_tables(pair, (), options, points=65)
-    position = np.linspace(tables.start_m, tables.end_m, 65)
-    np.testing.assert_array_equal(tables.pair_stiffness_n_per_m[0], pair_stiffness(pair, position, options))
-    assert np.all(
-        tables.pair_stiffness_n_per_m[0] < mesh_tables(pair, (), StiffnessOptions(), 65).pair_stiffness_n_per_m[0]
-    )
-
-
-def test_a_contact_law_changes_the_identity():
-    linear, softer = config(), config(stiffness__hertz="power_law", stiffness__hertz_force_n=2000.0)
-    assert (
-        len(
-            {
-                linear.identity,
-                softer.identity,
-                config(stiffness__hertz="power_law", stiffness__hertz_force_n=1e3).identity,
-            }
-        )
-        == 3
-    )
 
 
 def test_notes_look_at_both_ends_of_a_distribution():

@@ -66,13 +66,6 @@ def entrainment_speed(position_m: Values, line_m: float, speed_1_rad_s: Values, 
 
 
 @njit(cache=True)
-def slide_roll_ratio(position_m: Values, line_m: float, speed_1_rad_s: Values, speed_2_rad_s: Values) -> Values:
-    """Return SR = (u_1 - u_2)/u_e, negative in approach, 0 at the pitch point, within ±2; speeds of one sign."""
-    first, second = position_m * speed_1_rad_s, (line_m - position_m) * speed_2_rad_s
-    return 2.0 * (first - second) / (first + second)
-
-
-@njit(cache=True)
 def hertz_pressure(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
     """Return the peak pressure p_H [Pa] of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
     return np.sqrt(line_load_n_per_m * (0.5 * effective_modulus_pa) / (np.pi * radius_m))

@@ -11,7 +11,6 @@ from collections.abc import Collection
 
 import numpy as np
 
-from siggen.dynamics.friction.friction_coefficient import XU_KAHRAMAN_ROUGHEST_M
 from siggen.dynamics.friction.lubrication import LOAD_FLOOR, FilmGroups
 
 RANGES = {
@@ -38,11 +37,9 @@ MEANINGS = {
 def lubrication_notes(
     groups: FilmGroups,
     formula: str = "masjedi_khonsari",
-    fluid_friction: str = "constant",
-    roughness_m: float = 0.0,
     checked: Collection[str] = tuple(MEANINGS),
 ) -> tuple[str, ...]:
-    """Return one sentence on all groups that leave the range of the formula, and one on a misused friction formula.
+    """Return one sentence on all groups that leave the range of the formula.
 
     Parameters
     ----------
@@ -50,11 +47,6 @@ def lubrication_notes(
         Of all contacts in question; arrays of any shape.
     formula : str
         'masjedi_khonsari' or 'smooth film'.
-    fluid_friction : str
-        Name of the friction of the lubricated part; 'xu_kahraman' is checked against `roughness_m`.
-    roughness_m : float
-        Composite roughness of the roughest flank in question [m].
-
     checked : collection of str
         Names of the groups to compare with the range; by default all.
 
@@ -69,12 +61,6 @@ def lubrication_notes(
     if np.min(groups.load) < LOAD_FLOOR:
         notes.append(
             f"oil film: the load group falls below {LOAD_FLOOR:g}; film and asperity share keep their values from there"
-        )
-    if fluid_friction == "xu_kahraman" and roughness_m > XU_KAHRAMAN_ROUGHEST_M:
-        notes.append(
-            f"oil friction: the roughness of {roughness_m * 1e6:.3g} µm is above the limit of "
-            f"{XU_KAHRAMAN_ROUGHEST_M * 1e6:.3g} µm of the Xu-Kahraman formula; the formula is applied with the "
-            "healthy flank's roughness only"
         )
     return tuple(note for note in notes if note)
 

@@ -1,7 +1,7 @@
-"""Oil: viscosity and density by temperature, pressure-viscosity coefficient, viscosity under pressure.
+"""Oil: viscosity and density by temperature, pressure-viscosity coefficient.
 
 Equations: Walther (ASTM D341), log10 log10(ν + 0.7) = m - n log10 T with ν in mm²/s and T in K; density linear in
-temperature; α_pv = s ν^t 1e-9 1/Pa with ν in mm²/s (Gold 2001); Roelands' viscosity under pressure
+temperature; α_pv = s ν^t 1e-9 1/Pa with ν in mm²/s (Gold 2001)
 (reference: standard literature). Walther constants and density of mineral gear oils as in the open library GEARpie.
 
 Verified: ISO VG 220 gives 218/126/78/35 mm²/s at 40/50/60/80 °C and 0.112 Pa s at 50 °C; every grade is within 10 % of
@@ -16,13 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.compiled import njit
-from siggen.dynamics.friction.contact_kinematics import Values
-
 PIEZO_FACTOR = 9.904
 PIEZO_EXPONENT = 0.1390
-ROELANDS_LOG = 9.67
-ROELANDS_PRESSURE_PA = 1.96e8
 COLDEST_C, HOTTEST_C = -20.0, 150.0
 
 
@@ -89,16 +84,3 @@ MINERAL_OILS = {
     )
 }
 """Mineral gear oils by their ISO grade."""
-
-
-@njit(cache=True)
-def viscosity_under_pressure(viscosity_pa_s: float, pressure_viscosity_per_pa: float, pressure_pa: Values) -> Values:
-    """Return Roelands' viscosity [Pa s] at a pressure [Pa]; its slope at ambient pressure is α_pv η_0.
-
-    η = η_0 exp{(ln η_0 + 9.67) [(1 + p/p_0)^Z - 1]}, Z = α_pv p_0/(ln η_0 + 9.67), p_0 = 196 MPa (reference: standard
-    literature). Barus' exponential overrates it a hundredfold at 1 GPa. Scalars or broadcasting arrays.
-    """
-    scale = np.log(viscosity_pa_s) + ROELANDS_LOG
-    power = pressure_viscosity_per_pa * ROELANDS_PRESSURE_PA / scale
-    viscosity: Values = viscosity_pa_s * np.exp(scale * ((1.0 + pressure_pa / ROELANDS_PRESSURE_PA) ** power - 1.0))
-    return viscosity

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.bearing_caps import CappedBearings, Caps, capped, halves, uncapped
 from siggen.dynamics.structure.structure import (
     Element,
     Rotor,
@@ -44,14 +43,13 @@ class Bolts:
 
 @dataclass(frozen=True, slots=True)
 class Casing:
-    """A rigid casing, where pinion and sensors stand on it, and bearing caps that move by themselves, if any."""
+    """A rigid casing, and where pinion and sensors stand on it."""
 
     mass_kg: float
     inertia_kg_m2: float
     bolts: Bolts
     pinion_place_m: Point
     sensor_places_m: Mapping[str, Point]
-    caps: Caps | None = None
 
 
 def torsional(stage: SpurStage) -> Structure:
@@ -74,7 +72,7 @@ def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Sh
 
     Sensors at the bearings sit on the casing. A sensor of another name is seen as `casing_<name>`.
     With shafts that bend, the tilts [φ_x1, φ_y1, φ_x2, φ_y2] come behind: what a gear moves along x and y at a distance
-    along its axis, per distance. The casing itself does not tilt. With caps, x and y of four of them come behind.
+    along its axis, per distance. The casing itself does not tilt.
 
     Raises
     ------
@@ -93,41 +91,38 @@ def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Sh
         **_bearings("1", "pinion_bearing", stage.pinion, casing.pinion_place_m, angle),
         **_bearings("2", "gear_bearing", stage.gear, gear_place, angle),
     }
-    held = _held(bearings, casing.caps, shafts_of_gears)
+    held = _held(bearings, shafts_of_gears)
     places = {**seats, **{f"casing_{name}": place for name, place in casing.sensor_places_m.items()}}
     inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing)}
-    inertias |= _tilt_inertias(shafts_of_gears) | dict(held.masses)
+    inertias |= _tilt_inertias(shafts_of_gears)
     coordinates = tuple(inertias)
-    stiffness, damping = assemble(coordinates, (*shafts(stage), *held.elements, *bolt_elements(casing, angle)))
+    springs = (element for elements in held.values() for element in elements)
+    stiffness, damping = assemble(coordinates, (*shafts(stage), *springs, *bolt_elements(casing, angle)))
     motions = {
         f"{name}/{axis}": vector(coordinates, _on_casing(place, axis, angle))
         for name, place in places.items()
         for axis in ("vertical", "horizontal")
     }
-    motions |= {name: vector(coordinates, direction) for name, direction in held.motions.items()}
     line_of_action = {"y_1": 1.0, "y_2": -1.0}
     across = {"x_1": 1.0, "x_2": -1.0}
-    forces = {name: _force_rows(coordinates, elements) for name, elements in held.seats.items()}
+    forces = {name: _force_rows(coordinates, elements) for name, elements in held.items()}
     structure = _structure(stage, inertias, stiffness, damping, line_of_action, motions, across)
     tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
     return replace(structure, bearing_forces=forces, tilt_vector=tilt)
 
 
 def _held(
-    bearings: Mapping[str, Element], caps: Caps | None, shafts_of_gears: tuple[Shaft, Shaft] | None
-) -> CappedBearings:
-    """Return what lies between the gears and the casing."""
-    if shafts_of_gears is None and caps is None:
-        return uncapped({name: {"both": bearing} for name, bearing in bearings.items()})
+    bearings: Mapping[str, Element], shafts_of_gears: tuple[Shaft, Shaft] | None
+) -> dict[str, tuple[Element, ...]]:
+    """Return what lies between the gears and the casing, by place/axis: of a shaft that bends one for each end."""
     if shafts_of_gears is None:
-        ends = {name: halves(bearing) for name, bearing in bearings.items()}
-    else:
-        of_gear = {"pinion_bearing": ("1", shafts_of_gears[0]), "gear_bearing": ("2", shafts_of_gears[1])}
-        ends = {}
-        for name, bearing in bearings.items():
-            index, shaft = of_gear[name.split("/")[0]]
-            ends[name] = tilting_ends(bearing, shaft, index)
-    return uncapped(ends) if caps is None else capped(ends, caps)
+        return {name: (bearing,) for name, bearing in bearings.items()}
+    of_gear = {"pinion_bearing": ("1", shafts_of_gears[0]), "gear_bearing": ("2", shafts_of_gears[1])}
+    held = {}
+    for name, bearing in bearings.items():
+        index, shaft = of_gear[name.split("/")[0]]
+        held[name] = tuple(tilting_ends(bearing, shaft, index).values())
+    return held
 
 
 def _tilt_inertias(shafts_of_gears: tuple[Shaft, Shaft] | None) -> dict[str, float]:

@@ -88,7 +88,7 @@ class Polygon:
     vertices_m : tuple of (height, face)
         Corners in order, either way round; the last is joined to the first [m].
     shape : str
-        Name of the outline: 'rectangle', 'v' or 'polygon'; geometry follows from the vertices alone.
+        Name of the outline: 'rectangle' or 'polygon'; geometry follows from the vertices alone.
     """
 
     vertices_m: tuple[tuple[float, float], ...]
@@ -164,20 +164,6 @@ def rectangle(height_range_m: tuple[float, float], face_range_m: tuple[float, fl
     """Return the rectangle between two heights and two places across the face."""
     (low, high), (left, right) = height_range_m, face_range_m
     return Polygon(((low, left), (low, right), (high, right), (high, left)), "rectangle")
-
-
-def v_outline(
-    height_range_m: tuple[float, float], face_m: float, lower_width_m: float, upper_width_m: float
-) -> Polygon:
-    """Return the V (triangle or trapezoid, symmetric about `face_m`) with widths at its lower and upper edge."""
-    low, high = height_range_m
-    corners = [
-        (low, face_m - 0.5 * lower_width_m),
-        (low, face_m + 0.5 * lower_width_m),
-        (high, face_m + 0.5 * upper_width_m),
-        (high, face_m - 0.5 * upper_width_m),
-    ]
-    return Polygon(tuple(dict.fromkeys(corners)), "v")
 
 
 def _trapezoid_row(sides: tuple[float, ...], middle: float, half: float, depth: float, dish: bool) -> tuple[float, ...]:

@@ -29,6 +29,9 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 HEALTHY = -1
 """Stands for every tooth without damage."""
 
+TABLE_POINTS = 2049
+"""Of a table over one path of contact, as simulations use them; `siggen plan` says how exactly they interpolate."""
+
 
 @dataclass(frozen=True, slots=True)
 class MeshTables:
@@ -72,7 +75,7 @@ class MeshTables:
         return self.table_of_pair if self.coupled is None else self.coupled.row_of_pair
 
 
-def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int = 2049) -> MeshTables:
+def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int = TABLE_POINTS) -> MeshTables:
     """Return the tables of a pair with damage on any teeth of either gear.
 
     Parameters

@@ -108,7 +108,6 @@ def test_notes_name_what_leaves_the_range() -> None:
     assert "roughness over R_e is up to 6 times above" in rough
     assert "speed group" in "".join(lubrication_notes(inside._replace(speed=2e-10)))
     assert len(lubrication_notes(inside._replace(load=1e-7))) == 2
-    assert "Xu-Kahraman" in "".join(lubrication_notes(inside, fluid_friction="xu_kahraman", roughness_m=2e-6))
-    assert lubrication_notes(inside, "smooth film", "xu_kahraman", 0.5e-6) == ()
+    assert lubrication_notes(inside, "smooth film") == ()
     with pytest.raises(ValueError, match="smooth film"):
         lubrication_notes(inside, "grubin")

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.oil import MINERAL_OILS, viscosity_under_pressure
+from siggen.dynamics.friction.oil import MINERAL_OILS
 
 VG220 = MINERAL_OILS["ISO VG 220"]
 
@@ -33,15 +33,6 @@ def test_oil_gets_thinner_and_lighter_with_temperature(low: float, step: float) 
 def test_the_pressure_viscosity_coefficient_is_that_of_mineral_oils() -> None:
     # Measured mineral gear oils lie between 1.5e-8 and 2.5e-8 1/Pa at 40 to 60 °C.
     assert 1.5e-8 < VG220.pressure_viscosity_per_pa(50.0) < 2.5e-8
-
-
-def test_viscosity_under_pressure_starts_with_the_slope_of_the_coefficient() -> None:
-    eta, alpha, step = 0.112, 2.2e-8, 1e3
-    assert viscosity_under_pressure(eta, alpha, 0.0) == eta
-    slope = (viscosity_under_pressure(eta, alpha, step) / eta - 1.0) / step
-    # The next order is alpha * step = 2e-5.
-    assert slope == pytest.approx(alpha, rel=1e-4)
-    assert viscosity_under_pressure(eta, alpha, 1e9) < eta * np.exp(alpha * 1e9)
 
 
 def test_an_impossible_temperature_is_refused() -> None:

@@ -1,0 +1,62 @@
+"""Keys of the configuration: none without a place where a user meets it, and no more of them than there are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+
+from tests.house.source_tree import ROOT
+
+MOST_KEYS = 264
+"""Rows of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
+PAGES = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "reference"]
+TESTS = [path for path in (ROOT / "tests").rglob("*.py") if path.parent.name != "house"]
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return (ROOT / "docs" / "reference" / "yaml.md").read_text(encoding="utf-8")
+
+
+def named_together(names: list[str], texts: list[str]) -> bool:
+    """Return whether one text has all of these words."""
+    words = [re.compile(rf"(?<![A-Za-z_]){re.escape(name)}(?![A-Za-z_])") for name in names]
+    return any(all(word.search(text) for word in words) for text in texts)
+
+
+def rows(page: str) -> Iterator[tuple[list[str], str]]:
+    """Yield (words of a key: itself, the section around it and the top-level one, whether presets set it)."""
+    top = ""
+    for line in page.partition("## Distributions")[0].splitlines():
+        if line.startswith("#"):
+            top = line.lstrip("# ").removesuffix("[].damage").removesuffix("[].path")
+        elif line.startswith("| `"):
+            key = line.split("`")[1].replace("[]", "")
+            words = [*([] if top == "Top level" else [top]), *key.split(".")]
+            yield (
+                list(dict.fromkeys(words[:1] + words[-2:])),
+                "" if line.endswith(("| expert |", "| required |  |")) else "preset",
+            )
+
+
+def test_every_key_stands_in_a_preset_or_together_with_its_section_in_a_guide_or_test(page: str) -> None:
+    texts = [path.read_text(encoding="utf-8") for path in (*PAGES, *TESTS)]
+    nowhere = [".".join(words) for words, use in rows(page) if not use and not named_together(words, texts)]
+    assert nowhere == []
+
+
+def test_there_are_no_more_keys_than_said(page: str) -> None:
+    found = re.search(r"There are (\d+) keys in (\d+) places", page)
+    assert found is not None
+    keys, places = map(int, found.groups())
+    assert keys <= MOST_KEYS
+    assert keys <= places
+
+
+def test_a_key_that_nobody_names_is_found() -> None:
+    page = "## gears\n| `tip` | expert |\n| `wheel.teeth` | expert |\n## Distributions\n| `x` |"
+    assert [words for words, _ in rows(page)] == [["gears", "tip"], ["gears", "wheel", "teeth"]]
+    assert named_together(["gears", "tip"], ["no tip", "gears: {tip: 1}"])
+    assert not named_together(["gears", "tip"], ["gears", "tips of gears"])
