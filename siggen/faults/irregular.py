@@ -51,7 +51,7 @@ from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
-from siggen.keys.number import Number, Within, at, bounds, constant
+from siggen.keys.number import Number, Within, at, bounds, constant, number_text
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
@@ -299,8 +299,8 @@ def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> It
     apart = max(abs(one - two) for one in skews[0] for two in skews[1])
     room = 2.0 * shortest * (1.0 - 2.0 * waves) / (PER_10MM * across_mm)
     if apart >= room:
-        received = f"{_said(size.leading_skew_mm_per_10mm)}, with trailing_skew_mm_per_10mm "
-        received += f"{_said(size.trailing_skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
+        received = f"{number_text(size.leading_skew_mm_per_10mm)}, with trailing_skew_mm_per_10mm "
+        received += f"{number_text(size.trailing_skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
         allowed = f"allowed: skews less than {room:.6g} mm per 10 mm apart, at {across_mm:.6g} mm across the face"
         yield Problem("leading_skew_mm_per_10mm", received, allowed)
         return
@@ -320,7 +320,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
             return
         along = read_m(gear, height, reading)
         if along - reach_m < ends[0] or along + reach_m > ends[1]:
-            received = f"{_said(size.profile_length_mm)} mm: with skew and waves the edges reach from "
+            received = f"{number_text(size.profile_length_mm)} mm: with skew and waves the edges reach from "
             received += f"{(along - reach_m) / MM:.4g} to {(along + reach_m) / MM:.4g} mm above the base circle"
             yield Problem(
                 "profile_length_mm", received, f"allowed: {ends[0] / MM:.4g} to {ends[1] / MM:.4g} mm, the flank"
@@ -346,7 +346,3 @@ def _deepest_m(pair: GearPair, size: IrregularSpalls) -> float:
         return MM * bounds(size.depth_mm)[1] * rough
     area = bounds(size.profile_length_mm)[1] * _face_lengths_mm(size, pair.face_width_m / MM)[1]
     return MM * bounds(size.depth_share)[1] * sqrt(area) * rough
-
-
-def _said(number: Number) -> str:
-    return f"{number:g}" if isinstance(number, float) else str(number)

@@ -42,6 +42,11 @@ def constant(number: Number) -> float:
     return number
 
 
+def number_text(number: Number) -> str:
+    """Return a number as a message shows it."""
+    return f"{number:g}" if isinstance(number, float) else str(number)
+
+
 @dataclass(frozen=True, slots=True)
 class Within:
     """Range of a physical number, and the parser of every field of this kind.
