@@ -160,7 +160,12 @@ MISTAKES = [
     ({"dynamics__friction__oil": ["ISO VG 100", "lard"]}, "dynamics.friction.oil", "a list of 2", "or a list of some"),
     ({"states__1__damage__first_height_mm": "top"}, "states.1.damage.first_height_mm", "'top'", "or pitch"),
     # contradictions
-    ({"states__1__fault": "spalling"}, "states.1.fault", "'spalling', with damage of kind layered", "pitting; spalling needs"),
+    (
+        {"states__1__fault": "spalling"},
+        "states.1.fault",
+        "'spalling', with damage of kind layered",
+        "pitting; spalling needs",
+    ),
     ({"states__1__fault": "healthy"}, "states.1.fault", "healthy, with damage", "pitting or spalling"),
     ({"states__1__severity": "healthy"}, "states.1.severity", "healthy, with damage", "slight, moderate or severe"),
     ({"states__0__fault": "pitting"}, "states.0.damage", "nothing, with fault pitting", "fault and severity both"),
