@@ -35,6 +35,10 @@ def tilt_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Ite
     if not set(NEEDED) <= sections.keys() or sections["dynamics"].shafts is None:
         return
     for pair in pairs:
+        if not np.isfinite(largest_force_n(sections["operating_points"], pair)):
+            allowed = "allowed: torques whose force on the teeth, three times over, is a finite number"
+            yield Problem("operating_points", f"a torque of {_largest_torque_nm(sections):g} N m", allowed)
+            return
         tilts = flank_tilts(sections, pair)
         # half of the gearboxes tilt no farther than the one at all bounds
         if tilts.largest_rad > tilts.limit_rad and median_tilt_rad(sections, pair) > tilts.limit_rad:

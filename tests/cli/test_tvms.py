@@ -123,7 +123,7 @@ def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     energy, sink_um = columns["severe_potential_energy_n_per_m"], columns["severe_sink_um"]
     # Potential energy leaves nothing in single contact; the flank in fact comes to rest on the edges of the spall.
     assert energy.min() == 0.0
-    assert np.isinf(columns["severe_contact_m_per_n"][energy == 0.0]).all()
+    assert np.isfinite(columns["severe_contact_m_per_n"][energy == 0.0]).all()
     assert severe.min() > 0.0
     deepest = int(np.nanargmax(sink_um))
     force = 45.0 / (0.5 * 18 * 3e-3 * np.cos(np.radians(20.0)))
@@ -133,12 +133,14 @@ def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     assert columns["severe_land_share"][deepest] == 0.0
     assert np.nanmax(columns["healthy_sink_um"]) == 0.0
     assert np.nanmin(columns["healthy_land_share"]) == 1.0
-    # Alone in contact and without damage force over approach is the stiffness of the tables: relief is at the tips.
+    # Alone in contact and without damage force over approach is softer than by energy, whose contact is as stiff under
+    # any load: relief is at the tips.
     single = (np.abs(columns["angle_deg"] + 2.5) < 1.0) & (
         columns["healthy_potential_energy_n_per_m"] < 0.85 * energy.max()
     )
     assert single.any()
-    np.testing.assert_allclose(healthy[single], columns["healthy_potential_energy_n_per_m"][single], rtol=1e-4)
+    softer = healthy[single] / columns["healthy_potential_energy_n_per_m"][single]
+    assert 0.83 < softer.min() < softer.max() < 0.85
     assert (tmp_path / "tvms.png").stat().st_size > 10_000
 
 

@@ -76,13 +76,14 @@ def test_flanks_inside_damage_run_on_thinner_films_and_rub_more(config: Config) 
         # Loaded contacts alone: where a pair enters or leaves, films of light loads are thick whatever the flank.
         return np.concatenate([values[load > 0.9] for values, load in zip(slots, loads, strict=True)])
 
-    # At the third speed 0.1 s holds more than three revolutions: healthy, severe pits, half-face spall.
+    # At the third speed 0.1 s holds more than three revolutions: healthy, severe pits, spalls of half and whole face.
     ratios = {record_id: of_contacts(record_id, "film_ratio").min() for record_id in (2, 11, 14)}
     assert ratios[11] < 0.8 * ratios[2]
     assert ratios[14] < 0.8 * ratios[2]
-    rubbing = {record_id: of_contacts(record_id, "friction_coefficient").max() for record_id in (2, 11, 14)}
-    assert 1.1 * rubbing[2] < min(rubbing[11], rubbing[14])
-    assert max(rubbing.values()) <= 0.11  # the boundary coefficient
+    rubbing = {record_id: of_contacts(record_id, "friction_coefficient").max() for record_id in (2, 11, 14, 17)}
+    # Pits carry next to nothing; the edges of spalls do, up to the boundary coefficient where no land is left.
+    assert rubbing[11] == pytest.approx(rubbing[2], rel=0.02)
+    assert 1.1 * rubbing[2] < rubbing[14] < rubbing[17] <= 0.11
 
 
 def test_the_set_labels_healthy_pitted_and_spalled_gearboxes_at_three_speeds(config: Config) -> None:
