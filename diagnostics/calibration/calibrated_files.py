@@ -125,7 +125,7 @@ def _sensor(channel: ChannelFit, name: str, axis: str, folder: str) -> Iterable[
     yield f"    range_m_s2: {sensor.range_m_s2:.6g}"
     yield f"    bits: {'null' if sensor.bits is None else sensor.bits}"
     files = ", ".join(f"{folder}/{_path_file(name, number)}" for number in range(len(channel.paths)))
-    yield f"    path: {{kind: measured, files: [{files}]}}"
+    yield f"    path: {{kind: measured, file: [{files}]}}"
     ratio = 10.0 ** (noise.spread_db / 20.0)
     level = noise.level_db
     yield f"    noise_spectrum:             # {level.value:.1f} dB re 1 (m/s2)2 in all, {_interval(level)}"

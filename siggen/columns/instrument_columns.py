@@ -32,7 +32,7 @@ def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
             ),
         ),
         "number": (
-            getattr(sensor.path, "files", None) or None,
+            getattr(sensor.path, "is_family", False) or None,
             Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0"),
         ),
         "pink": (

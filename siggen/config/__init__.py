@@ -2,7 +2,7 @@
 
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
 from siggen.config.casing import Bolts, Casing
-from siggen.config.config import BLOCK, Config, Splits
+from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
@@ -14,7 +14,6 @@ from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
 from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
-from siggen.config.operating_points import OperatingRange
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.path import MeasuredPath, ModalPath, TransferPath

@@ -15,12 +15,12 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
-from siggen.config.operating_points import OPERATING_POINTS, OperatingRange
 from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
 from siggen.errors import Problem
+from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
@@ -53,6 +53,16 @@ class Splits(Section):
             received = f"{' + '.join(map(str, counts))} = {sum(counts)}"
             raise refusal([Problem("", received, f"allowed: train, validation and test that add up to {BLOCK}")])
         return self
+
+
+class OperatingRange(Section):
+    """Speed and torque of one operating point, drawn per specimen."""
+
+    speed_hz: Annotated[Number, Within(above=0, most=1e5)] = Field(description="rotation of the pinion shaft")
+    torque_nm: Annotated[Number, Within(above=0, most=1e8)] = Field(description="torque on the pinion shaft")
+
+
+OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")
 
 
 class Config(Section):

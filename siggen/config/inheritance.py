@@ -82,12 +82,11 @@ def _extended(name: object, folder: Path, source: str) -> Path:
 
 
 def _anchored(value: Any, folder: Path) -> Any:
-    """Return a value in which files of data, named by `file` and `files`, do not depend on their YAML file's folder."""
+    """Return a value in which files of data, named by `file`, do not depend on their YAML file's folder."""
     match value:
         case Mapping():
             return {
-                key: _beside(folder, item) if key in {"file", "files"} else _anchored(item, folder)
-                for key, item in value.items()
+                key: _beside(folder, item) if key == "file" else _anchored(item, folder) for key, item in value.items()
             }
         case list() | tuple():
             return [_anchored(item, folder) for item in value]

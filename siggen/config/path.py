@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within
-from siggen.keys.problems import refusal
+from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
@@ -27,38 +28,56 @@ class ModalPath(Section):
     )
 
 
+class TextParser:
+    """Parser of a text, or of a list of some."""
+
+    allowed_text = "a text, or a list of at least one"
+
+    def parse(self, value: object) -> str | tuple[str, ...] | None:
+        """Return the text, the texts or None, or raise a refusal."""
+        if value is None or isinstance(value, str):
+            return value
+        texts = tuple(one for one in value if isinstance(one, str)) if isinstance(value, (list, tuple)) else ()
+        if texts and isinstance(value, (list, tuple)) and len(texts) == len(value):
+            return texts
+        raise refusal([Problem("", received_text(value), f"allowed: {self.allowed_text}")])
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Parse with `parse`; the schema for readers of the file shows both forms."""
+        documented: Any = str | Annotated[list[str], Field(min_length=1)] | None
+        return core_schema.no_info_plain_validator_function(
+            self.parse, json_schema_input_schema=handler.generate_schema(documented)
+        )
+
+
+OneOrMore = Annotated[str | tuple[str, ...], TextParser()]
+
+
 class MeasuredPath(Section):
     """Bearing forces reach the sensor through a measured accelerance, which holds the rigid motion as well."""
 
     kind: Literal["measured"] = Field(description="frequency response from a file")
-    file: str | None = Field(
-        default=None, description="CSV, Parquet or npz; its path counts from the folder of the configuration"
+    file: OneOrMore | None = Field(
+        default=None,
+        description="CSV, Parquet or npz; its path counts from the folder of the configuration; of a list every "
+        "gearbox draws one: sensors with as many files the same number, since what one number says belongs together",
     )
     sha256: str | None = Field(
-        default=None, description="of the file, filled in when it is read; if given, the file must have it"
+        default=None, description="of a single file, filled in when it is read; if given, the file must have it"
     )
-    response: str | None = Field(
-        default=None, description="the numbers of the file, filled in when it is read, so that the set needs no file"
+    response: OneOrMore | None = Field(
+        default=None, description="the numbers of `file`, filled in when they are read, so that the set needs no file"
     )
-    files: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
-        default=None,
-        description="several instead of `file`: every gearbox draws one of them; sensors with as many files draw the "
-        "same number, since what one number says belongs together",
-    )
-    responses: Annotated[tuple[str, ...], Field(min_length=1)] | None = Field(
-        default=None, description="the numbers of `files`, filled in when they are read"
-    )
-
-    @model_validator(mode="after")
-    def _one_kind(self) -> MeasuredPath:
-        if self.files is not None and self.file is not None:
-            raise refusal([Problem("files", f"files beside file: {self.file}", "allowed: one of the two keys")])
-        return self
 
     @property
     def family(self) -> tuple[str, ...]:
-        """All responses that a gearbox may have; one unless `files` are given, none before they are read."""
-        return self.responses or (() if self.response is None else (self.response,))
+        """All responses that a gearbox may have; one unless `file` is a list, none before they are read."""
+        return self.response if isinstance(self.response, tuple) else tuple(filter(None, (self.response,)))
+
+    @property
+    def is_family(self) -> bool:
+        """Whether gearboxes draw one of a list of files."""
+        return isinstance(self.file, tuple)
 
 
 TransferPath: TypeAlias = ModalPath | MeasuredPath

@@ -94,7 +94,7 @@ def publication(
 
 def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool) -> None:
     """Refuse a set whose configuration holds what was fitted to recordings, unless its owner says so."""
-    fitted = [s.name for s in config.sensors if s.lines or (isinstance(s.path, MeasuredPath) and s.path.files)]
+    fitted = [s.name for s in config.sensors if s.lines or (isinstance(s.path, MeasuredPath) and s.path.is_family)]
     if fitted and not with_recordings:
         raise UsageError(
             f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; --with-recordings publishes them"

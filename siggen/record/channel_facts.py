@@ -56,6 +56,6 @@ def channel_labels(channel: ChannelInstrument, measured: Measurement) -> dict[st
     if channel.accelerance is not None:
         labels[f"path_modes_{channel.name}"] = channel.path_modes
         labels[f"path_accelerance_{channel.name}_m_s2_per_n"] = channel.path_rms_m_s2_per_n
-        if isinstance(channel.sensor.path, MeasuredPath) and channel.sensor.path.files:
+        if isinstance(channel.sensor.path, MeasuredPath) and channel.sensor.path.is_family:
             labels[f"path_number_{channel.name}"] = channel.path_number
     return labels

@@ -83,20 +83,17 @@ def _filled(sensor: Any, folder: Path) -> Any:
     if not isinstance(path, Mapping) or path.get("kind") != "measured":
         return sensor
     name = str(sensor.get("name", ""))
-    if isinstance(path.get("files"), (list, tuple)):
-        return (
-            sensor if path.get("responses") is not None else {**sensor, "path": {**path, **_family(path, folder, name)}}
-        )
     if path.get("response") is not None:
         return sensor
-    return {**sensor, "path": {**path, **_read(path, folder, name)}}
+    read = _family if isinstance(path.get("file"), (list, tuple)) else _read
+    return {**sensor, "path": {**path, **read(path, folder, name)}}
 
 
-def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, Any]:
+def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, list[str]]:
     """Return files and responses of a path section with several files."""
-    found = [_read({"file": name}, folder, sensor) for name in path["files"]]
+    found = [_read({"file": name}, folder, sensor) for name in path["file"]]
     short = [encoded_response(decoded_response(one["response"]), SINGLE) for one in found]
-    return {"files": [one["file"] for one in found], "responses": short}
+    return {"file": [one["file"] for one in found], "response": short}
 
 
 def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
@@ -107,7 +104,7 @@ def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     for index, sensor in sections.get("sensors", {}).items():
         if isinstance(sensor.path, MeasuredPath):
             for number, text in enumerate(sensor.path.family):
-                keys = (f"files.{number}", f"responses.{number}") if sensor.path.responses else ("file", "response")
+                keys = (f"file.{number}", f"response.{number}") if sensor.path.is_family else ("file", "response")
                 file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
                 yield from _text_problems(text, sensor.axes, (fs_hz, housing.settle_s), file, numbers)
 

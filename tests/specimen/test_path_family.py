@@ -47,7 +47,7 @@ def rms_levels(config: Config, specimen: int) -> list[float]:
 
 def test_every_gearbox_draws_one_of_the_files_and_its_sensors_the_same_one(tmp_path: Path) -> None:
     files = [response_file(tmp_path / f"p{k}.npz", 10.0**-k) for k in range(4)]
-    config = load_config(with_paths(tmp_path, {"files": files}, sensors=2))
+    config = load_config(with_paths(tmp_path, {"file": files}, sensors=2))
     drawn = np.array([rms_levels(config, specimen) for specimen in range(60)])
     np.testing.assert_array_equal(drawn[:, 0], drawn[:, 1])
     number = np.round(-np.log10(drawn[:, 0])).astype(int)
@@ -62,14 +62,14 @@ def test_every_gearbox_draws_one_of_the_files_and_its_sensors_the_same_one(tmp_p
 def test_one_file_in_the_list_gives_the_record_of_that_file_alone(tmp_path: Path) -> None:
     name = response_file(tmp_path / "p.npz", 0.01)
     single = simulate(load_config(with_paths(tmp_path, {"file": name})), [0])[0].channels["s0_vertical"]  # type: ignore[union-attr]
-    listed = simulate(load_config(with_paths(tmp_path, {"files": [name]})), [0])[0].channels["s0_vertical"]  # type: ignore[union-attr]
+    listed = simulate(load_config(with_paths(tmp_path, {"file": [name]})), [0])[0].channels["s0_vertical"]  # type: ignore[union-attr]
     # a family holds float32: 6e-8 of every value of the path
     np.testing.assert_allclose(listed, single, atol=3e-7 * np.abs(single).max())
 
 
 def test_a_set_with_several_paths_needs_no_file(tmp_path: Path) -> None:
     files = [response_file(tmp_path / f"p{k}.npz", 0.1 * (k + 1)) for k in range(2)]
-    config = load_config(with_paths(tmp_path, {"files": files}))
+    config = load_config(with_paths(tmp_path, {"file": files}))
     for name in files:
         (tmp_path / name).unlink()
     again = parse(parse_yaml(yaml_text(config.canonical()))).config
@@ -81,9 +81,9 @@ def test_a_set_with_several_paths_needs_no_file(tmp_path: Path) -> None:
 def test_a_wrong_file_of_several_is_named(tmp_path: Path) -> None:
     files = [response_file(tmp_path / "p0.npz", 0.1), "nowhere.npz"]
     with pytest.raises(ConfigError, match=r"nowhere\.npz"):
-        load_config(with_paths(tmp_path, {"files": files}))
-    with pytest.raises(ConfigError, match="one of the two keys"):
-        load_config(with_paths(tmp_path, {"file": "p0.npz", "files": ["p0.npz"]}))
+        load_config(with_paths(tmp_path, {"file": files}))
+    with pytest.raises(ConfigError, match=r"path\.file: received .*; allowed: the path of a CSV"):
+        load_config(with_paths(tmp_path, {"file": ["p0.npz", 3]}))
 
 
 def test_the_table_of_siggen_path_is_read_again_at_a_long_settling_time(tmp_path: Path) -> None:
