@@ -1,7 +1,7 @@
 """The measured part of docs/develop/benchmarks.md: `python docs/scripts/benchmark_page.py FILE [FILE ...] [--write]`.
 
-Prints the tables of files that `python -m benchmarks --json FILE` wrote. With `--write` they take the place of what
-stands between the marks of the page.
+Prints one table per topic of files that `python -m benchmarks --json FILE` wrote: the rows with a goal, and all rows
+where a topic has none. With `--write` they take the place of what stands between the marks of the page.
 """
 
 from __future__ import annotations
@@ -14,11 +14,33 @@ from typing import Any
 
 PAGE = Path(__file__).resolve().parents[1] / "develop" / "benchmarks.md"
 BEGIN, END = "<!-- benchmark_page.py: begin -->", "<!-- benchmark_page.py: end -->"
+SHOWN = {
+    "presets": "CPU time of a record, per second of signal; healthy, two middle and the severest state.",
+    "precision": "CPU time of the time loop at equal error, and errors of healthy and of severe records.",
+    "stiffness": "CPU time of curves and tables of mesh stiffness; every call has a new module and new pits.",
+    "background": "CPU time of the healthy background of `bench`.",
+    "sensing": "CPU time of paths, instrument and disturbances of `transfer_path`.",
+    "indicators": "All gear indicators of a synthetic record of 10 s, one channel.",
+    "pages": "`report` and `audit` of sets of `linear_pits`.",
+    "workers": "Wall time of one and of two workers in turn, median of five.",
+    "quickstart": "All 240 records of `linear_pits`.",
+    "loader": "Records read in shuffled windows, files in the system's cache.",
+    "memory": "Largest resident size of a process that makes one record.",
+    "startup": "Wall time of a command that needs no physics.",
+    "cold": "A first run in an empty cache.",
+}
+"""Topic that the page shows -> what its rows hold; results of the others stay in the files."""
+LEFT_OUT = "by proportion, not measured"
 
 
 def printed(results: Sequence[Mapping[str, Any]]) -> str:
-    """Return the tables of some runs as markdown."""
-    return "\n".join(line for result in results for line in _lines(result))
+    """Return the tables of some runs as markdown; a topic of a later run takes the place of an earlier one."""
+    topics: dict[str, Mapping[str, Any]] = {}
+    for result in results:
+        topics |= result["topics"]
+    machines = dict.fromkeys(line for result in results for line in result["machine"] if "others are using" not in line)
+    tables = (line for name in SHOWN if name in topics for line in _topic(name, topics[name]["rows"]))
+    return "\n".join((f"{'; '.join(machines)}.", *tables))
 
 
 def with_tables(page: str, tables: str) -> str:
@@ -36,52 +58,22 @@ def with_tables(page: str, tables: str) -> str:
     return f"{before}{BEGIN}\n\n{tables}\n\n{END}{after}"
 
 
-def _lines(result: Mapping[str, Any]) -> Iterator[str]:
-    topics = result["topics"]
-    yield f"`{result['command']}`: {'; '.join(line.removeprefix('WARNING: ') for line in result['machine'])}."
-    yield ""
-    yield "Wall time of each topic, and the load average behind it, its own included:"
-    yield ", ".join(f"{name} {topic['seconds']:.0f} s ({topic['load_average']:.1f})" for name, topic in topics.items())
-    yield ""
-    yield "| topic | what | measured | alternative | ratio | goal | met |"
-    yield "|---|---|---|---|---:|---:|---:|"
-    for name, topic in topics.items():
-        for row in topic["rows"]:
-            if not _is_point(row):
-                yield _row(name, row)
-    points = [row["numbers"] for topic in topics.values() for row in topic["rows"] if _is_point(row)]
-    for law in dict.fromkeys(point["law"] for point in points):
-        yield from _points(law, [point for point in points if point["law"] == law])
+def _topic(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    kept = [row for row in rows if not _is_point(row) and LEFT_OUT not in row["what"]]
+    yield from ("", f"### {name}", "", SHOWN[name], "")
+    yield from ("| what | measured | beside it | ratio | goal |", "|---|---|---|---:|---|")
+    yield from map(_row, [row for row in kept if row["goal"]] or kept)
 
 
-def _row(topic: str, row: Mapping[str, Any]) -> str:
+def _row(row: Mapping[str, Any]) -> str:
     ratio = "" if row["ratio"] is None else f"{row['ratio']:.3g}"
-    met = {None: "-", True: "yes", False: "no"}[row["met"]]
-    cells = (topic, row["what"], row["measured"], row["alternative"], ratio, row["goal"], met)
+    met = {None: "", True: ": met", False: ": **missed**"}[row["met"]]
+    cells = (row["what"], row["measured"], row["alternative"], ratio, row["goal"] + met)
     return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
 
 
-def _points(law: str, points: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield a table of methods by setting: CPU time per second of signal and error; the rule's steps are bold."""
-    yield ""
-    yield f"**Work against precision, {law}** (CPU time of the loop per s of signal, and error; bold: the steps taken)"
-    yield ""
-    yield "| method | |"
-    yield "|---|---|"
-    for method in dict.fromkeys(point["method"] for point in points):
-        cells = [_point(point) for point in points if point["method"] == method]
-        yield f"| {method} | {'; '.join(cells)} |"
-
-
-def _point(point: Mapping[str, Any]) -> str:
-    cost = point["cost_s"]
-    time = f"{cost:.3g} s" if cost >= 1.0 else f"{1e3 * cost:.3g} ms"
-    error = f"{point['error']:.1e}" if point["error"] < 1.0 else "no likeness"
-    text = f"{point['setting']}: {time}, {error}"
-    return f"**{text}**" if point["rule"] else text
-
-
 def _is_point(row: Mapping[str, Any]) -> bool:
+    """Tell whether a row is a point of the figure of work against precision."""
     return bool(row["numbers"]) and "error" in row["numbers"]
 
 

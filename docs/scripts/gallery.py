@@ -1,4 +1,4 @@
-"""Figures and numbers of docs/understand/gallery.md: severity, position and size of pits on the pair of paper_a."""
+"""Figures and numbers of docs/understand/paper_a.md: severity, position and size of pits on the pair of paper_a."""
 
 from pathlib import Path
 

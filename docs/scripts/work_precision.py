@@ -32,17 +32,13 @@ LOOKS = {
 def figure(points: Sequence[Mapping[str, Any]]) -> Figure:
     """Return one panel per law: CPU time per second of signal over error, a line per method."""
     laws = list(dict.fromkeys(point["law"] for point in points))
-    rows = -(-len(laws) // 2)
-    drawn = Figure(figsize=(10.0, 4.1 * rows), layout="constrained")
-    for number, (law, axes) in enumerate(
-        zip(laws, drawn.subplots(rows, 2, sharex=True, sharey=True).flat, strict=False)
-    ):
+    drawn = Figure(figsize=(3.7 * len(laws), 4.6), layout="constrained")
+    all_axes = drawn.subplots(1, len(laws), sharex=True, sharey=True, squeeze=False).flat
+    for law, axes in zip(laws, all_axes, strict=True):
         _panel(axes, [point for point in points if point["law"] == law])
         axes.set_title(law)
-        if number % 2 == 0:
-            axes.set_ylabel("CPU time per second of signal [s]")
-        if number >= len(laws) - 2:
-            axes.set_xlabel("relative rms error of the acceleration")
+        axes.set_xlabel("relative rms error of the acceleration")
+    drawn.axes[0].set_ylabel("CPU time per second of signal [s]")
     names = {name: line for axes in drawn.axes for line, name in zip(*axes.get_legend_handles_labels(), strict=True)}
     names = {name: names[name] for name in dict.fromkeys([*OWN.values(), *names])}
     drawn.legend(names.values(), names.keys(), loc="outside lower center", ncols=4)

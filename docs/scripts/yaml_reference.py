@@ -22,32 +22,22 @@ from siggen.cli.app import app
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 NULL = {"type": "null"}
-UNITS = {
-    "n_per_um_mm": "N/(µm mm)", "n_per_um": "N/µm", "n_s_per_m": "N s/m", "nm_s_per_rad": "N m s/rad",
-    "n_per_m": "N/m", "nm_per_rad": "N m/rad",
-    "m_s2_per_sqrt_hz": "m/s²/√Hz", "n_per_sqrt_hz": "N/√Hz", "per_sqrt_hz": "1/√Hz",
-    "um_per_mm2": "µm/mm²", "kg_m2": "kg m²", "m_s2": "m/s²", "mm_s": "mm/s",
-    "m_s": "m/s", "pa_s": "Pa s", "mm": "mm", "um": "µm", "deg": "°", "gpa": "GPa", "hz": "Hz", "us": "µs", "s": "s",
-    "kg": "kg", "nm": "N m", "rad": "rad", "db": "dB", "n": "N", "c": "°C",
-}  # fmt: skip
-"""Unit by the ending of a key, longer endings first."""
 SOURCE = re.compile(r"paper [AB]|assumed|published|ISO \d|derived", re.IGNORECASE)
 
 HEAD = """# Keys of the YAML file
 
-This page is printed by `python docs/scripts/yaml_reference.py` from `siggen schema` and the files in `configs/`.
+This page is printed by `make reference` from `siggen schema` and the files in `configs/`. Begin with
+[the twenty keys that matter](twenty_keys.md).
 
-* **Number** in the column "allowed" is a physical number. It may be a constant, or a distribution that siggen draws once
-  per gearbox ([below](#distributions)).
-* **extends** names a preset or another file. Its values hold wherever this file gives none. Mappings are merged key by
-  key; numbers, lists, null, and distributions are replaced. The set's own `config.yaml` holds the result.
-* **required**: the key has no default. Where its section is optional, it is required only in that section.
-* A key that stands in several places with the same meaning has one row, and counts once. Defaults that differ between the
-  places are divided by a slash.
-* **expert**: no shipped configuration sets the key. Its default serves, unless you know why it should not.
-* Units are part of the key names: mm, µm, degrees and GPa for gears, SI for the rest.
-* `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line a value is
-  replaced by `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
+* **Number** may be a constant, or a distribution that siggen draws once per gearbox ([below](#distributions)).
+* **extends** names a preset or another file. Mappings are merged key by key; numbers, lists, null, and distributions are
+  replaced. The set's own `config.yaml` holds the result.
+* **required**: no default. Where its section is optional, it is required only in that section.
+* **expert**: no shipped configuration sets the key.
+* A key that stands in several places with the same meaning has one row. Defaults that differ are divided by a slash.
+* The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
+* `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`. On the command line:
+  `--set a.b=VALUE`, or `--set a.0.b=VALUE` for the first entry.
 """
 DISTRIBUTION_TEXT = """## Distributions
 
@@ -132,12 +122,6 @@ def mapping(value: Mapping[str, Any]) -> str:
     return (
         f"{{{', '.join(f'{key}: {digits(each) if isinstance(each, float) else each}' for key, each in value.items())}}}"
     )
-
-
-def unit(path: str) -> str:
-    """Return the unit that the ending of a key names."""
-    name = path.rsplit(".", 1)[-1]
-    return next((text for ending, text in UNITS.items() if name.endswith(f"_{ending}")), "")
 
 
 @dataclass(frozen=True)
@@ -252,14 +236,14 @@ def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
 def table(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
     """Yield a table of keys."""
     kinds = ["kind"] if any(entry.kinds for entry in rows) else []
-    yield row("key", *kinds, "meaning", "unit", "allowed", "default", "use")
-    yield row(*["---"] * (6 + len(kinds)))
+    yield row("key", *kinds, "meaning", "allowed", "default", "use")
+    yield row(*["---"] * (5 + len(kinds)))
     for entry in rows:
         first, used = entry.keys[0], any(users[key.path] or key.path == "extends" for key in entry.keys)
         # What a section cannot do without is never for experts, as in `siggen schema`.
         marks = "" if used or "required" in entry.defaults else "expert"
         shown = [", ".join(f"`{name}`" for name in entry.names), *([", ".join(entry.kinds)] if kinds else [])]
-        cells = (described(schema, first.schema), unit(first.path), allowed(schema, first.schema))
+        cells = described(schema, first.schema), allowed(schema, first.schema)
         yield row(*shown, *cells, " / ".join(entry.defaults), marks)
 
 

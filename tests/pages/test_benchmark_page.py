@@ -29,14 +29,14 @@ def row(what: str, **values: Any) -> dict[str, Any]:
     return {"what": what, **empty, **values}
 
 
-def test_rows_become_lines_and_points_a_table_of_their_own() -> None:
+def test_rows_with_a_goal_become_lines_and_points_of_the_figure_none() -> None:
     point = {"law": "linear", "method": "product", "setting": "4 steps", "cost_s": 0.05, "error": 2e-5, "rule": True}
-    rows = [row("a | b", measured="1 s", ratio=2.0, goal="<= 2 s", met=True), row("of a method", numbers=point)]
-    topics = {"precision": {"seconds": 3.2, "load_average": 0.5, "rows": rows}}
-    text = script().printed([{"command": "python -m benchmarks precision", "machine": ["a machine"], "topics": topics}])
-    assert "| precision | a / b | 1 s |  | 2 | <= 2 s | yes |" in text
-    assert "| product | **4 steps: 50 ms, 2.0e-05** |" in text
-    assert "of a method" not in text
+    rows = [row("a | b", measured="1 s", ratio=2.0, goal="<= 2 s", met=True), row("aside"), row("c", numbers=point)]
+    topics = {"precision": {"rows": rows}, "storage": {"rows": [row("not on the page")]}}
+    text = script().printed([{"machine": ["a machine"], "topics": topics}])
+    assert text.startswith("a machine.")
+    assert "| a / b | 1 s |  | 2 | <= 2 s: met |" in text
+    assert not any(word in text for word in ("aside", "| c |", "not on the page"))
 
 
 def test_the_page_holds_what_is_printed_from_the_committed_results() -> None:

@@ -1,0 +1,25 @@
+"""docs/reference/twenty_keys.md names twenty keys, and the configuration has each of them."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+from siggen.cli.app import app
+from tests.house.source_tree import ROOT
+
+PAGE = (ROOT / "docs" / "reference" / "twenty_keys.md").read_text(encoding="utf-8")
+
+
+def test_there_are_twenty_and_the_configuration_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs" / "scripts")
+    schema = importlib.import_module("yaml_reference").Schema(json.loads(CliRunner().invoke(app, ["schema"]).output))
+    known = {re.sub(r" \(kind: \w+\)", "", key.path) for key in schema.keys(schema.content)}
+    known.add("states[].damage.kind")  # stands in the headings of the reference
+    rows = re.findall(r"^\| (`.*?`) \|", PAGE, re.MULTILINE)
+    assert len(rows) == 20
+    assert [name for row in rows for name in row.replace("`", "").split(", ") if name not in known] == []
