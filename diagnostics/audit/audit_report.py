@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -31,17 +32,37 @@ from diagnostics.page.style import png_bytes, styled
 from siggen.dataset.reading import Dataset
 
 
+@dataclass(frozen=True, slots=True)
+class AuditOptions:
+    """What is asked of a set besides its traps.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of permutations, folds and bootstrap.
+    paired, with_realism : bool
+        Whether to judge differences from own healthy records, and to compare with the ranges of healthy gearboxes.
+    speed : str
+        Range of the speed variation: `bench` or `variable`.
+    reference : Path, optional
+        Folder of measured healthy recordings to compare with.
+    reference_fs_hz : float, optional
+        Their sampling frequency [Hz] where files do not state it.
+    """
+
+    seed: int = 0
+    paired: bool = False
+    with_realism: bool = False
+    speed: str = BENCH
+    reference: Path | None = None
+    reference_fs_hz: float | None = None
+
+
 @single_thread
 def audit_set(
     dataset: Dataset,
-    seed: int = 0,
+    options: AuditOptions | None = None,
     own: Sequence[OwnIndicator] = (),
-    *,
-    with_realism: bool = False,
-    paired: bool = False,
-    speed: str = BENCH,
-    reference: Path | None = None,
-    reference_fs_hz: float | None = None,
     stage: Stage = silent_stage,
 ) -> Audit:
     """Audit a set.
@@ -50,24 +71,17 @@ def audit_set(
     ----------
     dataset : siggen Dataset
         What `siggen.open` returned.
-    seed : int
-        Seed of permutations, folds and bootstrap.
+    options : AuditOptions, optional
     own : sequence of OwnIndicator
         The user's indicators, tried besides those of the package.
-    with_realism, paired : bool
-        Whether to compare with the ranges of healthy gearboxes, and to judge differences from own healthy records.
-    speed : str
-        Range of the speed variation: `bench` or `variable`.
-    reference : Path, optional
-        Folder of measured healthy recordings to compare with.
-    reference_fs_hz : float, optional
-        Their sampling frequency [Hz] where files do not state it.
     stage : Stage
         Told of every step.
     """
+    options = options or AuditOptions()
+    seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
     # first, so that a wrong folder is said before minutes have passed
-    real = reference_windows(reference, reference_fs_hz) if reference else None
+    real = reference_windows(reference, options.reference_fs_hz) if reference else None
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
@@ -75,11 +89,11 @@ def audit_set(
     with stage("traps", 1):
         findings = separability_findings(measured, seed)
     with stage("detectability", 1):
-        found = _detections(measured, seed, paired)
+        found = _detections(measured, seed, options.paired)
         best = best_indicators(measured.matrix(), seed)
     attacked, chance = _attacks(measured, seed, stage)
     found |= attacked
-    compared = realism(measured, speed) if with_realism else None
+    compared = realism(measured, options.speed) if options.with_realism else None
     beside = None
     if real is not None:
         with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
@@ -90,7 +104,7 @@ def audit_set(
         verdict=verdict(findings, specimens, chance),
         realism=compared,
         detections=found,
-        notes=tuple(_notes(measured, found, with_realism)),
+        notes=tuple(_notes(measured, found, options.with_realism)),
         seconds_per_record=seconds,
         records=int(measured.checksums.shape[0]),
         specimens=specimens,

@@ -8,37 +8,26 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.opened import Open, opened
-from diagnostics.cli.training_options import (
-    Augment,
-    Channels,
-    Device,
-    OwnIndicators,
-    Seed,
-    TestSet,
-    WithNetwork,
-    WithStudies,
-)
+from diagnostics.cli.training_options import OwnIndicators, Seed, TrainingOptions
+from siggen.cli.option_groups import grouped
 
 EXPLORER = "explorer.html"
 
 
+@grouped
 def report(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
     ],
+    *,
     out: Annotated[
         Path | None,
         typer.Option(
             "--out", "-o", metavar="DIR2", help="Folder for the report. Default: DIR_report.", show_default=False
         ),
     ] = None,
-    test: TestSet = None,
-    channel: Channels = None,
     indicator: OwnIndicators = None,
-    studies: WithStudies = False,
-    cnn: WithNetwork = True,
-    device: Device = "cpu",
-    augment: Augment = True,
+    training: TrainingOptions,
     explore: Annotated[
         bool,
         typer.Option(
@@ -60,12 +49,12 @@ def report(
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
-    if cnn and not missing_packages("torch"):
-        check_device(device)
+    if training.cnn and not missing_packages("torch"):
+        check_device(training.device)
     own = load_indicators(indicator)
-    dataset, second = open_sets(directory, test, channel or ())
+    dataset, second = open_sets(directory, training.test, training.channel or ())
     folder = out or beside(dataset.path, "_report")
-    options = NetworkOptions(cnn, device, augment, ablation=studies)
+    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies)
     path = write_report(
         dataset,
         folder,
@@ -73,7 +62,6 @@ def report(
         network=options,
         other=second,
         own=own,
-        with_studies=studies,
         explorer=EXPLORER if explore else "",
         stage=terminal_stage,
     )

@@ -8,18 +8,11 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.training_options import (
-    Augment,
-    Channels,
-    Device,
-    OwnIndicators,
-    Seed,
-    TestSet,
-    WithNetwork,
-    WithStudies,
-)
+from diagnostics.cli.training_options import OwnIndicators, Seed, TrainingOptions
+from siggen.cli.option_groups import grouped
 
 
+@grouped
 def train(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
@@ -27,13 +20,9 @@ def train(
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="DIR2", help="Folder for the models.", show_default=False)
     ],
-    test: TestSet = None,
-    channel: Channels = None,
+    *,
     indicator: OwnIndicators = None,
-    studies: WithStudies = False,
-    cnn: WithNetwork = True,
-    device: Device = "cpu",
-    augment: Augment = True,
+    training: TrainingOptions,
     seed: Seed = 0,
 ) -> None:
     """Train classifiers on the training specimens, judge them on the test specimens, and save them.
@@ -45,7 +34,7 @@ def train(
     from diagnostics.indicators.classifier_table import feature_matrix
     from diagnostics.indicators.own_indicator import load_indicators
 
-    require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if cnn else ()))
+    require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.release.saved_models import save_models
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.studies import run_studies, studies_metrics
@@ -53,24 +42,24 @@ def train(
     from diagnostics.training.training_sets import open_sets, other_table, set_table
     from siggen.errors import DatasetError
 
-    if cnn:
-        check_device(device)
+    if training.cnn:
+        check_device(training.device)
     own = load_indicators(indicator)
-    dataset, second = open_sets(directory, test, channel or ())
+    dataset, second = open_sets(directory, training.test, training.channel or ())
     table = set_table(dataset, terminal_stage, own=own)
     other = other_table(second, terminal_stage, own) if second else None
-    options = NetworkOptions(cnn, device, augment, ablation=studies)
+    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies)
     try:
-        training = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
+        trained = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
     except DatasetError as error:
         raise DatasetError(f"{directory}: {error}") from error
     with terminal_stage("saving the models", 1):
-        notes = save_models(training, table, dataset, out)
-    metrics = {**training_metrics(training), "seed": seed, "file_notes": notes}
-    if studies:
-        found = run_studies(dataset, feature_matrix(table), training.split, seed, second, terminal_stage)
+        notes = save_models(trained, table, dataset, out)
+    metrics = {**training_metrics(trained), "seed": seed, "file_notes": notes}
+    if training.studies:
+        found = run_studies(dataset, feature_matrix(table), trained.split, seed, second, terminal_stage)
         metrics["studies"] = studies_metrics(found)
     (out / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    for note in (*training.notes, *notes):
+    for note in (*trained.notes, *notes):
         typer.echo(f"note: {note}", err=True)
     typer.echo(str(out))

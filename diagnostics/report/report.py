@@ -53,7 +53,6 @@ def write_report(
     network: NetworkOptions | None = None,
     other: Any = None,
     own: Sequence[OwnIndicator] = (),
-    with_studies: bool = False,
     explorer: str = "",
     stage: Stage = silent_stage,
 ) -> Path:
@@ -68,13 +67,12 @@ def write_report(
     seed : int
         Seeds bootstrap, permutations and network.
     network : NetworkOptions, optional
-        Whether and how to train the network; without torch it is left out with a note.
+        Whether and how to train the network, and whether to run the studies; without torch it is left out with a
+        note.
     other : siggen Dataset, optional
         Another set to judge on.
     own : sequence of OwnIndicator
         The user's indicators.
-    with_studies : bool
-        Whether to run what takes minutes: splits and learning curve.
     explorer : str
         Name of the page to explore beside the report, to which records and counts then lead.
     stage : Stage
@@ -93,8 +91,10 @@ def write_report(
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
         advance()
-    training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
-    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
+    network = network or NetworkOptions()
+    training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
+    wanted = network.studies
+    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if wanted else (None, [])
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()

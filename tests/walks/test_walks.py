@@ -18,7 +18,7 @@ from tests.walks.walking import FS_HZ, recorded, walk
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
 SIZE = "--set specimens=6 --set duration_s=0.6 --set 'splits={train: 10, validation: 4, test: 6}'"
-RECORDING = "set/data/test-00000.parquet --row 4 --fs 25600 --teeth 18,47 --tacho tacho_s"
+RECORDING = "set/data/test-00000.parquet:4 --fs 25600 --teeth 18,47 --tacho tacho_s"
 
 
 @pytest.fixture(scope="session")

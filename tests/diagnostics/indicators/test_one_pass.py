@@ -169,7 +169,7 @@ def test_an_own_indicator_goes_through_features_training_audit_report_and_predic
     assert "peak_to_peak (" in Path("report/models/model_card.md").read_text()
     capsys.readouterr()
     recording = str(min((folder / "data").glob("test*.parquet")))
-    predict = ("predict", "report/models", recording, "--row", "0", "--fs", "12800", "--teeth", "18,47")
+    predict = ("predict", "report/models", f"{recording}:0", "--fs", "12800", "--teeth", "18,47")
     assert run(monkeypatch, *predict, "--tacho", "tacho_s") == 2
     assert "give --indicator MODULE:peak_to_peak" in capsys.readouterr().err
     assert run(monkeypatch, *predict, "--tacho", "tacho_s", *own) == 0, capsys.readouterr().err
