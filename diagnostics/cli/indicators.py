@@ -118,13 +118,10 @@ def indicators(
     from diagnostics.records.chosen_states import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
-    from diagnostics.signal.tacholess_angle import check_speed_range
     from diagnostics.statistics.assessment import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
-    if span is not None:
-        check_speed_range(span)
     own = load_indicators(indicator)
     dataset = open_set(directory)
     check_states(dataset)

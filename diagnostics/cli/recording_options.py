@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -68,8 +69,19 @@ class RecordingOptions:
         return RecordingFacts(self.fs, named, *voltage, self.tacho, self.tacho_pulses)
 
     def speed_range_hz(self) -> tuple[float, float] | None:
-        """Return where the speed of the pinion is searched."""
-        return two_numbers(self.speed_range, "--speed-range", "14,26") if self.speed_range else None
+        """Return where the speed of the pinion is searched.
+
+        Raises
+        ------
+        UsageError
+            If it is no range.
+        """
+        if not self.speed_range:
+            return None
+        low, high = two_numbers(self.speed_range, "--speed-range", "14,26")
+        if not 0.0 < low < high < inf:
+            raise UsageError(f"--speed-range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
+        return low, high
 
 
 def file_rows(said: str) -> list[tuple[Path, int | None]]:

@@ -115,7 +115,7 @@ def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> N
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
     found = record_result(replace(record, channels={"a": noise}), IndicatorSettings(speed_range_hz=(25.0, 36.0)))
-    assert str(found.problems[0]).startswith("record 0: no mesh line stands above the noise")
+    assert str(found.problems[0]).startswith("record 0: no lines of these shafts stand above the noise")
 
 
 def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -> None:

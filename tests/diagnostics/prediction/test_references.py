@@ -315,7 +315,7 @@ def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
 ) -> None:  # fmt: skip
     assert other.table.num_rows == 6
     folder, file = trained
-    for said, message in ((file, "--reference FILE:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
+    for said, message in ((file, "other.parquet:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
         assert predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", str(said))[0] == 2
         assert message in "".join(capsys.readouterr().err.split("\n")).replace("  ", " ")
 

@@ -11,13 +11,12 @@ few lines are not taken for certain.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.recordings.line_evidence import MESH_MOST, LineEvidence, line_evidence
-from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.signal.line_evidence import MESH_MOST, LineEvidence, line_evidence
 from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
 from siggen.errors import UsageError
 
@@ -86,21 +85,36 @@ class SpeedFound:
 
 
 def speed_search(
-    recording: MeasuredRecording,
+    channels: Mapping[str, np.ndarray],
+    fs_hz: float,
     teeth: tuple[int, int],
     speed_range_hz: tuple[float, float],
     part_ratio: float = PART_RATIO,
 ) -> SpeedFound:
     """Return the surest pinion speed in a range.
 
+    Parameters
+    ----------
+    channels : mapping of str to (n,) float64
+        Signals by channel.
+    fs_hz : float
+        Sampling frequency [Hz].
+    teeth : (int, int)
+        Of pinion and gear.
+    speed_range_hz : (float, float)
+        Lowest and highest speed of the pinion [Hz].
+    part_ratio : float
+        High over low of the parts in which mesh lines are followed.
+
     Raises
     ------
     UsageError
         If the recording is too short or sampled too slowly for a part of the range.
     """
-    searched = _searched(recording, teeth, speed_range_hz[0])
-    highest_hz = min(MESH_HARMONICS * teeth[0] * speed_range_hz[1], 0.42 * recording.fs_hz)
-    sight = _Sight(searched, recording.fs_hz, teeth, highest_hz)
+    seconds = _searched_s(teeth, speed_range_hz[0])
+    searched = {name: signal[: round(seconds * fs_hz)] for name, signal in channels.items()}
+    highest_hz = min(MESH_HARMONICS * teeth[0] * speed_range_hz[1], 0.42 * fs_hz)
+    sight = _Sight(searched, fs_hz, teeth, highest_hz)
     tried = [
         one
         for curve in _ridges(sight, range_parts(speed_range_hz, part_ratio))
@@ -142,16 +156,17 @@ def _sharpest(tried: Sequence[Tried]) -> list[Tried]:
     return [one for one in tried if one.curve is curve or one not in near]
 
 
-def pulses_of(recording: MeasuredRecording, teeth: tuple[int, int], found: SpeedFound) -> tuple[str, np.ndarray]:
+def pulses_of(channels: Mapping[str, np.ndarray], fs_hz: float, found: SpeedFound) -> tuple[str, np.ndarray]:
     """Return channel and pulse times [s] of the pinion over the whole recording, at the speed that was found.
 
     Mesh lines are followed again around that speed, in every channel; what the search followed stands beside them if
     it reached the end, and the angle over which most lines are sharp is taken.
     """
     lines = found.curve.lines
-    sight = _Sight(dict(recording.channels), recording.fs_hz, teeth, lines.highest_hz)
+    sight = _Sight(dict(channels), fs_hz, lines.teeth, lines.highest_hz)
+    duration_s = next(iter(channels.values())).size / fs_hz
     curves = [*_followed(sight, Tried(found.speed_hz, found.evidence, found.curve))]
-    if found.curve.pulses_s[-1] > recording.duration_s - 2.0 / lines.speed_hz:
+    if found.curve.pulses_s[-1] > duration_s - 2.0 / lines.speed_hz:
         curves.append(found.curve)
     near = (1.0 - SAME_SPEED) * found.speed_hz, (1.0 + SAME_SPEED) * found.speed_hz
     tried = [one for curve in curves for one in _tried(curve, near)]
@@ -191,18 +206,17 @@ class _Sight:
         """Return the phase of a mesh line of a channel between two speeds; None where it is too short."""
         # In so narrow a range the lines' own skirts are the median that clarity counts from.
         signal = self.signals[channel]
-        pulses = tacholess_pulses(signal, self.fs_hz, self.teeth[0], limits, least_clarity=0.0, doubts=False)
+        pulses = tacholess_pulses(signal, self.fs_hz, self.teeth[0], limits)
         if pulses.size <= FEWEST_TURNS:
             return None
         lines = line_evidence(tuple(self.signals.values()), pulses, self.fs_hz, self.teeth, self.highest_hz)
         return Curve(channel, pulses, lines)
 
 
-def _searched(recording: MeasuredRecording, teeth: tuple[int, int], slowest_hz: float) -> dict[str, np.ndarray]:
-    """Return the channels over the seconds that are searched."""
+def _searched_s(teeth: tuple[int, int], slowest_hz: float) -> float:
+    """Return how much of the beginning is searched [s]."""
     turns_s = SEARCHED_TURNS * max(1.0, 0.2 * teeth[1] / teeth[0]) / slowest_hz
-    seconds = min(max(SEARCHED_S, turns_s), LONGEST_SEARCHED_S)
-    return {name: signal[: round(seconds * recording.fs_hz)] for name, signal in recording.channels.items()}
+    return min(max(SEARCHED_S, turns_s), LONGEST_SEARCHED_S)
 
 
 def _ridges(sight: _Sight, parts: Sequence[tuple[float, float]]) -> Iterator[Curve]:
