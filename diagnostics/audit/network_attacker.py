@@ -1,4 +1,4 @@
-"""The attacker that learns its own features: the circular network of `train`, on the averages of the audit.
+"""The attacker that learns its own features: the circular network of `report`, on the averages of the audit.
 
 One network per fold learns from all damaged states of the gearboxes to learn from, and is asked about each state of the
 others. It is trained on a fixed number of records in all, some passes over a small set, few over a large one, so that

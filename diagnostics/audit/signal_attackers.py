@@ -1,7 +1,7 @@
 """Attackers that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
 
 All of them start from the lines of the pinion's averaged revolution in the one table of the set, without shaft and mesh
-orders. Nothing of a record's level is used alone, but by the network, which is that of `train`; with a reference the
+orders. Nothing of a record's level is used alone, but by the network, which is that of `report`; with a reference the
 change is measured against the reference's size.
 """
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.base.beside import beside as path_beside
-from diagnostics.cli.opened import Open, opened
+from diagnostics.cli.page_options import Open, opened
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.training_options import OwnIndicators
 from siggen.cli.option_groups import grouped
@@ -42,7 +42,7 @@ class SetOptions:
         typer.Option(
             "--model",
             metavar="MODEL",
-            help="Folder of `train` or `report`: shows what its logistic regression names every record.",
+            help="Folder of `report`: shows what its logistic regression names every record.",
             show_default=False,
         ),
     ] = None

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.opened import Open, opened
+from diagnostics.cli.page_options import EXPLORER, PageOptions, opened
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.training_options import OwnIndicators
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
-
-EXPLORER = "explorer.html"
 
 if TYPE_CHECKING:
     from diagnostics.indicators.own_indicator import OwnIndicator
@@ -43,16 +41,6 @@ class RankingOptions:
         bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
     ] = False
     seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0
-
-
-@dataclass(frozen=True, slots=True)
-class PageOptions:
-    """Further pages."""
-
-    explore: Annotated[
-        bool, typer.Option("--explore", help="Also write explorer.html, to which numbers of the page then lead.")
-    ] = False
-    show: Open = False
 
 
 @grouped

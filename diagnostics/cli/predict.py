@@ -36,7 +36,7 @@ class ReferenceOptions:
 
 @grouped
 def predict(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `train` wrote.", show_default=False)],
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `report` wrote.", show_default=False)],
     file: Annotated[
         str,
         typer.Argument(
@@ -56,7 +56,7 @@ def predict(
 ) -> None:
     """Find the state that a recording is most like, or say why the models give no answer.
 
-    Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
+    Example: siggen-diagnostics predict data/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage

@@ -33,7 +33,7 @@ def predicted_labels(
     identity : str
         Of the set.
     folder : Path
-        What `siggen-diagnostics train` wrote, or the folder of a report, which holds one as `models`.
+        What `siggen-diagnostics report` wrote.
     own : sequence of OwnIndicator
         The user's indicators that the model takes.
 
@@ -42,14 +42,13 @@ def predicted_labels(
     UsageError
         If the folder holds no model, or one of other channels.
     """
-    inside = folder / "models"
-    released = load_model(inside if inside.is_dir() else folder, own)
+    released = load_model(folder, own)
     model = released.classifier
     labels, present = table.labels(), set(table.names())
     if lost := [name for name in model.features if name not in present]:
         raise UsageError(
             f"{folder}: this model takes {len(lost)} columns that the set does not have, such as {lost[0]}; allowed: a "
-            f"model of the channels {', '.join(table.channels)}. Train one: siggen-diagnostics train"
+            f"model of the channels {', '.join(table.channels)}. Train one: siggen-diagnostics report"
         )
     probability = model.probability(table.values(model.features))
     predicted = np.array(model.classes)[probability.argmax(axis=1)]

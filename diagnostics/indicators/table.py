@@ -1,6 +1,6 @@
 """One table of everything that is taken of the records of a set, from one pass by any number of workers.
 
-`train`, `report`, `indicators`, `audit` and the card read named sets of its columns (`classifier_table`,
+`report`, `indicators`, `audit` and the card read named sets of its columns (`classifier_table`,
 `ranking_table`, `audit.measured_set`). Values do not depend on the number of workers: records are handed out in the
 order of the files and come back in it. Functions of the user are called anew each time, since their code may change.
 """

@@ -69,7 +69,7 @@ def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
 def _foreign(folder: Path, file: str, what: str, differences: list[str]) -> UsageError:
     return UsageError(
         f"{folder / file}: {what} ({'; '.join(differences)}). The files of a model are written together; copy the "
-        f"folder as a whole or train again: siggen-diagnostics train SET --out {folder}"
+        f"folder as a whole or train again: siggen-diagnostics report SET --models-only --out {folder}"
     )
 
 

@@ -18,6 +18,7 @@ from diagnostics.release.model_facts import ModelFacts, read_accuracy, read_fact
 from diagnostics.release.model_seal import FACTS_FILE, check_files
 from diagnostics.release.release import REFERENCED
 from diagnostics.release.training_distance import TrainingDistance
+from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import CIRCULAR, NETWORK
 from diagnostics.training.baselines import FeatureClassifier
@@ -42,7 +43,7 @@ UNHASHED = "this model has no hashes of its files, so a changed bit in one is no
 
 @dataclass(frozen=True, slots=True)
 class ReleasedModel:
-    """Everything `train` wrote that a prediction needs.
+    """Everything `report` wrote that a prediction needs.
 
     Attributes
     ----------
@@ -81,12 +82,12 @@ class ReleasedModel:
 
 
 def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
-    """Read the folder that `siggen-diagnostics train` wrote.
+    """Read the models in a folder that `siggen-diagnostics report` wrote.
 
     Parameters
     ----------
     folder : Path
-        The folder; nothing in it is executed.
+        The folder, or the `models` in it; nothing in it is executed.
     own : sequence of OwnIndicator
         The user's indicators; those that the model was trained with have to be among them.
 
@@ -98,15 +99,16 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     """
     if not folder.exists():
         raise UsageError(
-            f"{folder}: no such folder; MODEL is the folder that `siggen-diagnostics train SET --out MODEL` wrote"
+            f"{folder}: no such folder; MODEL is the folder that `siggen-diagnostics report SET --out MODEL` wrote"
         )
     if not folder.is_dir():
         raise UsageError(
-            f"{folder}: a model is the folder that `siggen-diagnostics train` wrote; single files, pickled ones above "
+            f"{folder}: a model is the folder that `siggen-diagnostics report` wrote; single files, pickled ones above "
             "all, are not read, since reading those would execute what they hold"
         )
+    folder = folder / MODELS_FOLDER if (folder / MODELS_FOLDER).is_dir() else folder
     if not (folder / FACTS_FILE).is_file():
-        raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics train` wrote")
+        raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics report` wrote")
     hashes = read_hashes(folder)
     if hashes is not None:
         check_files(folder, hashes)

@@ -200,7 +200,7 @@ def _interval(numbers: dict[str, float | None]) -> Interval:
 
 def _unusable(path: Path, error: Exception) -> UsageError:
     return UsageError(
-        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics train` wrote with this version"
+        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics report` wrote with this version"
     )
 
 

@@ -61,7 +61,7 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
         raise UsageError(
             f"{folder}: {', '.join(changed)} not as {FACTS_FILE} promises (SHA-256 differs): damaged, changed, or of "
             "another model. The files of a model are written together; copy the folder as a whole or train again: "
-            f"siggen-diagnostics train SET --out {folder}"
+            f"siggen-diagnostics report SET --models-only --out {folder}"
         )
 
 

@@ -86,7 +86,7 @@ def _read(path: Path) -> pa.Table:
 
 
 def baselines_file(folder: Path) -> Path:
-    """Return the file of predictions in a folder of `train` or `report`.
+    """Return the file of predictions in a folder of `report`.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def baselines_file(folder: Path) -> Path:
         if (place / PREDICTIONS_FILE).is_file():
             return place / PREDICTIONS_FILE
     raise UsageError(
-        f"{folder}: has no {PREDICTIONS_FILE}; allowed: a folder that `siggen-diagnostics train` or `report` wrote. "
+        f"{folder}: has no {PREDICTIONS_FILE}; allowed: a folder that `siggen-diagnostics report` wrote. "
         "One of an earlier version has none: run that command again"
     )
 
@@ -115,5 +115,5 @@ def check_identity(table: pa.Table, identity: str, where: Any) -> None:
     if named != identity:
         raise UsageError(
             f"{where}: holds predictions of the set {named[:12]}; this one is {identity[:12]}. Train on this set: "
-            "siggen-diagnostics train"
+            "siggen-diagnostics report"
         )

@@ -39,7 +39,7 @@ def score(
         probabilities; `class`: its name. A column `classifier` sets several apart. Records of other splits are left
         out.
     baselines : path, optional
-        Folder that `siggen-diagnostics train` or `report` wrote for this set: its classifiers are judged on the same
+        Folder that `siggen-diagnostics report` wrote for this set: its classifiers are judged on the same
         records, and the differences of the first predictions from each of them.
     split : str
         `test`, or `validation` to choose by.

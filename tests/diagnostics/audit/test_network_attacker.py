@@ -1,4 +1,4 @@
-"""The audit's network is that of `train`: it finds a burst wherever it stands, and says the same twice."""
+"""The audit's network is that of `report`: it finds a burst wherever it stands, and says the same twice."""
 
 from __future__ import annotations
 

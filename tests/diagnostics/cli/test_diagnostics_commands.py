@@ -48,11 +48,11 @@ def test_help_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("command", ["indicators", "train", "report"])
+@pytest.mark.parametrize("command", ["indicators", "audit", "report"])
 def test_a_folder_without_a_set_is_a_usage_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = {"indicators": ["--out", "x.csv"], "train": ["--out", "y"], "report": []}[command]
+    out = {"indicators": ["--out", "x.csv"], "audit": ["--out", "y"], "report": []}[command]
     assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
     error = capsys.readouterr().err
     assert error.startswith("siggen-diagnostics: ")
@@ -66,7 +66,7 @@ def test_missing_extra_names_the_line_that_installs_it(
     monkeypatch.setattr(
         "diagnostics.base.extras.missing_packages", lambda *names: ("torch",) if "torch" in names else ()
     )
-    assert run(monkeypatch, "train", str(tmp_path), "--out", str(tmp_path / "m")) == 2
+    assert run(monkeypatch, "report", "--models-only", str(tmp_path)) == 2
     assert "pip install 'siggen[cnn]'" in capsys.readouterr().err
 
 

@@ -75,7 +75,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     calls = counted(monkeypatch)
     for command, *options in (
         ("indicators", "--out", "ranking"),
-        ("train", "--no-cnn", "--out", "models"),
+        ("report", "--models-only", "--no-cnn", "--out", "models"),
         ("audit", "--out", "audit"),
         ("indicators", "--out", "features.parquet"),
     ):

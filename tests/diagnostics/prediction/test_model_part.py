@@ -51,7 +51,7 @@ def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str,
     with pytest.raises(UsageError, match=r"feature_names\.json: does not belong to model\.json") as found:
         load_model(folder)
     assert message in str(found.value)
-    assert f"siggen-diagnostics train SET --out {folder}" in str(found.value)
+    assert f"siggen-diagnostics report SET --models-only --out {folder}" in str(found.value)
 
 
 def test_features_of_other_channels_are_refused_with_exit_code_2(

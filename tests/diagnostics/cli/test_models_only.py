@@ -1,4 +1,4 @@
-"""`siggen-diagnostics train` with another set, studies and unusable input: exit codes and what is written."""
+"""`report --models-only` with another set, studies and unusable input: exit codes and what is written."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SPLITS = ("train",) * 4 + ("validation",) * 2 + ("test",) * 3
 
 def run(monkeypatch: pytest.MonkeyPatch, sets: dict[str, Any], *arguments: str) -> int:
     monkeypatch.setattr(reading, "open", lambda path: sets[Path(path).name])
-    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "train", *arguments])
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "report", "--models-only", *arguments])
     with pytest.raises(SystemExit) as stop:
         main()
     return int(stop.value.code or 0)

@@ -1,14 +1,27 @@
-"""Opening what a command wrote in the browser of this machine."""
+"""Options of commands that write pages: what is written beside them, and opening them in the browser."""
 
 from __future__ import annotations
 
 import webbrowser
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+EXPLORER = "explorer.html"
 Open = Annotated[bool, typer.Option("--open", help="Open the page in your browser.")]
+
+
+@dataclass(frozen=True, slots=True)
+class PageOptions:
+    """Further pages."""
+
+    explore: Annotated[
+        bool,
+        typer.Option("--explore", help=f"Also write {EXPLORER}, to which records and numbers of the page then lead."),
+    ] = False
+    show: Open = False
 
 
 def opened(target: Path | str) -> None:
