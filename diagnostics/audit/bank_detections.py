@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, bank_maxima, exchanged_unit, permuted
-from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows
-from diagnostics.attacks.trial import Attacker
+from diagnostics.audit.chance import LEVEL, PERMUTATIONS, bank_maxima, exchanged_unit, permuted
 from diagnostics.audit.detectability import Detection, damage_sizes, in_order
+from diagnostics.audit.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import exchange_blocks
+from diagnostics.audit.trial import Attacker
 from diagnostics.records.damage_kind import damage_kind
 from diagnostics.statistics.evaluation import Interval
 
@@ -29,7 +29,7 @@ class StateChance:
     p_value : float
         (1 + permutations that reach at least what the stated states do) / (1 + permutations).
     exchanged : str
-        Within what states were exchanged, as of `diagnostics.attacks.chance.exchanged_unit`.
+        Within what states were exchanged, as of `diagnostics.audit.chance.exchanged_unit`.
     """
 
     auc: float

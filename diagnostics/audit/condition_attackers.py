@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.attacks.column_attackers import all_columns, best_column
-from diagnostics.attacks.trial import Attacker
+from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.record_groups import column_group
 from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.trial import Attacker
 from diagnostics.indicators.noise_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 

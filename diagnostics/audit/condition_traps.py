@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.attacks.chance import bank_maxima, permuted
-from diagnostics.attacks.held_out import HeldOut, dealt_folds, held_out, judged_rows
-from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.bank_detections import damaged_states
+from diagnostics.audit.chance import bank_maxima, permuted
 from diagnostics.audit.condition_attackers import BYTE, METADATA, NOISE, ORDER, condition_attackers
 from diagnostics.audit.finding import Finding
+from diagnostics.audit.held_out import HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import exchange_blocks
+from diagnostics.audit.trial import Attacker
 
 PERMUTATIONS = 99
 """For every damaged state."""

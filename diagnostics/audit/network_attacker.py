@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.attacks.trial import Attacker, Trial, Verdicts
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.trial import Attacker, Trial, Verdicts
 from diagnostics.base.extras import missing_packages
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.attacks.held_out import dealt_folds, wins
-from diagnostics.attacks.ridge_scores import products, ridge_scores
+from diagnostics.audit.held_out import dealt_folds, wins
 from diagnostics.audit.reference_folder import WindowSet
+from diagnostics.audit.ridge_scores import products, ridge_scores
 from diagnostics.signal.window_features import FEATURES
 
 FEWEST_RECORDINGS, FEWEST_GEARBOXES = 4, 8

@@ -11,15 +11,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from diagnostics.attacks.band_columns import Bank, band_bank, kurtogram_maximum
-from diagnostics.attacks.column_attackers import all_columns, best_column
-from diagnostics.attacks.convolution_features import convolution_features, revolution
-from diagnostics.attacks.residual_lines import line_array, residual_lines, whitened
-from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.audit import REFERENCED
+from diagnostics.audit.band_columns import Bank, band_bank, kurtogram_maximum
+from diagnostics.audit.column_attackers import all_columns, best_column
+from diagnostics.audit.convolution_features import convolution_features, revolution
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.network_attacker import network_attacker
 from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.residual_lines import line_array, residual_lines, whitened
+from diagnostics.audit.trial import Attacker
 
 NETWORK = "circular network"
 PREPARED = 4

@@ -155,7 +155,7 @@ def _models(
     """Train, and write the models and what they reach; return their folder."""
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.classifier_table import feature_matrix
-    from diagnostics.release.saved_models import save_models
+    from diagnostics.prediction.saved_models import save_models
     from diagnostics.training.studies import run_studies, studies_metrics
     from diagnostics.training.training import train_models, training_metrics
     from diagnostics.training.training_sets import other_table, set_table

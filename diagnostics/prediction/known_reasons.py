@@ -5,10 +5,10 @@ Source: derived.
 
 from __future__ import annotations
 
+from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.record_pieces import RecordPieces
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
-from diagnostics.release.model_facts import ModelFacts
 
 SHOWN_PAIRS = 5
 

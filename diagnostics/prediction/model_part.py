@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnostics.release.model_facts import ModelFacts
-from diagnostics.release.model_seal import FACTS_FILE
+from diagnostics.prediction.model_facts import ModelFacts
+from diagnostics.prediction.model_seal import FACTS_FILE
 from diagnostics.training.baselines import FeatureClassifier
 from siggen.errors import UsageError
 

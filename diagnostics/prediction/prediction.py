@@ -18,9 +18,9 @@ from diagnostics.prediction.known_reasons import known_reasons, reference_reason
 from diagnostics.prediction.own_state import OwnState, own_state
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
+from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.log_features import log_mean, log_values

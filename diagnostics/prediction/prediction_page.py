@@ -8,11 +8,11 @@ from pathlib import Path
 from diagnostics.base.extras import require_packages
 from diagnostics.page import html
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Prediction
 from diagnostics.prediction.prediction_facts import MEANING, prediction_facts, prediction_rows
 from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
 from diagnostics.prediction.sideband_figure import sideband_figure
-from diagnostics.release.model_facts import ModelFacts
 
 INDICATORS_SHOWN = 400
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib.metadata import version
 
 from diagnostics.page.wording import capitalised, counted, joined, percent
+from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Prediction, Vote
-from diagnostics.release.model_facts import ModelFacts
 
 TITLES = {
     "healthy_referenced": "differences from the healthy reference",

@@ -18,10 +18,10 @@ from diagnostics.indicators.own_columns import own_values
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.record import record_values
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.recording import Recording
-from diagnostics.release.floor_roughness import floor_features
 from siggen.errors import UsageError
 
 LARGEST_DENOMINATOR = 1000

@@ -13,11 +13,11 @@ from diagnostics.indicators.own_columns import all_own
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.prediction.model_facts import ModelFacts, read_accuracy, read_facts, read_hashes
 from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
-from diagnostics.release.model_facts import ModelFacts, read_accuracy, read_facts, read_hashes
-from diagnostics.release.model_seal import FACTS_FILE, check_files
-from diagnostics.release.release import REFERENCED
-from diagnostics.release.training_distance import TrainingDistance
+from diagnostics.prediction.model_seal import FACTS_FILE, check_files
+from diagnostics.prediction.release import REFERENCED
+from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import CIRCULAR, NETWORK

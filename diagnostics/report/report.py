@@ -20,8 +20,8 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.state_classes import ordered_states
-from diagnostics.release.saved_models import save_models
 from diagnostics.report.answer_figure import answer_figure
 from diagnostics.report.answer_sentences import answer_sentences
 from diagnostics.report.audit_beside import audit_beside, audit_sentence

@@ -15,12 +15,12 @@ from functools import partial
 
 import numpy as np
 
-from diagnostics.attacks.column_attackers import column_auc
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.detection import damage_score
 from diagnostics.statistics.detector import Detector, judged_detector
+from diagnostics.statistics.evaluation import column_auc
 from diagnostics.statistics.judgement import CIRCULAR, CIRCULAR_REFERENCED, NETWORK, TITLES, VALIDATION_AUROC, Judged
 from diagnostics.training.baselines import FeatureClassifier, fitted_classifier
 from diagnostics.training.boosting import fitted_boosting

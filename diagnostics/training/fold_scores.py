@@ -13,9 +13,9 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnostics.attacks.column_attackers import column_auc
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.statistics.evaluation import column_auc
 
 FOLDS, DEALT = 5, 2000
 """Folds of gearboxes, and the owner of the generator that deals them: others have other owners."""

@@ -13,7 +13,7 @@ import sys
 import numpy as np
 from scipy.stats import norm
 
-from diagnostics.attacks.held_out import wins
+from diagnostics.audit.held_out import wins
 from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval
 

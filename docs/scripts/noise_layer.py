@@ -9,9 +9,9 @@ from __future__ import annotations
 import sys
 
 import siggen
-from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.audit.bank_detections import damaged_states
 from diagnostics.audit.condition_attackers import NOISE, condition_attackers
+from diagnostics.audit.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import measured_set
 
 

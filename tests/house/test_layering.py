@@ -21,8 +21,8 @@ SIGGEN_ROOMS = (
     "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
-    "base", "signal", "records", "indicators", "statistics", "attacks", "scoring", "loader", "training", "release",
-    "recordings", "page", "prediction", "machine", "audit", "calibration", "report", "explore", "cli",
+    "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
+    "prediction", "machine", "audit", "calibration", "report", "explore", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.attacks.trial import Trial
 from diagnostics.audit import network_attacker
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.trial import Trial
 
 GEARBOXES, STEPS = 16, 1024
 SPECIMEN, DAMAGED = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, False, True], GEARBOXES)

@@ -26,7 +26,7 @@ from diagnostics.indicators.indicator_titles import indicator_definitions, indic
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
-from diagnostics.release.saved_models import save_models
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
 from siggen.errors import UsageError

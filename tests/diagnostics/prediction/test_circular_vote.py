@@ -14,8 +14,8 @@ from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.table import record_table
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.recordings.measured_recording import MeasuredRecording
-from diagnostics.release.saved_models import save_models
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.baselines import state_index

@@ -12,7 +12,7 @@ import pytest
 
 from diagnostics.cli.app import main
 from diagnostics.prediction.released_model import load_model
-from diagnostics.release.saved_models import save_models
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.baselines import logistic_pipeline
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models

@@ -22,9 +22,9 @@ from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.prediction.release import REFERENCED, release
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.healthy_references import healthy_references
-from diagnostics.release.release import REFERENCED, release
-from diagnostics.release.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training import circular_network, circular_training

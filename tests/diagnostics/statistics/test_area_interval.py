@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.attacks.held_out import wins
+from diagnostics.audit.held_out import wins
 from diagnostics.statistics.area_interval import area_interval, clopper_pearson, effective_size
 from diagnostics.statistics.evaluation import bootstrap_weights, interval
 

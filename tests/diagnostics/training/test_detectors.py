@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from diagnostics.attacks.column_attackers import column_auc
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.statistics.evaluation import column_auc
 from diagnostics.training.detectors import BOOSTED, CHOSEN, CLASSIFIER, INDICATOR, judged_detectors
 from diagnostics.training.fold_scores import chosen_scores, dealt, distance, inner_scores
 

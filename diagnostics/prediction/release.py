@@ -11,10 +11,10 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.prediction.floor_roughness import floor_features
+from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
+from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.records.recording import recordings
-from diagnostics.release.floor_roughness import floor_features
-from diagnostics.release.model_facts import ModelFacts, model_facts, write_facts
-from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.statistics.scores import Scores
 from diagnostics.training.baselines import FeatureClassifier

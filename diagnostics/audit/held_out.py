@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.attacks.trial import Attacker, Trial
+from diagnostics.audit.trial import Attacker, Trial
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import convolve1d
 
-from diagnostics.attacks.band_columns import band_bank, kurtogram_maximum, order_bands
-from diagnostics.attacks.convolution_features import (
+from diagnostics.audit.band_columns import band_bank, kurtogram_maximum, order_bands
+from diagnostics.audit.convolution_features import (
     DILATIONS,
     KERNELS,
     LEVELS,
@@ -15,7 +15,7 @@ from diagnostics.attacks.convolution_features import (
     convolution_features,
     revolution,
 )
-from diagnostics.attacks.residual_lines import line_array, residual_lines, whitened
+from diagnostics.audit.residual_lines import line_array, residual_lines, whitened
 
 ORDERS, TEETH = 362, 18
 

@@ -11,9 +11,9 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.release.model_facts import model_facts
-from diagnostics.release.release import release
-from diagnostics.release.release_card import release_card
+from diagnostics.prediction.model_facts import model_facts
+from diagnostics.prediction.release import release
+from diagnostics.prediction.release_card import release_card
 from diagnostics.training.splits import specimen_split
 
 

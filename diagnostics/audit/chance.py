@@ -13,8 +13,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnostics.attacks.held_out import held_out_values
-from diagnostics.attacks.trial import Attacker
+from diagnostics.audit.held_out import held_out_values
+from diagnostics.audit.trial import Attacker
 from diagnostics.base.seeding import Purpose, generator
 
 PERMUTATIONS = 499
@@ -90,7 +90,7 @@ def bank_maxima(
         As of `permuted`.
     specimen : (n,) int
     folds : (deals, n) int
-        As of `diagnostics.attacks.held_out.dealt_folds`.
+        As of `diagnostics.audit.held_out.dealt_folds`.
 
     Returns
     -------

@@ -8,10 +8,10 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import table_settings
-from diagnostics.release.model_card import model_card
-from diagnostics.release.model_seal import FACTS_FILE, MODEL_FILES
-from diagnostics.release.release import release, save_release
-from diagnostics.release.release_card import release_card
+from diagnostics.prediction.model_card import model_card
+from diagnostics.prediction.model_seal import FACTS_FILE, MODEL_FILES
+from diagnostics.prediction.release import release, save_release
+from diagnostics.prediction.release_card import release_card
 from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
 from diagnostics.training.classifier_file import save_classifier
 from diagnostics.training.splits import TEST, VALIDATION

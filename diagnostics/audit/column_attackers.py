@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.attacks.held_out import DEALS
-from diagnostics.attacks.ridge_scores import products, ridge_scores
-from diagnostics.attacks.trial import Attacker, Trial, Verdicts
+from diagnostics.audit.held_out import DEALS
+from diagnostics.audit.ridge_scores import products, ridge_scores
+from diagnostics.audit.trial import Attacker, Trial, Verdicts
+from diagnostics.statistics.evaluation import column_auc
 
 
 def best_column(name: str, values: np.ndarray, names: tuple[str, ...]) -> Attacker:
@@ -57,22 +58,3 @@ def _defined(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     finite = np.isfinite(values)
     kept = finite.any(axis=0)
     return kept, finite[:, kept].all(axis=1)
-
-
-def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
-    """Return the AUC of every column, pairs of one gearbox among them: what a choice may rest on.
-
-    Parameters
-    ----------
-    values : (records, columns) float64
-    positive : (..., records) bool
-
-    Returns
-    -------
-    (..., columns) float64
-    """
-    from scipy.stats import rankdata
-
-    damaged = positive.sum(axis=-1, keepdims=True)
-    ranks = positive.astype(np.float64) @ rankdata(values, axis=0) - 0.5 * damaged * (damaged + 1)
-    return np.asarray(ranks / (damaged * (positive.shape[-1] - damaged)))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.attacks.residual_lines import SHAFT_ORDERS
+from diagnostics.audit.residual_lines import SHAFT_ORDERS
 
 LOWEST_ORDER = SHAFT_ORDERS + 1
 STEP = 2.0**0.5

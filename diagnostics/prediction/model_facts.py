@@ -13,8 +13,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.release.model_seal import FACTS_FILE, file_hashes, sealed_text, unsealed_text
-from diagnostics.release.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.prediction.model_seal import FACTS_FILE, file_hashes, sealed_text, unsealed_text
+from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset

@@ -19,10 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.release.distance_part import CLIPPED_AT, DistancePart, fit_part, part_facts, part_from_facts
-from diagnostics.release.floor_roughness import DIFFERENCE, ROUGHNESS
-from diagnostics.release.group_bound import group_bound
-from diagnostics.release.noise_floor import FLOOR
+from diagnostics.prediction.distance_part import CLIPPED_AT, DistancePart, fit_part, part_facts, part_from_facts
+from diagnostics.prediction.floor_roughness import DIFFERENCE, ROUGHNESS
+from diagnostics.prediction.group_bound import group_bound
+from diagnostics.prediction.noise_floor import FLOOR
 from diagnostics.training.splits import SpecimenSplit
 
 LINES = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diagnostics.release.release import Release
+from diagnostics.prediction.release import Release
 
 
 def release_card(found: Release) -> str:

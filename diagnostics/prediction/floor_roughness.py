@@ -13,7 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from diagnostics.release.noise_floor import RATE_PER_BANDWIDTH, noise_floor, spectral_density
+from diagnostics.prediction.noise_floor import RATE_PER_BANDWIDTH, noise_floor, spectral_density
 
 ROUGHNESS = "floor_roughness"
 DIFFERENCE = "floor_difference"
