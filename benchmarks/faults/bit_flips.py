@@ -56,7 +56,7 @@ def flipped_in_set(folder: Path, kind: str, count: int, seed: int = 0) -> Iterat
 
 def flipped_in_model(folder: Path, count: int, seed: int = 0) -> Iterator[str]:
     """Yield the outcome of each flip in any file of a model that is loaded."""
-    from diagnostics.prediction.model_seal import FACTS_FILE, MODEL_FILES
+    from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
     from diagnostics.prediction.released_model import load_model
 
     files = [folder / name for name in (FACTS_FILE, *MODEL_FILES) if (folder / name).is_file()]

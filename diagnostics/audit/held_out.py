@@ -15,8 +15,8 @@ import numpy as np
 
 from diagnostics.audit.trial import Attacker, Trial
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights
+from diagnostics.statistics.scores import area_interval
 
 DEALS, MOST_FOLDS = 3, 4
 FEWEST_SPECIMENS = 4

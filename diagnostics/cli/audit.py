@@ -78,9 +78,9 @@ def audit(
 
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
+    from diagnostics.audit.attack_tables import card_section
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary
-    from diagnostics.audit.card_section import card_section
     from diagnostics.base.beside import beside
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators

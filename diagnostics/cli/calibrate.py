@@ -95,11 +95,10 @@ def calibrate(
     from diagnostics.base.extras import require_packages
     from diagnostics.calibration.calibrated_files import check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
-    from diagnostics.calibration.channel_names import rig_channels
-    from diagnostics.calibration.comparison import calibration_page
-    from diagnostics.calibration.family_size import family_size
-    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks
-    from diagnostics.calibration.injected_set import write_injected
+    from diagnostics.calibration.calibration_page import calibration_page
+    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks, rig_channels
+    from diagnostics.calibration.injection import write_injected
+    from diagnostics.calibration.path_draws import family_size
     from diagnostics.cli.progress import terminal_stage
 
     check_new(out, injection.inject)
@@ -138,7 +137,7 @@ def _tell(found: Calibration) -> None:
 
     from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
     from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
-    from diagnostics.calibration.path_level import path_level_doubt
+    from diagnostics.calibration.path_draws import path_level_doubt
 
     for fit in found.channels:
         noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)

@@ -103,7 +103,7 @@ def indicators(
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
-    from diagnostics.records.chosen_states import chosen_states
+    from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
     from diagnostics.statistics.assessment import AssessmentSettings

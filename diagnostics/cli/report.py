@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -80,7 +81,7 @@ def report(
     Example: siggen-diagnostics report data/quickstart --predictions mine.parquet --baselines data/quickstart_report
     """
     if yours.predictions is not None:
-        given = {"--models-only": models_only, "--indicator": indicator, "--explore": pages.explore}
+        given: dict[str, object] = {"--models-only": models_only, "--indicator": indicator, "--explore": pages.explore}
         given |= {"--open": pages.show, "options of training": training != TrainingOptions()}
         _refuse(given, "--predictions trains nothing and writes no page")
         _scored(directory, yours.predictions, yours, out, seed)
@@ -111,7 +112,7 @@ def report(
         opened(path)
 
 
-def _refuse(given: dict[str, object], why: str) -> None:
+def _refuse(given: Mapping[str, object], why: str) -> None:
     if wrong := [name for name, said in given.items() if said]:
         raise UsageError(f"{', '.join(wrong)}: {why}; leave out one or the other")
 

@@ -23,9 +23,8 @@ from diagnostics.records.sample_bytes import sample_bytes
 from diagnostics.records.usable_records import refused_parts
 from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.noise_sketch import noise_sketch
-from diagnostics.signal.order_domain import AngleGrid, angle_grid
+from diagnostics.signal.order_domain import AngleGrid, angle_grid, speed_variation_percent
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
-from diagnostics.signal.speed_variation import speed_variation_percent
 from siggen.errors import UsageError
 
 WAVEFORM_HARMONICS = 20

@@ -42,7 +42,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
     settings : StreamSettings, optional
         Default: windows of 8 pinion revolutions of 288 angle steps, every 4 revolutions.
     labels : sequence of str
-        Further labels, see `diagnostics.loader.window_labels`.
+        Further labels, see `diagnostics.loader.window_index`.
     transform : callable, optional
         Takes a sample and a generator, and returns what the model gets. The generator depends on seed, window and how
         often the window was drawn.

@@ -78,7 +78,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
     cache : Path, optional
         Folder for decoded records, read through memory mapping; worth it where they are read more than once.
     labels : sequence of str
-        Further labels, see `diagnostics.loader.window_labels`.
+        Further labels, see `diagnostics.loader.window_index`.
     transform : callable, optional
         Takes a single window with its labels and a generator, and returns what is batched. The generator depends on
         seed, epoch and window alone.

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from diagnostics.page.wording import counted
+from diagnostics.prediction.known_reasons import OwnState
 from diagnostics.prediction.model_facts import ModelFacts
-from diagnostics.prediction.own_state import OwnState
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
 
 MEANING = (

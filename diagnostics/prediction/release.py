@@ -11,14 +11,14 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.prediction.floor_roughness import floor_features
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
+from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.records.recording import recordings
 from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.statistics.scores import Scores
 from diagnostics.training.baselines import FeatureClassifier
-from diagnostics.training.log_features import healthy_referenced, log_values, reference_speed_ratio
+from diagnostics.training.referenced import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit
 from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset

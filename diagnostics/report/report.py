@@ -1,10 +1,13 @@
-"""The report of a set: features, training, figures, metrics and one page that says what it all means."""
+"""The report of a set: features, training, figures, metrics and one page that says what it all means.
+
+What the audit of the same set says, where it was run; a report says what is missing where it was not.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.audit import ALONE
+from diagnostics.base.beside import beside
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
@@ -19,12 +24,10 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.page.wording import counted
+from diagnostics.page.wording import counted, decimal, joined
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.state_classes import ordered_states
-from diagnostics.report.answer_figure import answer_figure
-from diagnostics.report.answer_sentences import answer_sentences
-from diagnostics.report.audit_beside import audit_beside, audit_sentence
+from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.drawing import draw
 from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
 from diagnostics.report.sentences import summary
@@ -43,6 +46,38 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 THROUGH = "through_face"
+
+
+def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
+    """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
+    path = beside(dataset.path, "_audit") / "audit.json"
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    same = isinstance(found, dict) and found.get("identity") == dataset.manifest["identity"]
+    return found if same else None
+
+
+def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
+    """Say what the audit found, or what is not known without it."""
+    name = dataset.path.name
+    if audit is None:
+        return (
+            "The audit was not run. So it is not known whether something other than the damage gives the states away, "
+            f"nor what attackers on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
+            "this report again."
+        )
+    if audit.get("too_few_gearboxes"):
+        return str(audit.get("verdict"))
+    states = audit.get("strongest", {}).get(ALONE, {}).get("states", [])
+    reached = [
+        f"{state['state']} {decimal(state['auc']['value'])}"
+        for state in states
+        if state.get("auc", {}).get("value") is not None
+    ]
+    attackers = f" Its strongest attackers reach, on unseen gearboxes, an AUC of: {joined(reached)}." if reached else ""
+    return f"{audit.get('verdict', 'The audit gives no verdict.')}{attackers}"
 
 
 def write_report(

@@ -16,7 +16,7 @@ from math import gcd
 
 import numpy as np
 
-from diagnostics.signal.order_spectrum import order_spectrum
+from diagnostics.signal.spectrum import order_spectrum
 
 AROUND_CELLS = 101
 """Cells of the spectrum whose median is the level of the noise; three or more of the gear's orders."""

@@ -20,7 +20,7 @@ from diagnostics.prediction.training_distance import TrainingDistance, calibrate
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.recording import recordings
-from diagnostics.training.log_features import log_values
+from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
 
 GEARBOXES = (12, 36, 96)

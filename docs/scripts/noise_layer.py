@@ -10,7 +10,7 @@ import sys
 
 import siggen
 from diagnostics.audit.bank_detections import damaged_states
-from diagnostics.audit.condition_attackers import NOISE, condition_attackers
+from diagnostics.audit.condition_traps import NOISE, condition_attackers
 from diagnostics.audit.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import measured_set
 

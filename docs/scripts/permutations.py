@@ -28,7 +28,7 @@ from diagnostics.audit.separability_findings import separability_findings
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.audit.trial import Attacker
 from diagnostics.base.single_thread import single_thread
-from diagnostics.statistics.area_interval import clopper_pearson
+from diagnostics.statistics.scores import clopper_pearson
 
 DAMAGE = ("state", "fault", "severity", "damage", "faulty", "mesh_stiffness", "land", "sink", "snr", "contact_loss")
 """Beginnings of the names of labels that follow from the state."""

@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 from scipy.ndimage import convolve1d
 
-from diagnostics.audit.band_columns import band_bank, kurtogram_maximum, order_bands
-from diagnostics.audit.convolution_features import (
+from diagnostics.audit.residual_lines import (
+    band_bank,
+    kurtogram_maximum,
+    line_array,
+    order_bands,
+    residual_lines,
+    whitened,
+)
+from diagnostics.audit.signal_attackers import (
     DILATIONS,
     KERNELS,
     LEVELS,
@@ -15,7 +22,6 @@ from diagnostics.audit.convolution_features import (
     convolution_features,
     revolution,
 )
-from diagnostics.audit.residual_lines import line_array, residual_lines, whitened
 
 ORDERS, TEETH = 362, 18
 

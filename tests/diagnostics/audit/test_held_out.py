@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from diagnostics.audit.chance import bank_maxima, exchanged_unit, permuted
-from diagnostics.audit.column_attackers import all_columns, best_column
+from diagnostics.audit.column_attackers import PENALTIES, all_columns, best_column, products, ridge_scores
 from diagnostics.audit.held_out import dealt_folds, held_out, held_out_values, judged_rows, trials
-from diagnostics.audit.ridge_scores import PENALTIES, products, ridge_scores
 from diagnostics.audit.trial import Trial
 
 GEARBOXES, COLUMNS = 16, 60

@@ -14,7 +14,7 @@ import pytest
 
 import diagnostics.cli.app
 import siggen.cli.app
-from diagnostics.cli.app import main
+from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
 from siggen.columns.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
@@ -28,11 +28,11 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return int(stop.value.code or 0)
 
 
-@pytest.mark.parametrize("command", [[], ["indicators"], ["train"], ["report"], ["predict"]])
+@pytest.mark.parametrize("command", [one for some in COMMANDS.values() for one in some])
 def test_every_command_explains_itself_with_an_example(
-    command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(monkeypatch, *command, "-h") == 0
+    assert run(monkeypatch, command.__name__, "-h") == 0
     assert "Example: siggen-diagnostics" in capsys.readouterr().out
 
 

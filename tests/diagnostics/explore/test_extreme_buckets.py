@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from diagnostics.explore.extreme_buckets import drawn_signal, extreme_points
 from diagnostics.explore.packed import packed_places, packed_steps
+from diagnostics.explore.record_views import drawn_signal, extreme_points
 from tests.diagnostics.explore.unpacked import places, steps
 
 

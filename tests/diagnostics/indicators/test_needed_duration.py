@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from diagnostics.indicators.needed_duration import duration_advice, needed_duration
+from diagnostics.indicators.ranking_table import duration_advice, needed_duration
 from diagnostics.records.record_problems import FEWEST_REVOLUTIONS
 
 

@@ -144,7 +144,7 @@ def test_a_damaged_or_unwritable_table_is_computed_again(folder: Path, monkeypat
 
 
 def test_a_chosen_channel_reads_the_table_of_all(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from diagnostics.records.usable_channels import with_channels
+    from diagnostics.records.usable_records import with_channels
 
     whole = record_table(reading.open(folder))
     calls = counted(monkeypatch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.prediction.floor_roughness import BAND_HZ, BIN_HZ, DIFFERENCE, QUANTILE, ROUGHNESS, floor_roughness
+from diagnostics.prediction.noise_floor import BAND_HZ, BIN_HZ, DIFFERENCE, QUANTILE, ROUGHNESS, floor_roughness
 
 FS_HZ = 6_400.0
 LONG_S = 60

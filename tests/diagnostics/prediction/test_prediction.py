@@ -15,11 +15,11 @@ import pytest
 from pyarrow import parquet
 
 from diagnostics.cli.app import main
-from diagnostics.prediction.distance_part import fit_part
 from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
+from diagnostics.prediction.training_distance import fit_part
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.network_training import NetworkOptions

@@ -27,13 +27,12 @@ from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.healthy_references import healthy_references
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
-from diagnostics.training import circular_network, circular_training
+from diagnostics.training import circular_network
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
-from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.referenced import referenced_classifiers
+from diagnostics.training.referenced import healthy_referenced, reference_speed_ratio, referenced_classifiers
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import Training, train_models, training_metrics
 
@@ -199,7 +198,7 @@ def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
 ) -> None:  # fmt: skip
     few = partial(circular_network.CircularSettings, most_epochs=12)
     monkeypatch.setattr(circular_network, "CircularSettings", few)
-    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
+    monkeypatch.setattr(circular_network, "PERMUTED_EPOCHS", 2)
     averages, options = averaged_records(indicators_of_measured), NetworkOptions()
     matrix, split = feature_matrix(features_of_measured), training.split
     trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)

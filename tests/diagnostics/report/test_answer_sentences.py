@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from diagnostics.report.answer_figure import LOOKS, answer_figure
-from diagnostics.report.answer_sentences import answer_sentences
+from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences
 from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.detectors import CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors

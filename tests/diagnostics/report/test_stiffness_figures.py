@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pyarrow as pa
 import pytest
 
-from diagnostics.report.stiffness_figures import loss_of_specimens
+from diagnostics.report.drawing import loss_of_specimens
 
 TABLE = pa.table(
     {

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import hilbert
 
-from diagnostics.signal.demodulation import demodulated
-from diagnostics.signal.difference_signal import separated_average
-from diagnostics.signal.mesh_band import mesh_band, mesh_baseband
+from diagnostics.signal.mesh_band import demodulated, mesh_band, mesh_baseband
+from diagnostics.signal.shaft_signals import separated_average
 from diagnostics.signal.synchronous_average import synchronous_average
 
 TEETH, STEPS = (6, 7), 16

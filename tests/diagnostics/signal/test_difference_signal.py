@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagnostics.signal.difference_signal import separated_average
+from diagnostics.signal.shaft_signals import separated_average
 
 TEETH, SAMPLES = 18, 18 * 64
 ANGLE = 2 * np.pi * np.arange(SAMPLES) / SAMPLES

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diagnostics.audit.held_out import wins
-from diagnostics.statistics.area_interval import area_interval, clopper_pearson, effective_size
 from diagnostics.statistics.evaluation import bootstrap_weights, interval
+from diagnostics.statistics.scores import area_interval, clopper_pearson, effective_size
 
 RESAMPLES, TRIALS = 100, 150
 
