@@ -56,8 +56,8 @@ def flipped_in_set(folder: Path, kind: str, count: int, seed: int = 0) -> Iterat
 
 def flipped_in_model(folder: Path, count: int, seed: int = 0) -> Iterator[str]:
     """Yield the outcome of each flip in any file of a model that is loaded."""
+    from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
     from diagnostics.prediction.released_model import load_model
-    from diagnostics.release.model_seal import FACTS_FILE, MODEL_FILES
 
     files = [folder / name for name in (FACTS_FILE, *MODEL_FILES) if (folder / name).is_file()]
     yield from _outcomes(files, lambda: load_model(folder), count, seed)

@@ -20,7 +20,7 @@ def small_model(dataset_folder: Path, folder: Path) -> Path:
     """Train the classifiers on indicators, without the network, and return their folder."""
     import siggen
     from diagnostics.base.progress import silent_stage
-    from diagnostics.release.saved_models import save_models
+    from diagnostics.prediction.saved_models import save_models
     from diagnostics.training.network_training import NetworkOptions
     from diagnostics.training.training import train_models
     from diagnostics.training.training_sets import set_table

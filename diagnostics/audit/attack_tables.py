@@ -1,17 +1,18 @@
-"""What the attackers reached, as tables of the page: the strongest by state, and every one of them."""
+"""What can and cannot be found in a set: attackers by state, as tables of the page, and for the card."""
 
 from __future__ import annotations
 
 import math
 
-from diagnostics.audit.audit import ALONE, UNPAIRED, WITH_REFERENCE, Audit
-from diagnostics.audit.card_section import verdict_words
-from diagnostics.audit.chance_sentence import chance_sentence
+from diagnostics.audit.audit import ALONE, SINGLE, UNPAIRED, WITH_REFERENCE, Audit
 from diagnostics.audit.detectability import Detection
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import capitalised
+from diagnostics.page.wording import capitalised, counted, decimal, joined
+
+TEACHABLE_AUC, CHANCE_AUC = 0.75, 0.6
+"""From the first on a state counts as found; below the second a probe has failed."""
 
 HOW = (
     "Attackers learn on some gearboxes and are judged on others. Each band, direction and weight is chosen on the "
@@ -19,6 +20,102 @@ HOW = (
     "difference from a healthy record of the same gearbox, which is not judged itself. The strongest attacker of a "
     "state is chosen after the fact, so its AUC is slightly optimistic. The 95 % limits come from resampled gearboxes."
 )
+
+
+def chance_sentence(audit: Audit) -> str:
+    """Say what chance stays below, or what it reaches where that is too much; empty where nothing was judged."""
+    chance = audit.chance
+    if chance is None or not math.isfinite(chance.auc):
+        return ""
+    strongest = f"By chance the strongest of {counted(chance.attackers, 'attacker')}"
+    limits = [law.auc for law in chance.states.values() if math.isfinite(law.auc)]
+    lowest, highest = decimal(chance.auc), decimal(max(limits, default=chance.auc))
+    spread = f"a limit between {lowest} and {highest}, by state," if highest != lowest else f"an AUC of {lowest}"
+    turns = f"{chance.permutations} permutations of the states."
+    if audit.gearboxes_needed is None:
+        return f"{strongest} stays below {spread} in 95 % of {turns}"
+    return (
+        f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
+        "chance, and no length of damage is named."
+    )
+
+
+def card_section(audit: Audit) -> str:
+    """Return the section for the card; it ends with a line break."""
+    lines = ["## What this set was measured to teach", "", audit.verdict, ""]
+    lines += [
+        f"* **{finding.trap}**: {finding.measured}. Bound: {finding.bound}. To correct it: {finding.mend}"
+        for finding in audit.findings
+    ]
+    if audit.findings:
+        lines.append("")
+    if audit.realism:
+        lines += [
+            f"Averaged over the quantities, {audit.realism.mean_inside:.0%} of {audit.realism.channel_records} healthy "
+            "channel-records lie inside the range of recordings of healthy gearboxes.",
+            "",
+            "| quantity | median | inside |",
+            "|---|---|---|",
+            *(f"| {s.quantity.title} | {s.quantiles[1]:.3g} | {s.inside:.0%} |" for s in audit.realism.shares),
+            "",
+        ]
+    lines += [*probe_table(audit), ""] if audit.states else []
+    lines.append("These values come from `siggen-diagnostics audit`. Simulated data were judged on simulated data.")
+    return "\n".join(lines) + "\n"
+
+
+def probe_table(audit: Audit) -> list[str]:
+    """Return what every probe reached for every state, and what that means."""
+    names = list(dict.fromkeys(name for state in audit.states for name in audit.probes(state)))
+    head = ["state", "best indicator", "its AUC", *(_heading(name, audit) for name in names), "verdict"]
+    rows = []
+    for state in audit.states:
+        best, probes = audit.best.get(state), audit.probes(state)
+        own = [f"`{best.column}`", _auc(best.auc.value)] if best else ["-", "-"]
+        rows.append([state, *own, *(_auc(probes.get(name, math.nan)) for name in names), verdict_words(audit, state)])
+    return [
+        "The table gives the AUC against healthy. The AUC of the best indicator is optimistic: it is chosen on the "
+        "same gearboxes. The other columns are judged on gearboxes that were not seen.",
+        "",
+        f"| {' | '.join(head)} |",
+        f"|{'---|' * len(head)}",
+        *(f"| {' | '.join(row)} |" for row in rows),
+    ]
+
+
+def _heading(name: str, audit: Audit) -> str:
+    return f"best of {tried(audit)}, chosen on other gearboxes" if name == SINGLE else name
+
+
+def tried(audit: Audit) -> int:
+    """Return how many single indicators were tried."""
+    return max((best.tried for best in audit.best.values()), default=0)
+
+
+def _auc(value: float) -> str:
+    return f"{value:.2f}" if math.isfinite(value) else "-"
+
+
+def verdict_words(audit: Audit, state: str) -> str:
+    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain."""
+    probes = audit.probes(state)
+    if not probes:
+        return "not judged"
+    best = max(probes, key=lambda name: probes[name])
+    if audit.gearboxes_needed:
+        return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
+    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit, state)):
+        return f"can be found, best by {best} ({_auc(probes[best])})"
+    tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
+    if probes[best] < lost_below(audit, state):
+        return f"not found by {tried}"
+    return f"hard to find, best by {best} ({_auc(probes[best])}) of {tried}"
+
+
+def lost_below(audit: Audit, state: str) -> float:
+    """Return the AUC below which a state counts as lost: 0.6, or what the strongest attacker reaches by chance."""
+    limit = audit.chance.of(state) if audit.chance else math.nan
+    return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC
 
 
 def shown_ladders(audit: Audit) -> dict[str, list[Detection]]:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from diagnostics.audit.bank_detections import ChanceLimit
+from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
 from diagnostics.audit.best_indicator import BestIndicator
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detection, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
-from diagnostics.audit.gearboxes_needed import gearboxes_needed
 from diagnostics.audit.reference_comparison import ReferenceComparison
 
 SINGLE = "the best single indicator"

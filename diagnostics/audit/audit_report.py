@@ -1,4 +1,7 @@
-"""The audit of a set as files: `audit.html`, `audit.json` and figures, from the one table of the set."""
+"""The audit of a set as files: `audit.html`, `audit.json` and figures, from the one table of the set.
+
+The content of `audit.json`: everything that the audit found, in numbers.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +9,22 @@ import json
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from diagnostics.audit import figures, page
 from diagnostics.audit.attack_tables import shown_ladders
-from diagnostics.audit.audit import CHANGE, PAIRED, UNPAIRED, Audit, is_referenced
-from diagnostics.audit.audit_numbers import audit_numbers
+from diagnostics.audit.audit import ALONE, CHANGE, PAIRED, UNPAIRED, WITH_REFERENCE, Audit, is_referenced
+from diagnostics.audit.audit_page import audit_page, detectability_figure, realism_figure
+from diagnostics.audit.audit_sentences import audit_summary
 from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit, damaged_states
 from diagnostics.audit.best_indicator import best_indicators
-from diagnostics.audit.detectability import Detection, detections, features, waveform_change
-from diagnostics.audit.envelope import BENCH, realism
+from diagnostics.audit.detectability import TARGETS, Detection, detections, features, length_at, waveform_change
+from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
-from diagnostics.audit.reference_comparison import reference_comparison
-from diagnostics.audit.reference_folder import reference_windows, synthetic_windows
+from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
 from diagnostics.base.extras import missing_packages, require_packages
@@ -31,17 +35,140 @@ from diagnostics.page.style import png_bytes, styled
 from siggen.dataset.reading import Dataset
 
 
+def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
+    """Return the content of `audit.json`; undefined numbers are null."""
+    return {
+        "set": dataset.path.name,
+        "identity": dataset.manifest["identity"],
+        "records": audit.records,
+        "specimens": audit.specimens,
+        "channels": audit.channels,
+        "seed": audit.seed,
+        "verdict": audit.verdict,
+        "too_few_gearboxes": audit.tells_too_little,
+        "gearboxes_needed": audit.gearboxes_needed,
+        "summary": audit_summary(audit),
+        "findings": [asdict(finding) for finding in audit.findings],
+        "realism": _realism_numbers(audit.realism) if audit.realism else None,
+        "reference": asdict(audit.reference) | {"discriminator_auc": _number(audit.reference.discriminator_auc)}
+        if audit.reference
+        else None,
+        "detectability": {name: _entries_numbers(entries, audit) for name, entries in audit.detections.items()},
+        "strongest": {
+            name: _entries_numbers(audit.ladder(referenced=side), audit)
+            for name, side in ((ALONE, False), (WITH_REFERENCE, True))
+        },
+        "chance": _chance_numbers(audit.chance) if audit.chance else None,
+        "best_single_indicator": {
+            state: {
+                "indicator": found.column,
+                "tried": found.tried,
+                "auc_chosen_on_the_same_gearboxes": found.auc.numbers(),
+                "auc_chosen_on_other_gearboxes": _number(found.held_out),
+            }
+            for state, found in audit.best.items()
+        },
+        "notes": list(audit.notes),
+        "seconds_per_record": audit.seconds_per_record,
+    }
+
+
+def _entries_numbers(entries: list[Detection], audit: Audit) -> dict[str, Any]:
+    return {
+        "states": [
+            {
+                "state": entry.state,
+                "fault": entry.fault,
+                "specimens": entry.specimens,
+                "chosen": entry.basis,
+                "tried": entry.tried,
+                **{size: _number(value) for size, value in entry.sizes.items()},
+                "auc": entry.auc.numbers(),
+            }
+            for entry in entries
+        ],
+        "profile_length_mm_at_auc": {
+            str(target): {
+                fault: asdict(reached) if reached and not audit.gearboxes_needed else None
+                for fault, reached in length_at(entries, target).items()
+            }
+            for target in TARGETS
+        },
+    }
+
+
+def _chance_numbers(chance: ChanceLimit) -> dict[str, Any]:
+    states = {
+        state: asdict(law) | {"auc": _number(law.auc), "p_value": _number(law.p_value)}
+        for state, law in chance.states.items()
+    }
+    return asdict(chance) | {"auc": _number(chance.auc), "states": states}
+
+
+def _realism_numbers(found: Realism) -> dict[str, Any]:
+    return {
+        "healthy_channel_records": found.channel_records,
+        "mean_share_inside": found.mean_inside,
+        "share_inside_all": found.all_inside,
+        "quantities": _share_numbers(found.shares),
+        "background": {
+            "mean_share_inside": _number(found.background_inside),
+            "quantities": _share_numbers(found.background),
+        },
+        "sensor_spread": [
+            {"name": s.name, "spread_db": _number(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
+        ],
+    }
+
+
+def _share_numbers(shares: tuple[QuantityShare, ...]) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": share.quantity.name,
+            "ranges": share.quantity.ranges,
+            **{name: _number(value) for name, value in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
+            "inside": share.inside,
+            "undefined": share.undefined,
+        }
+        for share in shares
+    ]
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+@dataclass(frozen=True, slots=True)
+class AuditOptions:
+    """What is asked of a set besides its traps.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of permutations, folds and bootstrap.
+    paired, with_realism : bool
+        Whether to judge differences from own healthy records, and to compare with the ranges of healthy gearboxes.
+    speed : str
+        Range of the speed variation: `bench` or `variable`.
+    reference : Path, optional
+        Folder of measured healthy recordings to compare with.
+    reference_fs_hz : float, optional
+        Their sampling frequency [Hz] where files do not state it.
+    """
+
+    seed: int = 0
+    paired: bool = False
+    with_realism: bool = False
+    speed: str = BENCH
+    reference: Path | None = None
+    reference_fs_hz: float | None = None
+
+
 @single_thread
 def audit_set(
     dataset: Dataset,
-    seed: int = 0,
+    options: AuditOptions | None = None,
     own: Sequence[OwnIndicator] = (),
-    *,
-    with_realism: bool = False,
-    paired: bool = False,
-    speed: str = BENCH,
-    reference: Path | None = None,
-    reference_fs_hz: float | None = None,
     stage: Stage = silent_stage,
 ) -> Audit:
     """Audit a set.
@@ -50,24 +177,17 @@ def audit_set(
     ----------
     dataset : siggen Dataset
         What `siggen.open` returned.
-    seed : int
-        Seed of permutations, folds and bootstrap.
+    options : AuditOptions, optional
     own : sequence of OwnIndicator
         The user's indicators, tried besides those of the package.
-    with_realism, paired : bool
-        Whether to compare with the ranges of healthy gearboxes, and to judge differences from own healthy records.
-    speed : str
-        Range of the speed variation: `bench` or `variable`.
-    reference : Path, optional
-        Folder of measured healthy recordings to compare with.
-    reference_fs_hz : float, optional
-        Their sampling frequency [Hz] where files do not state it.
     stage : Stage
         Told of every step.
     """
+    options = options or AuditOptions()
+    seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
     # first, so that a wrong folder is said before minutes have passed
-    real = reference_windows(reference, reference_fs_hz) if reference else None
+    real = reference_windows(reference, options.reference_fs_hz) if reference else None
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
@@ -75,11 +195,11 @@ def audit_set(
     with stage("traps", 1):
         findings = separability_findings(measured, seed)
     with stage("detectability", 1):
-        found = _detections(measured, seed, paired)
+        found = _detections(measured, seed, options.paired)
         best = best_indicators(measured.matrix(), seed)
     attacked, chance = _attacks(measured, seed, stage)
     found |= attacked
-    compared = realism(measured, speed) if with_realism else None
+    compared = realism(measured, options.speed) if options.with_realism else None
     beside = None
     if real is not None:
         with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
@@ -90,7 +210,7 @@ def audit_set(
         verdict=verdict(findings, specimens, chance),
         realism=compared,
         detections=found,
-        notes=tuple(_notes(measured, found, with_realism)),
+        notes=tuple(_notes(measured, found, options.with_realism)),
         seconds_per_record=seconds,
         records=int(measured.checksums.shape[0]),
         specimens=specimens,
@@ -147,14 +267,14 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     with styled():
         drawn = {}
         if audit.realism:
-            drawn["realism"] = png_bytes(figures.realism_figure(audit.realism))
+            drawn["realism"] = png_bytes(realism_figure(audit.realism))
         if any(math.isfinite(entry.auc.value) for entries in audit.detections.values() for entry in entries):
-            drawn["detectability"] = png_bytes(figures.detectability_figure(shown_ladders(audit)))
+            drawn["detectability"] = png_bytes(detectability_figure(shown_ladders(audit)))
     (folder / "figures").mkdir(exist_ok=True)
     for name, png in drawn.items():
         (folder / "figures" / f"{name}.png").write_bytes(png)
     text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
     (folder / "audit.json").write_text(text + "\n", encoding="utf-8")
     path = folder / "audit.html"
-    path.write_text(page.audit_page(audit, dataset, drawn), encoding="utf-8")
+    path.write_text(audit_page(audit, dataset, drawn), encoding="utf-8")
     return path

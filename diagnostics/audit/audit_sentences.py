@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from diagnostics.audit.attack_tables import shown_ladders
+from diagnostics.audit.attack_tables import chance_sentence, lost_below, shown_ladders
 from diagnostics.audit.audit import Audit
-from diagnostics.audit.card_section import lost_below
-from diagnostics.audit.chance_sentence import chance_sentence
 from diagnostics.audit.detectability import FEWEST_SPECIMENS, TARGETS, Detection, length_at
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.reference_tables import reference_sentences

@@ -1,4 +1,7 @@
-"""What a bank of attackers reaches for every state, and what the strongest of them reaches by chance."""
+"""What a bank of attackers reaches for every state, and what the strongest of them reaches by chance.
+
+How many gearboxes an audit needs, where so few were judged that chance alone looks like damage.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,37 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from diagnostics.attacks.chance import LEVEL, PERMUTATIONS, bank_maxima, exchanged_unit, permuted
-from diagnostics.attacks.held_out import dealt_folds, held_out, judged_rows
-from diagnostics.attacks.trial import Attacker
-from diagnostics.audit.detectability import Detection, damage_sizes, in_order
+from diagnostics.audit.chance import LEVEL, PERMUTATIONS, bank_maxima, exchanged_unit, permuted
+from diagnostics.audit.detectability import TARGETS, Detection, damage_sizes, in_order
+from diagnostics.audit.held_out import dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import exchange_blocks
-from diagnostics.records.damage_kind import damage_kind
+from diagnostics.audit.simple_thresholds import LARGEST_AUC
+from diagnostics.audit.trial import Attacker
+from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval
+
+
+def gearboxes_needed(chance: ChanceLimit | None, specimens: int) -> int | None:
+    """Return the least number of gearboxes that may tell; None where those that were judged do.
+
+    So few tell nothing where the strongest attacker reaches by chance what a trap is accused of, 0.9. As many are
+    needed as bring that limit down to the lowest AUC that counts as found, 0.75: its distance from 0.5 falls as one
+    over the root of the gearboxes, as does the scatter of an AUC (Birnbaum and Klose 1957). Derived. An AUC ends at 1,
+    so the number is the least.
+
+    Parameters
+    ----------
+    chance : ChanceLimit, optional
+        What the strongest attacker reaches by chance; undefined where nothing could be judged.
+    specimens : int
+        Gearboxes that were judged.
+    """
+    if chance is None or not math.isfinite(chance.auc) or chance.auc < LARGEST_AUC:
+        return None
+    excess = (chance.auc - 0.5) / (TARGETS[0] - 0.5)
+    # the last digits are of floating point: 24.000000000000004 gearboxes are 24
+    return math.ceil(round(specimens * excess * excess, 9))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +55,7 @@ class StateChance:
     p_value : float
         (1 + permutations that reach at least what the stated states do) / (1 + permutations).
     exchanged : str
-        Within what states were exchanged, as of `diagnostics.attacks.chance.exchanged_unit`.
+        Within what states were exchanged, as of `diagnostics.audit.chance.exchanged_unit`.
     """
 
     auc: float

@@ -18,9 +18,9 @@ import numpy as np
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import reference_records
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.records.damage_kind import damage_kind
-from diagnostics.statistics.area_interval import area_interval
+from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
+from diagnostics.statistics.scores import area_interval
 
 LEVELS, PLAIN = ("rms", "sideband_index_pinion_h1"), ("kurtosis", "fm4_pinion")
 ADDED = ("energy_ratio_pinion", "sideband_ratio_pinion_h1_k3")

@@ -1,29 +1,148 @@
 """Attackers that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
 
 All of them start from the lines of the pinion's averaged revolution in the one table of the set, without shaft and mesh
-orders. Nothing of a record's level is used alone, but by the network, which is that of `train`; with a reference the
+orders. Nothing of a record's level is used alone, but by the network, which is that of `report`; with a reference the
 change is measured against the reference's size.
+
+The attacker that learns its own features: the circular network of `report`, on the averages of the audit.
+
+One network per fold learns from all damaged states of the gearboxes to learn from, and is asked about each state of the
+others. It is trained on a fixed number of records in all, some passes over a small set, few over a large one, so that
+its cost does not grow with the set.
+
+Random convolutions of one revolution: shares of the angle at which a kernel's answer lies above a level.
+
+Kernels of nine weights -1 and 2, all 84 choices of three twos, dilated; the answer's share above a level ("proportion
+of positive values") is the feature. Source: Dempster et al. 2021 (MiniRocket). Here convolutions are circular, so that
+nothing depends on where the revolution starts, levels are quantiles of the answers of all records of the set (no state
+is looked at), and the largest answer counts too. aeon and sktime hold MiniRocket, but bring some 20 packages and no
+circular convolution.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import combinations
 
 import numpy as np
 
-from diagnostics.attacks.band_columns import Bank, band_bank, kurtogram_maximum
-from diagnostics.attacks.column_attackers import all_columns, best_column
-from diagnostics.attacks.convolution_features import convolution_features, revolution
-from diagnostics.attacks.residual_lines import line_array, residual_lines, whitened
-from diagnostics.attacks.trial import Attacker
 from diagnostics.audit.audit import REFERENCED
+from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.network_attacker import network_attacker
 from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.residual_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines, whitened
+from diagnostics.audit.trial import Attacker, Trial, Verdicts
+from diagnostics.base.extras import missing_packages
+from diagnostics.training.average_rows import AveragedRecords, padded_lines
+from diagnostics.training.splits import SpecimenSplit
+
+SHOWN, FEWEST_EPOCHS = 4500, 4
+"""Records that a network is shown in all, and passes at least: some 5 s of CPU."""
+
+LENGTH, TWOS = 9, 3
+KERNELS = tuple(combinations(range(LENGTH), TWOS))
+DILATIONS = (1, 2, 3, 5, 8, 13, 21, 34)
+LEVELS = (0.5, 0.75, 0.9, 0.97, 0.995)
+STEPS = 1024
+CALIBRATING = 64
+"""Records, evenly spread over the set, whose answers set the levels."""
 
 NETWORK = "circular network"
 PREPARED = 4
 """Steps of preparing them, where records have references."""
+
+
+def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | None, seed: int) -> Attacker | None:
+    """Return the attacker, or None without PyTorch.
+
+    Parameters
+    ----------
+    name : str
+    measured : MeasuredSet
+    reference : (records,) int, optional
+        Healthy record of the same gearbox that each stands beside, -1 without one; None: every record stands alone.
+    seed : int
+        Of first weights, order and changed paths.
+    """
+    if missing_packages("torch"):
+        return None
+    usable = np.array([all(lines.size for lines in row) for row in measured.waveforms], dtype=bool)
+    lines = padded_lines(measured.waveforms)
+    beside = None
+    if reference is not None:
+        usable &= (reference >= 0) & usable[reference]
+        beside = lines[reference]
+    records = AveragedRecords(lines, measured.labels["teeth_pinion"], measured.channels, beside)
+    specimen, kept = measured.labels["specimen_id"], dict[bytes, np.ndarray]()
+
+    def attack(trial: Trial) -> Verdicts:
+        learnt = np.unique(trial.specimen[trial.train])
+        key = learnt.tobytes()
+        if key not in kept:
+            train = usable & np.isin(specimen, learnt)
+            kept[key] = _scores(records, train, ~measured.healthy, seed)
+        return Verdicts(kept[key][trial.rows[~trial.train]][None])
+
+    return Attacker(name, attack, usable, records.rows * 2 * lines.shape[2], deals=1, permutable=False)
+
+
+def _scores(records: AveragedRecords, train: np.ndarray, damaged: np.ndarray, seed: int) -> np.ndarray:
+    """Return the probability of damage of every record from a network that learnt from some."""
+    from diagnostics.training.circular_network import CircularSettings, circular_probability, train_circular
+
+    nobody = np.zeros_like(train)
+    split = SpecimenSplit(train, nobody, nobody, ("healthy", "damaged"))
+    settings = CircularSettings(most_epochs=max(FEWEST_EPOCHS, round(SHOWN / max(int(train.sum()), 1))))
+    trained = train_circular(records, damaged.astype(np.int64), split, seed, settings)
+    return circular_probability(trained.network, records)[:, 1]
+
+
+def revolution(lines: np.ndarray, steps: int = STEPS) -> np.ndarray:
+    """Return one revolution of lines at equal angle steps, (..., steps) float32; higher orders are left out."""
+    from scipy import fft
+
+    kept = lines[..., : steps // 2]
+    return np.asarray(fft.irfft(kept, n=steps, axis=-1) * (0.5 * steps), dtype=np.float32)
+
+
+def convolution_features(waves: np.ndarray) -> np.ndarray:
+    """Return the features of every record, mean over its channels.
+
+    Parameters
+    ----------
+    waves : (records, channels, steps) float32
+        One revolution each, of comparable level; channels with NaN do not count.
+
+    Returns
+    -------
+    (records, features) float64
+        84 kernels, eight dilations, five shares and the largest answer; NaN without any channel.
+    """
+    records, channels, steps = waves.shape
+    flat = waves.reshape(-1, steps)
+    defined = np.isfinite(flat).all(axis=1)
+    used = np.ascontiguousarray(flat[defined])
+    found = np.full((records * channels, len(KERNELS) * len(DILATIONS) * (len(LEVELS) + 1)), np.nan, dtype=np.float32)
+    if used.size:
+        found[defined] = _of_waves(used)
+    split = found.reshape(records, channels, -1)
+    counted = defined.reshape(records, channels).sum(axis=1)[:, None]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.nansum(split, axis=1, dtype=np.float64) / np.where(counted > 0, counted, np.nan))
+
+
+def _of_waves(waves: np.ndarray) -> np.ndarray:
+    chosen = np.unique(np.linspace(0, len(waves) - 1, CALIBRATING).round().astype(int))
+    found = []
+    for dilation in DILATIONS:
+        shifted = [np.roll(waves, (LENGTH // 2 - place) * dilation, axis=1) for place in range(LENGTH)]
+        ones = -np.sum(shifted, axis=0, dtype=np.float32)
+        for kernel in KERNELS:
+            answer = ones + np.float32(3.0) * (shifted[kernel[0]] + shifted[kernel[1]] + shifted[kernel[2]])
+            levels = np.quantile(answer[chosen], LEVELS).astype(np.float32)
+            found += [np.count_nonzero(answer > level, axis=1) / np.float32(waves.shape[1]) for level in levels]
+            found.append(answer.max(axis=1))
+    return np.stack(found, axis=1).astype(np.float32)
 
 
 def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], None]) -> list[Attacker]:

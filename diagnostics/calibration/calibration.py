@@ -17,7 +17,7 @@ import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.healthy_blocks import HealthyBlocks
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
-from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, noise_fit
+from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, SensorFit, noise_fit, sensor_fit
 from diagnostics.calibration.order_record import (
     HIGHEST_SHARE,
     LineGroup,
@@ -35,10 +35,9 @@ from diagnostics.calibration.second_stage import (
     machine_multiples,
     second_stage,
     stage_lines,
+    wave_lines,
 )
-from diagnostics.calibration.sensor_fit import SensorFit, sensor_fit
 from diagnostics.calibration.source_library import PLACES, SourceLibrary, source_library
-from diagnostics.calibration.wave_lines import wave_lines
 from siggen.errors import UsageError
 
 GRID_STEPS = 1024

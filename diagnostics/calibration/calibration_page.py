@@ -1,17 +1,32 @@
-"""The page of a calibration: recordings beside the rig and beside the calibrated configuration, and what was fitted."""
+"""The page of a calibration: recordings beside the rig and beside the calibrated configuration, and what was fitted.
+
+The page of a calibration from its files: recordings, gearboxes of the rig, gearboxes of the result.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
-from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
+from diagnostics.calibration.calibrated_files import TOO_FEW, data_folder, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
+from diagnostics.calibration.healthy_blocks import HealthyBlocks
 from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
-from diagnostics.calibration.likeness import LEVELS, RANGE, Likeness, Sample, band_edges_hz
+from diagnostics.calibration.likeness import (
+    LEVELS,
+    RANGE,
+    Likeness,
+    Sample,
+    band_edges_hz,
+    likeness,
+    sample_of,
+    simulated_blocks,
+)
+from diagnostics.calibration.source_library import at_recordings
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
@@ -27,6 +42,37 @@ SPECTRA = "Spectra of {}: recordings (red), and 90 % of the gearboxes before (gr
 PATHS = (
     "Transfer paths to {}: the family that gearboxes draw from. Where it is wide, path and source are not told apart."
 )
+
+
+def calibration_page(
+    found: Calibration,
+    out: Path,
+    held_out: HealthyBlocks | None,
+    size: tuple[int, int],
+    advance: Callable[[], None],
+) -> Path:
+    """Write the page and return it.
+
+    Parameters
+    ----------
+    found : Calibration
+    out : Path
+        The calibrated configuration.
+    held_out : HealthyBlocks, optional
+        Recordings to judge by; those of the calibration without.
+    size : (int, int)
+        Gearboxes of each configuration, and the seed of the folds.
+    advance : callable
+        Told of every record.
+    """
+    names = found.blocks.channels
+    read = found.blocks if held_out is None else held_out
+    real = sample_of(read.blocks, found.teeth)
+    before = simulated_blocks(at_recordings(found.rig, found.operating_point, read.fs_hz), names, size[0], advance)
+    after = simulated_blocks(out, names, size[0], advance)
+    compared = [likeness(real, sample_of(blocks, found.teeth), size[1]) for blocks in (before, after)]
+    judged = 0 if held_out is None else len(held_out.blocks)
+    return write_calibration_page(found, real, compared[0], compared[1], data_folder(out), judged)
 
 
 def write_calibration_page(

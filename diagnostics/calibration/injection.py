@@ -4,26 +4,188 @@ Both simulations are one state each of the same gearbox: start angle, speed and 
 Noise and own lines are off, so that nothing but the damage is left. Angle by angle the difference is laid under the
 recording's own course; where the recording is longer, it begins again after whole turns. The path of the gearbox stays
 in frequency, which is exact where the speed is that of the simulation. Source: derived.
+
+Rows of a set of recordings with injected damage: ids, labels, origin, signals.
+
+A set of healthy recordings and of the same with injected damage, with the origin of every row.
+
+Where a generated set has a gearbox (`specimen_id`) it has a recording: all rows of one are on one side of the split.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 
 import siggen
-from diagnostics.calibration.healthy_blocks import Block
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
+from siggen.errors import UsageError
+
+TRAIN, VALIDATION, TEST = "train", "validation", "test"
+RECORDED, INJECTED = "recorded", "injected"
+NO_GEARBOX = -1
+OF_DAMAGE = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm", "mesh_stiffness_loss")
+"""Labels of the simulated damage; 0 for a recording as it is."""
+
+ORIGIN = pa.schema(
+    {
+        "recording": pa.string(),
+        "origin": pa.string(),
+        "simulated_gearbox": pa.int64(),
+        "path_number": pa.int64(),
+        "identity": pa.string(),
+        "difference_db": pa.float64(),
+        "difference_torque_nm": pa.float64(),
+    }
+)
+TEXT = """# Recordings with injected damage
+
+Rows with `origin` recorded are your healthy recordings. Rows with `origin` injected are the same recordings plus the
+simulated difference between a damaged and a healthy gearbox, at the recording's own course of speed. `recording` names
+the file; `simulated_gearbox`, `path_number`, `identity`, `difference_torque_nm` and `difference_db` (energy of the
+difference over that of the recording) say what was added; -1 stands for nothing.
+
+`specimen_id` is the number of the recording, so all rows of a recording are on one side of the split: the last fifth,
+one at least, is the test. Recordings are cut to the length of the shortest. `torque_nm` is the middle of the
+configuration's range in all rows: a recording does not say it. `siggen-diagnostics report --models-only` reads this
+folder; it needs two recordings for training and one for the test.
+
+**Your recordings are in this folder. `siggen publish` refuses it.** Whether a detector gains by such rows is open:
+`docs/scripts/transfer_control.py` compares them with shuffled phases and white noise.
+"""
 
 LONGEST_S = 10.0
 SPARE_TURNS = 2
 FADE_TURNS = 0.5
 PHYSICS, SHUFFLED, WHITE = "physics", "shuffled phases", "white noise"
 CONTROLS = (SHUFFLED, WHITE)
+
+
+def splits_of(recordings: int) -> tuple[str, ...]:
+    """Return the split of each recording: the last fifth is tested, the fifth before validates; two train at least."""
+    test = max(1, recordings // 5) if recordings > 1 else 0
+    validation = recordings // 5
+    return (TRAIN,) * (recordings - test - validation) + (VALIDATION,) * validation + (TEST,) * test
+
+
+def injected_rows(
+    blocks: HealthyBlocks, mine: Path, gearboxes: int, seed: int, advance: Callable[[], None]
+) -> Iterator[dict[str, Any]]:
+    """Yield the rows of all recordings, each as it is and then with every damage of its own simulated gearboxes.
+
+    Parameters
+    ----------
+    blocks : HealthyBlocks
+    mine : Path
+        The calibrated configuration.
+    gearboxes : int
+        Different ones for each recording.
+    seed : int
+    advance : callable
+        Told of every gearbox.
+    """
+    record_id = 0
+    for number, (block, split) in enumerate(zip(blocks.blocks, splits_of(len(blocks.blocks)), strict=True)):
+        own = {"specimen_id": number, "split": split, "operating_point_id": 0, "speed_hz": block.speed_hz}
+        yield {"record_id": record_id, **own, **_recorded(block)}
+        record_id += 1
+        for k in range(gearboxes):
+            gearbox = number * gearboxes + k
+            start = int(generator(seed, Purpose.PATHS, 0, 1 + gearbox).integers(SPARE_TURNS))
+            for difference in simulated_differences(mine, block, gearbox):
+                yield {"record_id": record_id, **own, **_injected(block, difference, start, gearbox, k)}
+                record_id += 1
+            advance()
+
+
+def _recorded(block: Block) -> dict[str, Any]:
+    labels = {"state": "healthy", "fault": "healthy", "severity": "healthy", "faulty_gear": "none", "repeat": 0}
+    nothing = {"simulated_gearbox": NO_GEARBOX, "path_number": NO_GEARBOX, "identity": ""}
+    unknown = {"difference_db": -np.inf, "difference_torque_nm": np.nan}
+    return {
+        **_origin(block, RECORDED),
+        **labels,
+        **dict.fromkeys(OF_DAMAGE, 0.0),
+        **nothing,
+        **unknown,
+        **_signals(block, block.channels),
+    }
+
+
+def _injected(block: Block, difference: Difference, start: int, gearbox: int, repeat: int) -> dict[str, Any]:
+    added = sum(float(np.mean(signal**2)) for signal in difference.channels.values())
+    own = sum(float(np.var(signal)) for signal in block.channels.values())
+    numbers = [value for name, value in difference.labels.items() if name.startswith("path_number_")]
+    labels = ("state", "fault", "severity", "faulty_gear", *OF_DAMAGE)
+    return {
+        **_origin(block, INJECTED),
+        **{name: difference.labels[name] for name in labels},
+        "repeat": repeat,
+        "simulated_gearbox": gearbox,
+        "path_number": int(numbers[0]) if numbers else NO_GEARBOX,
+        "identity": difference.identity,
+        "difference_db": 10.0 * float(np.log10(max(added, 1e-30) / own)),
+        "difference_torque_nm": float(difference.labels["torque_nm"]),
+        **_signals(block, injected(block, difference, start)),
+    }
+
+
+def _origin(block: Block, origin: str) -> dict[str, Any]:
+    return {"recording": block.name, "origin": origin}
+
+
+def _signals(block: Block, channels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    return {"signals": tuple(channels.values()), "tacho_s": block.pulses_s}
+
+
+def write_injected(
+    blocks: HealthyBlocks, mine: Path, gearboxes: int, folder: Path, seed: int, advance: Callable[[], None]
+) -> Path:
+    """Write the set into a new folder; return the folder.
+
+    Parameters
+    ----------
+    blocks : HealthyBlocks
+    mine : Path
+        The calibrated configuration.
+    gearboxes : int
+        Different ones for each recording.
+    folder : Path
+    seed : int
+    advance : callable
+        Told of every gearbox.
+
+    Raises
+    ------
+    UsageError
+        If no damage could be simulated.
+    """
+    config = siggen.load_config(mine)
+    rows = list(injected_rows(blocks, mine, gearboxes, seed, advance))
+    if all(row["origin"] == RECORDED for row in rows):
+        raise UsageError(f"{mine}: no damage could be simulated; see siggen plan {mine}")
+    _complete(rows, config)
+    facts = {"kind": "injected", "configuration": mine.name, "recordings": [block.name for block in blocks.blocks]}
+    return siggen.write_recorded_set(config, folder, rows, ORIGIN, facts, TEXT)
+
+
+def _complete(rows: Sequence[dict[str, Any]], config: Any) -> None:
+    """Add what rows of one set have in common: numbers of the states, teeth, the torque that is assumed."""
+    torque = config.canonical()["operating_points"][0]["torque_nm"]
+    drawn = torque.get("values") or (torque["low"], torque["high"]) if isinstance(torque, dict) else (torque,)
+    torque_nm = 0.5 * (min(drawn) + max(drawn))
+    states = dict.fromkeys(["healthy", *(row["state"] for row in rows)])
+    numbers = {state: number for number, state in enumerate(states)}
+    for row in rows:
+        row["state_id"], row["torque_nm"] = numbers[row["state"]], float(torque_nm)
+        row |= {"teeth_pinion": config.gears.pinion.teeth, "teeth_gear": config.gears.gear.teeth}
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.audit.reference_comparison import ReferenceComparison, reference_comparison
-from diagnostics.audit.reference_folder import WindowSet
+from diagnostics.audit.reference_comparison import ReferenceComparison, WindowSet, reference_comparison
 from diagnostics.calibration.healthy_blocks import Block
 from diagnostics.calibration.order_record import turns_of
 from diagnostics.indicators.background_levels import CYCLIC, SPECTRAL, background_levels

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from importlib.metadata import version
 
 import typer
@@ -16,8 +17,6 @@ from diagnostics.cli.explore import explore
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
-from diagnostics.cli.score import score
-from diagnostics.cli.train import train
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 PROGRAM = "siggen-diagnostics"
@@ -25,23 +24,21 @@ TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 app = typer.Typer(
     name=PROGRAM,
-    help="Take indicators, train classifiers and write reports for vibration sets that siggen wrote.",
-    epilog="Example: siggen-diagnostics report data/quickstart",
+    help="Judge vibration sets that siggen wrote, classifiers of them, and recordings of a machine.",
+    epilog="Begin with: siggen-diagnostics report data/quickstart",
     context_settings={"help_option_names": ["-h", "--help"]},
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
-app.command()(indicators)
-app.command()(train)
-app.command()(report)
-app.command()(score)
-app.command()(explore)
-app.command()(audit)
-app.command()(predict)
-app.command()(baseline)
-app.command()(check)
-app.command()(calibrate)
+COMMANDS: dict[str, tuple[Callable[..., None], ...]] = {
+    "A set, in the order of work": (audit, indicators, report, predict),
+    "A machine of your own, in the order of work": (baseline, check, calibrate),
+    "Look at a set, or at recordings": (explore,),
+}
+for heading, commands in COMMANDS.items():
+    for command in commands:
+        app.command(rich_help_panel=heading)(command)
 
 
 def _show_version(wanted: bool) -> None:
@@ -56,7 +53,7 @@ def _options(
         False, "--version", callback=_show_version, is_eager=True, help="Show the version and exit."
     ),
 ) -> None:
-    """Take indicators, train classifiers and write reports for vibration sets that siggen wrote."""
+    """Judge vibration sets that siggen wrote, classifiers of them, and recordings of a machine."""
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +10,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.training_options import OwnIndicators
+from siggen.cli.option_groups import grouped
 
 
 class Speed(StrEnum):
@@ -18,18 +20,39 @@ class Speed(StrEnum):
     variable = "variable"
 
 
+@dataclass(frozen=True, slots=True)
+class RealismOptions:
+    """How real the set looks."""
+
+    realism: Annotated[
+        bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
+    ] = False
+    speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench
+    reference: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict.",
+            show_default=False,
+        ),
+    ] = None
+    reference_fs: Annotated[
+        float | None,
+        typer.Option(metavar="HZ", help="Sampling frequency of recordings that do not state it.", show_default=False),
+    ] = None
+
+
+@grouped
 def audit(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
     ],
+    *,
     strict: Annotated[
         bool,
         typer.Option(
             "--strict", help="End with exit code 4 unless passed: after a trap, or with too few gearboxes to tell."
         ),
-    ] = False,
-    realism: Annotated[
-        bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
     ] = False,
     write_card: Annotated[
         bool, typer.Option("--write-card", help="Write the result into the set's README.md. Implies --realism.")
@@ -44,19 +67,7 @@ def audit(
         ),
     ] = None,
     indicator: OwnIndicators = None,
-    speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench,
-    reference: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict.",
-            show_default=False,
-        ),
-    ] = None,
-    reference_fs: Annotated[
-        float | None,
-        typer.Option(metavar="HZ", help="Sampling frequency of recordings that do not state it.", show_default=False),
-    ] = None,
+    realism: RealismOptions,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the permutations, the folds and the bootstrap.")] = 0,
 ) -> None:
     """Check whether scores on a set measure the damage, and write audit.html and audit.json.
@@ -67,9 +78,9 @@ def audit(
 
     Example: siggen-diagnostics audit data/quickstart --strict --realism
     """
-    from diagnostics.audit.audit_report import audit_set, write_audit
+    from diagnostics.audit.attack_tables import card_section
+    from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary
-    from diagnostics.audit.card_section import card_section
     from diagnostics.base.beside import beside
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -80,17 +91,15 @@ def audit(
     own = load_indicators(indicator)
     dataset = open_set(directory)
     folder = out or beside(dataset.path, "_audit")
-    found = audit_set(
-        dataset,
-        seed,
-        own,
-        with_realism=realism or write_card,
+    wanted = AuditOptions(
+        seed=seed,
         paired=paired,
-        speed=speed.value,
-        reference=reference,
-        reference_fs_hz=reference_fs,
-        stage=terminal_stage,
+        with_realism=realism.realism or write_card,
+        speed=realism.speed.value,
+        reference=realism.reference,
+        reference_fs_hz=realism.reference_fs,
     )
+    found = audit_set(dataset, wanted, own, terminal_stage)
     for sentence in audit_summary(found):
         typer.echo(sentence)
     for finding in found.findings:

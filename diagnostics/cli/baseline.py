@@ -7,24 +7,12 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import (
-    Channel,
-    FullScale,
-    Rate,
-    Sensitivity,
-    SpeedRange,
-    Tacho,
-    TachoPulses,
-    Teeth,
-    Unit,
-    file_rows,
-    named_column,
-    two_gears,
-    two_numbers,
-)
+from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
+from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
 
+@grouped
 def baseline(
     healthy: Annotated[
         list[str],
@@ -36,15 +24,9 @@ def baseline(
         ),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="MACHINE", help="New folder of the machine.")],
+    *,
     teeth: Teeth = None,
-    fs: Rate = None,
-    speed_range: SpeedRange = None,
-    channel: Channel = None,
-    unit: Unit = None,
-    sensitivity: Sensitivity = None,
-    full_scale: FullScale = None,
-    tacho: Tacho = None,
-    tacho_pulses: TachoPulses = 1,
+    recording: RecordingOptions,
     load: Annotated[
         str, typer.Option("--load", metavar="L[,L...]", help="Load in any unit: of all recordings, or one for each.")
     ] = "",
@@ -61,15 +43,13 @@ def baseline(
     from diagnostics.machine.healthy_state import healthy_state
     from diagnostics.machine.machine import save_machine
     from diagnostics.recordings.file_channels import file_channels
-    from diagnostics.recordings.measured_recording import RecordingFacts
 
     if teeth is None:
         raise UsageError("--teeth: received nothing; give the teeth of pinion and gear, such as --teeth 25,56")
     sources = [source for said in healthy for source in file_rows(said)]
-    columns = dict(named_column(said) for said in channel or ())
-    names = tuple(columns) or file_channels(sources[0][0], tacho, sources[0][1])
-    facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
-    span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
+    columns = recording.columns()
+    names = tuple(columns) or file_channels(sources[0][0], recording.tacho, sources[0][1])
+    facts, span = recording.facts(), recording.speed_range_hz()
     with terminal_stage("healthy recordings", len(sources)) as advance:
         machine = healthy_state(sources, names, facts, two_gears(teeth), span, _loads(load), false_alarms, advance)
     save_machine(machine, out)

@@ -2,29 +2,65 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import (
-    Channel,
-    FullScale,
-    Rate,
-    Sensitivity,
-    SpeedRange,
-    Tacho,
-    TachoPulses,
-    Unit,
-    file_rows,
-    named_column,
-    two_numbers,
-)
+from diagnostics.cli.recording_options import RecordingOptions, file_rows, two_numbers
+from siggen.cli.option_groups import grouped
 
 if TYPE_CHECKING:
     from diagnostics.calibration.calibration import Calibration
 
 
+@dataclass(frozen=True, slots=True)
+class DrawOptions:
+    """What is drawn."""
+
+    gearboxes: Annotated[
+        int, typer.Option(min=2, max=500, help="Gearboxes simulated for their bearing forces, about 1 s each.")
+    ] = 24
+    paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24
+    seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0
+
+
+@dataclass(frozen=True, slots=True)
+class PageOptions:
+    """What the page compares."""
+
+    held_out: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--held-out",
+            metavar="FILE[:ROW,ROW]",
+            help="Healthy recordings that the page judges by, not used for the fit. May be given several times.",
+        ),
+    ] = None
+    compared: Annotated[
+        int, typer.Option(min=0, max=200, help="Gearboxes of rig and result on the page, about 1 s each; 0: no page.")
+    ] = 8
+
+
+@dataclass(frozen=True, slots=True)
+class InjectionOptions:
+    """Damage in your recordings."""
+
+    inject: Annotated[
+        Path | None,
+        typer.Option(
+            "--inject",
+            metavar="FOLDER",
+            help="Also write the recordings plus the simulated difference damaged less healthy, as a set.",
+        ),
+    ] = None
+    per_recording: Annotated[
+        int, typer.Option("--per-recording", min=1, max=100, help="Gearboxes whose damage is injected into each.")
+    ] = 2
+
+
+@grouped
 def calibrate(
     rig: Annotated[
         Path, typer.Argument(metavar="RIG", help="Configuration of the machine, as `siggen init` writes it.")
@@ -39,44 +75,14 @@ def calibrate(
         ),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="YAML", help="New configuration; data go beside it.")],
-    fs: Rate = None,
-    speed_range: SpeedRange = None,
-    channel: Channel = None,
-    unit: Unit = None,
-    sensitivity: Sensitivity = None,
-    full_scale: FullScale = None,
-    tacho: Tacho = None,
-    tacho_pulses: TachoPulses = 1,
+    *,
+    recording: RecordingOptions,
     torque: Annotated[
         str, typer.Option("--torque", metavar="LOW,HIGH", help="Torque of the recordings [Nm]. Default: the rig's.")
     ] = "",
-    gearboxes: Annotated[
-        int, typer.Option(min=2, max=500, help="Gearboxes simulated for their bearing forces, about 1 s each.")
-    ] = 24,
-    paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24,
-    held_out: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--held-out",
-            metavar="FILE[:ROW,ROW]",
-            help="Healthy recordings that the page judges by, not used for the fit. May be given several times.",
-        ),
-    ] = None,
-    compared: Annotated[
-        int, typer.Option(min=0, max=200, help="Gearboxes of rig and result on the page, about 1 s each; 0: no page.")
-    ] = 8,
-    inject: Annotated[
-        Path | None,
-        typer.Option(
-            "--inject",
-            metavar="FOLDER",
-            help="Also write the recordings plus the simulated difference damaged less healthy, as a set.",
-        ),
-    ] = None,
-    per_recording: Annotated[
-        int, typer.Option("--per-recording", min=1, max=100, help="Gearboxes whose damage is injected into each.")
-    ] = 2,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0,
+    draws: DrawOptions,
+    page: PageOptions,
+    injection: InjectionOptions,
 ) -> None:
     """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.
 
@@ -89,42 +95,40 @@ def calibrate(
     from diagnostics.base.extras import require_packages
     from diagnostics.calibration.calibrated_files import check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
-    from diagnostics.calibration.channel_names import rig_channels
-    from diagnostics.calibration.comparison import calibration_page
-    from diagnostics.calibration.family_size import family_size
-    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks
-    from diagnostics.calibration.injected_set import write_injected
+    from diagnostics.calibration.calibration_page import calibration_page
+    from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks, rig_channels
+    from diagnostics.calibration.injection import write_injected
+    from diagnostics.calibration.path_draws import family_size
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.recordings.measured_recording import RecordingFacts
 
-    check_new(out, inject)
-    if compared:
+    check_new(out, injection.inject)
+    if page.compared:
         require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
     with terminal_stage("the rig", 1):
         config, teeth = rig_teeth(rig)
-    said = dict(named_column(entry) for entry in channel or ())
-    names, columns = rig_channels(config, sources[0], said, tacho)
-    facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
-    span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
+    names, columns = rig_channels(config, sources[0], recording.columns(), recording.tacho)
+    facts, span = recording.facts(columns), recording.speed_range_hz()
     newtons = two_numbers(torque, "--torque", "15,60") if torque else None
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
-        others = [source for entry in held_out or () for source in file_rows(entry)]
+        others = [source for entry in page.held_out or () for source in file_rows(entry)]
         judges = held_out_blocks(others, blocks, facts, teeth, span)
         advance()
-    with terminal_stage("gearboxes", gearboxes) as advance:
-        found = calibrated(rig, blocks, newtons, gearboxes, family_size(paths, len(names)), seed, advance)
+    family, seed = family_size(draws.paths, len(names)), draws.seed
+    with terminal_stage("gearboxes", draws.gearboxes) as advance:
+        found = calibrated(rig, blocks, newtons, draws.gearboxes, family, seed, advance)
     write_calibration(found, out)
     siggen.load_config(out)  # what would be refused is said now
     _tell(found)
     typer.echo(str(out))
-    if inject is not None:
+    if injection.inject is not None:
+        per_recording = injection.per_recording
         with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
-            typer.echo(str(write_injected(blocks, out, per_recording, inject, seed, advance)))
-    if compared:
-        with terminal_stage("records to compare", 2 * compared) as advance:
-            typer.echo(str(calibration_page(found, out, judges, (compared, seed), advance)))
+            typer.echo(str(write_injected(blocks, out, per_recording, injection.inject, seed, advance)))
+    if page.compared:
+        with terminal_stage("records to compare", 2 * page.compared) as advance:
+            typer.echo(str(calibration_page(found, out, judges, (page.compared, seed), advance)))
 
 
 def _tell(found: Calibration) -> None:
@@ -133,7 +137,7 @@ def _tell(found: Calibration) -> None:
 
     from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
     from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
-    from diagnostics.calibration.path_level import path_level_doubt
+    from diagnostics.calibration.path_draws import path_level_doubt
 
     for fit in found.channels:
         noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)

@@ -33,8 +33,7 @@ def check(
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.machine.check import CHANGED, check_recording, rate_sentence
-    from diagnostics.machine.check_history import add_checks
+    from diagnostics.machine.check import CHANGED, add_checks, check_recording, rate_sentence
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page
     from diagnostics.recordings.measured_recording import read_recording

@@ -2,34 +2,156 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from diagnostics.base.beside import beside as path_beside
-from diagnostics.cli.opened import Open, opened
-from diagnostics.cli.recording_options import (
-    Channel,
-    FullScale,
-    Rate,
-    RecordingDescription,
-    Sensitivity,
-    SpeedRange,
-    Tacho,
-    TachoPulses,
-    Teeth,
-    Unit,
-    file_rows,
-    two_gears,
-)
+from diagnostics.base.progress import Stage
+from diagnostics.cli.page_options import Open, opened
+from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.training_options import OwnIndicators
+from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from diagnostics.explore.measured_page import ShownRecording
+    from diagnostics.machine.recording_indicators import RecordingIndicators
+    from diagnostics.recordings.measured_recording import RecordingFacts
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
 
 
+def of_machine(folder: Path, said: Sequence[str], stage: Stage) -> list[ShownRecording]:
+    """Return recordings of a machine: its references by their names, the others with their latest verdict.
+
+    Raises
+    ------
+    UsageError
+        If no recording is given: the folder of a machine holds none of their samples.
+    """
+    from diagnostics.explore.measured_page import REFERENCE, UNKNOWN
+    from diagnostics.machine.check import past_checks
+    from diagnostics.machine.machine import load_machine
+
+    known = load_machine(folder)
+    if not said:
+        raise UsageError(
+            f"{folder}: holds no samples of its recordings; name their files too, such as: explore {folder.name} "
+            f"{' '.join(known.references[:2])} august.csv"
+        )
+    loads = dict(zip(known.references, known.load.tolist(), strict=True))
+    verdicts = {past.recording: past.verdict for past in past_checks(folder)} | dict.fromkeys(
+        known.references, REFERENCE
+    )
+    facts = replace(known.facts, columns=known.facts.columns or {name: name for name in known.channels})
+    found = _read(said, known.teeth, facts, known.speed_range_hz, stage)
+    return [_shown(one, verdicts.get(one.name, UNKNOWN), loads.get(one.name)) for one in found]
+
+
+def of_files(
+    said: Sequence[str],
+    healthy: Sequence[str],
+    teeth: tuple[int, int],
+    facts: RecordingFacts,
+    speed_range_hz: tuple[float, float] | None,
+    stage: Stage,
+) -> list[ShownRecording]:
+    """Return recordings that the user describes; those of `healthy` are the references."""
+    from diagnostics.explore.measured_page import REFERENCE, UNKNOWN
+
+    references = _read(healthy, teeth, facts, speed_range_hz, stage)
+    others = _read(said, teeth, facts, speed_range_hz, stage)
+    return [*(_shown(one, REFERENCE, None) for one in references), *(_shown(one, UNKNOWN, None) for one in others)]
+
+
+def _shown(found: RecordingIndicators, verdict: str, load: float | None) -> ShownRecording:
+    from diagnostics.explore.measured_page import ShownRecording
+
+    return ShownRecording(found, verdict, float("nan") if load is None else load)
+
+
+def _read(
+    said: Sequence[str],
+    teeth: tuple[int, int],
+    facts: RecordingFacts,
+    speed_range_hz: tuple[float, float] | None,
+    stage: Stage,
+) -> list[RecordingIndicators]:
+    from diagnostics.machine.recording_indicators import recording_indicators
+
+    sources = [source for one in said for source in file_rows(one)]
+    found: list[RecordingIndicators] = []
+    with stage("indicators of recordings", len(sources)) as advance:
+        for path, row in sources:
+            found.append(recording_indicators(path, teeth, replace(facts, row=row), speed_range_hz))
+            advance()
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class AmountOptions:
+    """How much the page holds."""
+
+    limit: Annotated[
+        int, typer.Option(min=1, help="Most records on the page; whole gearboxes beyond it are left out.")
+    ] = 100
+    full: Annotated[
+        bool,
+        typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
+    ] = False
+    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1
+
+
+@dataclass(frozen=True, slots=True)
+class SetOptions:
+    """For sets only."""
+
+    model: Annotated[
+        Path | None,
+        typer.Option(
+            "--model",
+            metavar="MODEL",
+            help="Folder of `report`: shows what its logistic regression names every record.",
+            show_default=False,
+        ),
+    ] = None
+    indicator: OwnIndicators = None
+    serve: Annotated[
+        bool,
+        typer.Option(
+            "--serve",
+            help="Serve the page to this machine alone (127.0.0.1), with every sample of the record you look at, until "
+            "Ctrl+C. Writes no file.",
+        ),
+    ] = False
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0
+
+
+@dataclass(frozen=True, slots=True)
+class BesideOptions:
+    """For recordings only."""
+
+    beside: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="SET",
+            help="A finished set, such as one that `calibrate` led to: recordings and its records on one page, laid "
+            "over each other.",
+            show_default=False,
+        ),
+    ] = None
+    healthy: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="A healthy recording to lay others over. May be given several times."),
+    ] = None
+
+
+@grouped
 def explore(
     targets: Annotated[
         list[str],
@@ -39,6 +161,7 @@ def explore(
             show_default=False,
         ),
     ],
+    *,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -49,64 +172,21 @@ def explore(
             show_default=False,
         ),
     ] = None,
-    model: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="MODEL",
-            help="Folder of `train` or `report`: shows what its logistic regression names every record.",
-            show_default=False,
-        ),
-    ] = None,
-    indicator: OwnIndicators = None,
-    limit: Annotated[
-        int, typer.Option(min=1, help="Most records on the page; whole gearboxes beyond it are left out.")
-    ] = 100,
-    full: Annotated[
-        bool,
-        typer.Option("--full", help="Keep every sample: up to 30 MB instead of 5 MB for 100 records of two channels."),
-    ] = False,
-    serve: Annotated[
-        bool,
-        typer.Option(
-            "--serve",
-            help="Serve the page to this machine alone (127.0.0.1), with every sample of the record you look at, until "
-            "Ctrl+C. Writes no file.",
-        ),
-    ] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of --serve; 0 takes a free one.")] = 0,
     show: Open = False,
-    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
-    beside: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="SET",
-            help="A finished set, such as one that `calibrate` led to: recordings and its records on one page, laid "
-            "over each other.",
-            show_default=False,
-        ),
-    ] = None,
-    healthy: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE", help="A healthy recording to lay others over. May be given several times."),
-    ] = None,
+    amount: AmountOptions,
+    of_set: SetOptions,
+    compared: BesideOptions,
     teeth: Teeth = None,
-    speed_range: SpeedRange = None,
-    fs: Rate = None,
-    channel: Channel = None,
-    unit: Unit = None,
-    sensitivity: Sensitivity = None,
-    full_scale: FullScale = None,
-    tacho: Tacho = None,
-    tacho_pulses: TachoPulses = 1,
+    recording: RecordingOptions,
 ) -> None:
     """Write one HTML page to look at the records of a set, or at recordings; it opens from disk, without a network.
 
     A table to filter and sort; for the chosen record its signal, order and envelope spectra, averages by tooth and
     damaged flanks, laid over the healthy record of the same gearbox; indicators, and a scatter of any two.
 
-    Example: siggen-diagnostics explore data/quickstart --out quickstart.html
+    The folder of a machine knows how its recordings are read.
 
-    Options from --beside on are for recordings; those from --healthy on describe recordings without a machine.
+    Example: siggen-diagnostics explore data/quickstart --out quickstart.html
 
     Example: siggen-diagnostics explore data/quickstart --model data/quickstart_report --serve --open
 
@@ -116,24 +196,18 @@ def explore(
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
     if (first / MACHINE_FILE).is_file() or teeth or file_rows(targets[0])[0][0].is_file():
-        if given := [
-            name for name, said in (("--serve", serve), ("--model", model), ("--indicator", indicator)) if said
-        ]:
-            raise UsageError(f"{', '.join(given)}: for sets only; leave them out for recordings")
-        facts = RecordingDescription(
-            teeth, speed_range, fs, channel, unit, sensitivity, full_scale, tacho, tacho_pulses
-        )
+        _refuse_set_options(of_set)
         place = first.with_suffix("") if first.is_file() else first
         page = out or path_beside(place, "_explore.html")
-        path = _recordings_page(targets, healthy or [], facts, page, beside, (limit, full, workers))
-    elif beside is not None:
-        raise UsageError(f"--beside {beside}: for recordings only; name them before it, or leave it out")
+        path = _recordings_page(targets, (teeth, recording), page, compared, amount)
+    elif compared.beside is not None:
+        raise UsageError(f"--beside {compared.beside}: for recordings only; name them before it, or leave it out")
     elif len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
     else:
-        if serve and (out or full):
+        if of_set.serve and (out or amount.full):
             raise UsageError("--serve writes no file and gives every sample; leave out --out and --full")
-        path = _set_page(first, out, (limit, full, workers), model, indicator, (serve, port, show))
+        path = _set_page(first, out, amount, of_set, show)
     if path is None:
         return
     typer.echo(str(path))
@@ -141,60 +215,56 @@ def explore(
         opened(path)
 
 
-def _set_page(
-    folder: Path,
-    out: Path | None,
-    amount: tuple[int, bool, int],
-    model: Path | None,
-    indicator: list[str] | None,
-    serving: tuple[bool, int, bool],
-) -> Path | None:
+def _refuse_set_options(options: SetOptions) -> None:
+    said = {"--serve": options.serve, "--model": options.model, "--indicator": options.indicator}
+    if given := [name for name, value in said.items() if value]:
+        raise UsageError(f"{', '.join(given)}: for sets only; leave them out for recordings")
+
+
+def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions, show: bool) -> Path | None:
     """Serve the page of a set, or write it and return where."""
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
     from diagnostics.indicators.own_indicator import load_indicators
     from siggen.dataset.reading import open as open_set
 
-    own, dataset = load_indicators(indicator), open_set(folder)
-    limit, full, workers = amount
-    options = ExplorerOptions(limit=limit, full=full, served=serving[0], workers=workers, model=model, own=own)
-    if serving[0]:
-        _serve(*explorer_of(dataset, options, terminal_stage), dataset, *serving[1:])
+    own, dataset = load_indicators(of_set.indicator), open_set(folder)
+    options = ExplorerOptions(**asdict(amount), served=of_set.serve, model=of_set.model, own=own)
+    if of_set.serve:
+        _serve(*explorer_of(dataset, options, terminal_stage), dataset, of_set.port, show)
         return None
     return write_explorer(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage)
 
 
 def _recordings_page(
     targets: list[str],
-    healthy: list[str],
-    said: RecordingDescription,
+    described: tuple[str | None, RecordingOptions],
     path: Path,
-    simulated: Path | None,
-    amount: tuple[int, bool, int],
+    compared: BesideOptions,
+    amount: AmountOptions,
 ) -> Path:
     """Write the page of recordings, of a machine or of described files; beside a set where one is named."""
     from diagnostics.cli.progress import terminal_stage
-    from diagnostics.cli.shown_recordings import of_files, of_machine
     from diagnostics.explore.measured_page import write_recordings_page
 
-    folder = Path(targets[0])
+    folder, healthy = Path(targets[0]), compared.healthy or []
     if folder.is_dir():
         shown = of_machine(folder, [*targets[1:], *healthy], terminal_stage)
         name = folder.resolve().name
     else:
-        if said.teeth is None:
+        teeth, said = described
+        if teeth is None:
             raise UsageError(f"{targets[0]}: teeth unknown; give those of pinion and gear, such as --teeth 25,56")
-        shown = of_files(targets, healthy, two_gears(said.teeth), said.facts(), said.speed_range_hz(), terminal_stage)
+        shown = of_files(targets, healthy, two_gears(teeth), said.facts(), said.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in targets[:3])
-    limit, full, workers = amount
-    if simulated is None:
-        return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
+    if compared.beside is None:
+        return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
     from diagnostics.explore.explorer import ExplorerOptions
     from siggen.dataset.reading import open as open_set
 
-    options = ExplorerOptions(limit=limit, full=full, workers=workers)
-    return write_beside_page(name, shown, open_set(simulated), path, options, terminal_stage)
+    options = ExplorerOptions(**asdict(amount))
+    return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)
 
 
 def _serve(page: str, records: object, dataset: object, port: int, show: bool) -> None:

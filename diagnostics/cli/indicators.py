@@ -2,31 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.opened import Open, opened
-from diagnostics.cli.recording_options import (
-    Channel,
-    FullScale,
-    Rate,
-    Sensitivity,
-    Tacho,
-    TachoPulses,
-    Teeth,
-    Unit,
-    file_rows,
-    named_column,
-    two_gears,
-    two_numbers,
-)
+from diagnostics.cli.page_options import EXPLORER, PageOptions, opened
+from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.training_options import OwnIndicators
+from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
-
-EXPLORER = "explorer.html"
 
 if TYPE_CHECKING:
     from diagnostics.indicators.own_indicator import OwnIndicator
@@ -34,6 +20,30 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import Dataset
 
 
+@dataclass(frozen=True, slots=True)
+class RankingOptions:
+    """How indicators of a set are ranked."""
+
+    false_alarms: Annotated[
+        float,
+        typer.Option(min=0.001, max=0.5, help="Rate of false alarms: share of healthy records above the threshold."),
+    ] = 0.05
+    state: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="A damaged state to judge. May be given several times. Default: all. Sizes and trends are meaningful "
+            "within one kind of damage only.",
+            show_default=False,
+        ),
+    ] = None
+    leave_out: Annotated[
+        bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
+    ] = False
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0
+
+
+@grouped
 def indicators(
     targets: Annotated[
         list[str],
@@ -44,6 +54,7 @@ def indicators(
             show_default=False,
         ),
     ],
+    *,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -56,47 +67,14 @@ def indicators(
     ] = None,
     indicator: OwnIndicators = None,
     workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
-    false_alarms: Annotated[
-        float,
-        typer.Option(min=0.001, max=0.5, help="Rate of false alarms: share of healthy records above the threshold."),
-    ] = 0.05,
-    speed_range: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LOW,HIGH",
-            help="Take shaft angles from the mesh lines, not the tacho; search this range of pinion speed [Hz].",
-            show_default=False,
-        ),
-    ] = None,
-    state: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="A damaged state to judge. May be given several times. Default: all. Sizes and trends are meaningful "
-            "within one kind of damage only.",
-            show_default=False,
-        ),
-    ] = None,
-    leave_out: Annotated[
-        bool, typer.Option("--leave-out", help="Leave out records and channels that cannot be used.")
-    ] = False,
-    explore: Annotated[
-        bool, typer.Option("--explore", help="Also write explorer.html, to which numbers of the page then lead.")
-    ] = False,
-    show: Open = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap.")] = 0,
+    ranking: RankingOptions,
+    page: PageOptions,
     teeth: Teeth = None,
-    fs: Rate = None,
-    channel: Channel = None,
-    unit: Unit = None,
-    sensitivity: Sensitivity = None,
-    full_scale: FullScale = None,
-    tacho: Tacho = None,
-    tacho_pulses: TachoPulses = 1,
+    recording: RecordingOptions,
 ) -> None:
     """Compute all indicators: of a set, ranked by how well they separate damage; or of measured recordings.
 
-    Options from --teeth on describe recordings. Writes indicators.html and tables.
+    Writes indicators.html and tables.
 
     Example: siggen-diagnostics indicators data/quickstart --workers 4
 
@@ -104,16 +82,13 @@ def indicators(
 
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
-    span = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
+    span = recording.speed_range_hz()
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
-        from diagnostics.recordings.measured_recording import RecordingFacts
-
-        of_sets = {"--indicator": indicator, "--state": state, "--leave-out": leave_out, "--explore": explore}
+        of_sets = {"--indicator": indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
+        of_sets["--explore"] = page.explore
         if ignored := [option for option, given in of_sets.items() if given]:
             raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
-        columns = dict(named_column(said) for said in channel or ())
-        facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses)
-        _of_recordings(targets, teeth, facts, span, out)
+        _of_recordings(targets, teeth, recording.facts(), span, out)
         return
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
@@ -128,31 +103,28 @@ def indicators(
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
     from diagnostics.indicators.table import record_table
-    from diagnostics.records.chosen_states import chosen_states
+    from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicator_report import write_indicator_report
-    from diagnostics.signal.tacholess_angle import check_speed_range
     from diagnostics.statistics.assessment import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 
     require_packages("the report of indicators", "matplotlib")
-    if span is not None:
-        check_speed_range(span)
     own = load_indicators(indicator)
     dataset = open_set(directory)
     check_states(dataset)
-    chosen_states(dataset, state or ())
+    chosen_states(dataset, ranking.state or ())
     settings = IndicatorSettings(speed_range_hz=span)
     with terminal_stage("indicators", dataset.labels(columns=["record_id"]).num_rows) as advance:
         everything = record_table(dataset, settings, own, workers=workers, advance=advance)
-    table = ranking_table(everything, dataset, states=state or (), leave_out=leave_out)
+    table = ranking_table(everything, dataset, states=ranking.state or (), leave_out=ranking.leave_out)
     folder = out or beside(dataset.path, "_indicators")
-    judged = AssessmentSettings(seed=seed, false_alarms=false_alarms)
-    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * explore)
-    if explore:
+    judged = AssessmentSettings(seed=ranking.seed, false_alarms=ranking.false_alarms)
+    path = write_indicator_report(dataset, table, folder, judged, terminal_stage, explorer=EXPLORER * page.explore)
+    if page.explore:
         _explorer(dataset, folder, workers, own)
     typer.echo(str(path))
-    if show:
+    if page.show:
         opened(path)
 
 

@@ -2,53 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import file_rows, named_column, two_gears, two_numbers
+from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.training_options import OwnIndicators
+from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.recordings.measured_recording import RecordingFacts
 
 
-def predict(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `train` wrote.", show_default=False)],
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE",
-            help="Recording: .csv, .mat, .wav, .parquet, .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
-            show_default=False,
-        ),
-    ],
-    fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz]. Not needed where the file states it.")] = None,
-    teeth: Annotated[str | None, typer.Option(metavar="Z1,Z2", help="Teeth of pinion and gear.")] = None,
-    speed_range: Annotated[
-        str | None, typer.Option(metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho.")
-    ] = None,
-    channel: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=COLUMN", help="Column of the file for a channel of the model. May be given several times."
-        ),
-    ] = None,
-    unit: Annotated[
-        str | None,
-        typer.Option(help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."),
-    ] = None,
-    sensitivity: Annotated[
-        float | None, typer.Option(help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
-    ] = None,
-    full_scale: Annotated[float | None, typer.Option(help="Full scale of an integer WAV file, in its unit.")] = None,
-    tacho: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
-    ] = None,
-    tacho_pulses: Annotated[int, typer.Option(min=1, help="Tacho pulses per pinion revolution.")] = 1,
+@dataclass(frozen=True, slots=True)
+class ReferenceOptions:
+    """Healthy recordings of the same machine."""
+
     reference: Annotated[
         list[str] | None,
         typer.Option(
@@ -56,13 +28,27 @@ def predict(
             help="Recording of the same machine in healthy state, with the same columns and unit. May be given several "
             "times.",
         ),
-    ] = None,
-    reference_fs: Annotated[
-        float | None, typer.Option(help="Sampling rate [Hz] of the references, if it differs.")
-    ] = None,
-    row: Annotated[
-        int | None, typer.Option(help="Row of FILE, from 0, if FILE is Parquet with one record per row.")
-    ] = None,
+    ] = None
+    reference_fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz] of the references, if it differs.")] = (
+        None
+    )
+
+
+@grouped
+def predict(
+    model: Annotated[Path, typer.Argument(metavar="MODEL", help="Folder that `report` wrote.", show_default=False)],
+    file: Annotated[
+        str,
+        typer.Argument(
+            metavar="FILE",
+            help="Recording: .csv, .mat, .wav, .parquet (FILE:ROW), .npy, .npz, .tdms, .uff, .unv, .h5 or .hdf5.",
+            show_default=False,
+        ),
+    ],
+    *,
+    teeth: Teeth = None,
+    recording: RecordingOptions,
+    healthy: ReferenceOptions,
     indicator: OwnIndicators = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
@@ -70,12 +56,12 @@ def predict(
 ) -> None:
     """Find the state that a recording is most like, or say why the models give no answer.
 
-    Example: siggen-diagnostics predict models run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
+    Example: siggen-diagnostics predict data/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.cli.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
-    from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+    from diagnostics.recordings.measured_recording import read_recording
 
     require_packages("prediction", "sklearn", "skops")
     with terminal_stage("reading the models", 1):
@@ -84,19 +70,17 @@ def predict(
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))
-    pair = _teeth(file, teeth, loaded.facts.teeth)
-    columns = dict(named_column(entry) for entry in channel or ())
-    facts = RecordingFacts(fs, columns, unit, sensitivity, full_scale, tacho, tacho_pulses, row)
-    names = loaded.facts.channels
-    recording = read_recording(file, names, facts)
+    path, row = _one(file)
+    pair = _teeth(path, teeth, loaded.facts.teeth)
+    facts, names = recording.facts(), loaded.facts.channels
+    read = read_recording(path, names, replace(facts, row=row))
     references = tuple(
-        read_recording(path, names, _reference_facts(facts, path, number, reference_fs))
-        for said in reference or ()
+        read_recording(path, names, _reference_facts(facts, path, number, healthy.reference_fs))
+        for said in healthy.reference or ()
         for path, number in file_rows(said)
     )
-    low_high = two_numbers(speed_range, "--speed-range", "20,50") if speed_range else None
     with terminal_stage("prediction", 1):
-        found = predict_recording(loaded, recording, pair, low_high, references)
+        found = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
     for label, text in prediction_rows(found):
         typer.echo(f"{label + ':':21} {text}")
     typer.echo(MEANING)
@@ -106,6 +90,13 @@ def predict(
         with terminal_stage("page", 1):
             page = write_prediction(found, loaded.facts, out)
         typer.echo(str(page))
+
+
+def _one(said: str) -> tuple[Path, int | None]:
+    first, *others = file_rows(said)
+    if others:
+        raise UsageError(f"{said}: names {1 + len(others)} recordings; allowed: one, such as {first[0]}:{first[1]}")
+    return first
 
 
 def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> tuple[int, int]:

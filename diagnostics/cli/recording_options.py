@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
+from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,58 +19,69 @@ ROWS = re.compile(r"\d+(,\d+)*")
 
 Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
 Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
-SpeedRange = Annotated[
-    str | None,
-    typer.Option("--speed-range", metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho."),
-]
-Channel = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--channel", metavar="NAME=COLUMN", help="Name of a channel and its column of the file. Default: all columns."
-    ),
-]
-Unit = Annotated[
-    str | None,
-    typer.Option(
-        "--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."
-    ),
-]
-Sensitivity = Annotated[
-    float | None, typer.Option("--sensitivity", help="Sensitivity of the accelerometer [mV/g]. Needed for mV and V.")
-]
-FullScale = Annotated[
-    float | None, typer.Option("--full-scale", help="Full scale of an integer WAV file, in its unit.")
-]
-Tacho = Annotated[
-    str | None, typer.Option("--tacho", metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
-]
-TachoPulses = Annotated[int, typer.Option("--tacho-pulses", min=1, help="Tacho pulses per pinion revolution.")]
 
 
-class RecordingDescription(NamedTuple):
-    """What the options above say of recordings."""
+@dataclass(frozen=True, slots=True)
+class RecordingOptions:
+    """How recordings are read."""
 
-    teeth: str | None
-    speed_range: str | None
-    fs: float | None
-    channel: list[str] | None
-    unit: str | None
-    sensitivity: float | None
-    full_scale: float | None
-    tacho: str | None
-    tacho_pulses: int
+    fs: Rate = None
+    speed_range: Annotated[
+        str | None,
+        typer.Option("--speed-range", metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho."),
+    ] = None
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--channel",
+            metavar="NAME=COLUMN",
+            help="A channel and its column of the file. May be given several times. Default: columns by their names.",
+        ),
+    ] = None
+    unit: Annotated[
+        str | None,
+        typer.Option(
+            "--unit", help="Unit of the file: m/s2, mm/s2, g, mg, mV or V. Default: as the file states, else m/s2."
+        ),
+    ] = None
+    sensitivity: Annotated[
+        float | None,
+        typer.Option("--sensitivity", help="Sensitivity of the accelerometer in mV/g. Needed for mV and V."),
+    ] = None
+    full_scale: Annotated[
+        float | None, typer.Option("--full-scale", help="Full scale of an integer WAV file, in its unit.")
+    ] = None
+    tacho: Annotated[
+        str | None, typer.Option("--tacho", metavar="COLUMN", help="Column with the tacho waveform, or `tacho_s`.")
+    ] = None
+    tacho_pulses: Annotated[int, typer.Option("--tacho-pulses", min=1, help="Tacho pulses per pinion revolution.")] = 1
 
-    def facts(self) -> RecordingFacts:
-        """Return how the files are read."""
+    def columns(self) -> dict[str, str]:
+        """Return the column of every channel that was named."""
+        return dict(named_column(said) for said in self.channel or ())
+
+    def facts(self, columns: dict[str, str] | None = None) -> RecordingFacts:
+        """Return how the files are read, with other columns than those that were named where such are given."""
         from diagnostics.recordings.measured_recording import RecordingFacts
 
-        columns = dict(named_column(said) for said in self.channel or ())
         voltage = self.unit, self.sensitivity, self.full_scale
-        return RecordingFacts(self.fs, columns, *voltage, self.tacho, self.tacho_pulses)
+        named = self.columns() if columns is None else columns
+        return RecordingFacts(self.fs, named, *voltage, self.tacho, self.tacho_pulses)
 
     def speed_range_hz(self) -> tuple[float, float] | None:
-        """Return where the speed of the pinion is searched."""
-        return two_numbers(self.speed_range, "--speed-range", "14,26") if self.speed_range else None
+        """Return where the speed of the pinion is searched.
+
+        Raises
+        ------
+        UsageError
+            If it is no range.
+        """
+        if not self.speed_range:
+            return None
+        low, high = two_numbers(self.speed_range, "--speed-range", "14,26")
+        if not 0.0 < low < high < inf:
+            raise UsageError(f"--speed-range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
+        return low, high
 
 
 def file_rows(said: str) -> list[tuple[Path, int | None]]:

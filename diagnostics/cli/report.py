@@ -1,81 +1,139 @@
-"""`siggen-diagnostics report`: features, training and figures of a set on one page."""
+"""`siggen-diagnostics report`: classifiers of a set, siggen's own or the user's, judged on unseen gearboxes."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.opened import Open, opened
-from diagnostics.cli.training_options import (
-    Augment,
-    Channels,
-    Device,
-    OwnIndicators,
-    Seed,
-    TestSet,
-    WithNetwork,
-    WithStudies,
-)
+from diagnostics.cli.page_options import EXPLORER, PageOptions, opened
+from diagnostics.cli.training_options import OwnIndicators, Seed, TrainingOptions
+from siggen.cli.option_groups import grouped
+from siggen.errors import UsageError
 
-EXPLORER = "explorer.html"
+if TYPE_CHECKING:
+    from diagnostics.indicators.own_indicator import OwnIndicator
+    from diagnostics.training.network_training import NetworkOptions
+    from siggen.dataset.reading import Dataset
 
 
+@dataclass(frozen=True, slots=True)
+class PredictionOptions:
+    """Your own classifier."""
+
+    predictions: Annotated[
+        Path | None,
+        typer.Option(
+            "--predictions",
+            metavar="FILE",
+            help="Train nothing; judge these predictions, .parquet or .csv: record_id, and damage (a number that rises "
+            "with damage), p_CLASS of every class (probabilities), or class (its name).",
+            show_default=False,
+        ),
+    ] = None
+    baselines: Annotated[
+        Path | None,
+        typer.Option(
+            "--baselines", metavar="DIR3", help="Folder of a report: its classifiers are judged on the same records."
+        ),
+    ] = None
+    split: Annotated[str, typer.Option("--split", metavar="test|validation", help="Whose records are judged.")] = "test"
+
+
+@grouped
 def report(
     directory: Annotated[
         Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
     ],
+    *,
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR2", help="Folder for the report. Default: DIR_report.", show_default=False
+            "--out",
+            "-o",
+            metavar="DIR2 | TABLE",
+            help="Folder for the report, DIR_report unless told; with --predictions a .parquet or .csv file.",
+            show_default=False,
         ),
     ] = None,
-    test: TestSet = None,
-    channel: Channels = None,
-    indicator: OwnIndicators = None,
-    studies: WithStudies = False,
-    cnn: WithNetwork = True,
-    device: Device = "cpu",
-    augment: Augment = True,
-    explore: Annotated[
-        bool,
-        typer.Option(
-            "--explore", help="Also write explorer.html, to which records and counts of the report then lead."
-        ),
+    models_only: Annotated[
+        bool, typer.Option("--models-only", help="Write models and metrics.json alone; DIR_models unless told.")
     ] = False,
-    show: Open = False,
+    indicator: OwnIndicators = None,
+    training: TrainingOptions,
+    yours: PredictionOptions,
+    pages: PageOptions,
     seed: Seed = 0,
 ) -> None:
-    """Compute indicators, train classifiers, and write report.html, metrics.json, tables, figures and models.
+    """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
+
+    Beside the page: metrics.json, tables and figures. With --predictions the predictions of your own classifier are
+    judged and printed, with limits over gearboxes. Missing, doubled and unknown records are refused in one list.
 
     Example: siggen-diagnostics report data/quickstart --studies
+
+    Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
+
+    Example: siggen-diagnostics report data/quickstart --predictions mine.parquet --baselines data/quickstart_report
     """
+    if yours.predictions is not None:
+        given: dict[str, object] = {"--models-only": models_only, "--indicator": indicator, "--explore": pages.explore}
+        given |= {"--open": pages.show, "options of training": training != TrainingOptions()}
+        _refuse(given, "--predictions trains nothing and writes no page")
+        _scored(directory, yours.predictions, yours, out, seed)
+        return
+    _refuse({"--baselines": yours.baselines, "--split": yours.split != "test"}, "they go with --predictions FILE")
+    if models_only:
+        _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
     from diagnostics.base.beside import beside
-    from diagnostics.base.extras import missing_packages
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.extras import missing_packages, require_packages
     from diagnostics.indicators.own_indicator import load_indicators
-    from diagnostics.report.report import write_report
+
+    if models_only:
+        require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.training.network_training import NetworkOptions, check_device
     from diagnostics.training.training_sets import open_sets
 
-    if cnn and not missing_packages("torch"):
-        check_device(device)
+    if training.cnn and not missing_packages("torch"):
+        check_device(training.device)
     own = load_indicators(indicator)
-    dataset, second = open_sets(directory, test, channel or ())
-    folder = out or beside(dataset.path, "_report")
-    options = NetworkOptions(cnn, device, augment, ablation=studies)
+    dataset, second = open_sets(directory, training.test, training.channel or ())
+    options = NetworkOptions(training.cnn, training.device, training.augment, training.studies)
+    if models_only:
+        typer.echo(str(_models((dataset, second), out or beside(dataset.path, "_models"), seed, options, own)))
+        return
+    path = _page((dataset, second), out or beside(dataset.path, "_report"), seed, options, own, explore=pages.explore)
+    typer.echo(str(path))
+    if pages.show:
+        opened(path)
+
+
+def _refuse(given: Mapping[str, object], why: str) -> None:
+    if wrong := [name for name, said in given.items() if said]:
+        raise UsageError(f"{', '.join(wrong)}: {why}; leave out one or the other")
+
+
+def _page(
+    sets: tuple[Dataset, Dataset | None],
+    folder: Path,
+    seed: int,
+    options: NetworkOptions,
+    own: tuple[OwnIndicator, ...],
+    *,
+    explore: bool,
+) -> Path:
+    """Write the report, and the page to explore beside it where it is wanted; return the report's path."""
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.report.report import write_report
+
+    dataset, second = sets
+    name = EXPLORER if explore else ""
     path = write_report(
-        dataset,
-        folder,
-        seed,
-        network=options,
-        other=second,
-        own=own,
-        with_studies=studies,
-        explorer=EXPLORER if explore else "",
-        stage=terminal_stage,
+        dataset, folder, seed, network=options, other=second, own=own, explorer=name, stage=terminal_stage
     )
     if explore:
         from diagnostics.explore.explorer import ExplorerOptions, write_explorer
@@ -83,12 +141,56 @@ def report(
 
         model = folder / "models"
         known = model if (model / "model.json").is_file() else None
-        write_explorer(
-            dataset,
-            folder / EXPLORER,
-            ExplorerOptions(model=known, own=own, first=reported_gearboxes(dataset)),
-            terminal_stage,
-        )
-    typer.echo(str(path))
-    if show:
-        opened(path)
+        first = reported_gearboxes(dataset)
+        write_explorer(dataset, folder / name, ExplorerOptions(model=known, own=own, first=first), terminal_stage)
+    return path
+
+
+def _models(
+    sets: tuple[Dataset, Dataset | None],
+    folder: Path,
+    seed: int,
+    options: NetworkOptions,
+    own: tuple[OwnIndicator, ...],
+) -> Path:
+    """Train, and write the models and what they reach; return their folder."""
+    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.indicators.classifier_table import feature_matrix
+    from diagnostics.prediction.saved_models import save_models
+    from diagnostics.training.studies import run_studies, studies_metrics
+    from diagnostics.training.training import train_models, training_metrics
+    from diagnostics.training.training_sets import other_table, set_table
+    from siggen.errors import DatasetError
+
+    dataset, second = sets
+    table = set_table(dataset, terminal_stage, own=own)
+    other = other_table(second, terminal_stage, own) if second else None
+    try:
+        trained = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
+    except DatasetError as error:
+        raise DatasetError(f"{dataset.path}: {error}") from error
+    with terminal_stage("saving the models", 1):
+        notes = save_models(trained, table, dataset, folder)
+    metrics = {**training_metrics(trained), "seed": seed, "file_notes": notes}
+    if options.studies:
+        found = run_studies(dataset, feature_matrix(table), trained.split, seed, second, terminal_stage)
+        metrics["studies"] = studies_metrics(found)
+    (folder / "metrics.json").write_text(json.dumps(metrics, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    for note in (*trained.notes, *notes):
+        typer.echo(f"note: {note}", err=True)
+    return folder
+
+
+def _scored(directory: Path, predictions: Path, yours: PredictionOptions, table: Path | None, seed: int) -> None:
+    """Print how predictions are judged, and write the rows where they are wanted."""
+    from diagnostics.indicators.classifier_table import check_suffix, write_table
+    from diagnostics.scoring.score import score
+    from siggen.dataset.reading import open as open_set
+
+    if table:
+        check_suffix(table)
+    found = score(open_set(directory), predictions, baselines=yours.baselines, split=yours.split, seed=seed)
+    typer.echo(str(found))
+    if table:
+        write_table(found.to_table(), table)
+        typer.echo(str(table))

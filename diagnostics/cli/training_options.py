@@ -2,37 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-TestSet = Annotated[
-    Path | None,
-    typer.Option(
-        "--test",
-        metavar="DIR3",
-        help="Judge the classifiers on this set too. It needs the same channels, sampling rate and states.",
-        show_default=False,
-    ),
-]
-Channels = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--channel", metavar="NAME", help="Use this channel only. May be given several times.", show_default=False
-    ),
-]
-WithStudies = Annotated[
-    bool,
-    typer.Option(
-        "--studies", help="Also compare ways to split, draw a learning curve and run an ablation. This takes minutes."
-    ),
-]
-WithNetwork = Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the networks too.")]
-Device = Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the networks.")]
-Augment = Annotated[
-    bool, typer.Option("--augment/--no-augment", help="Train the networks with random transfer paths and noise.")
-]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the bootstrap, the permutations and the networks.")]
 OwnIndicators = Annotated[
     list[str] | None,
@@ -44,3 +19,36 @@ OwnIndicators = Annotated[
         show_default=False,
     ),
 ]
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingOptions:
+    """How classifiers are trained."""
+
+    test: Annotated[
+        Path | None,
+        typer.Option(
+            "--test",
+            metavar="DIR3",
+            help="Judge the classifiers on this set too. It needs the same channels, sampling rate and states.",
+            show_default=False,
+        ),
+    ] = None
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--channel", metavar="NAME", help="Use this channel only. May be given several times.", show_default=False
+        ),
+    ] = None
+    studies: Annotated[
+        bool,
+        typer.Option(
+            "--studies",
+            help="Also compare ways to split, draw a learning curve and run an ablation. This takes minutes.",
+        ),
+    ] = False
+    cnn: Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the networks too.")] = True
+    device: Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the networks.")] = "cpu"
+    augment: Annotated[
+        bool, typer.Option("--augment/--no-augment", help="Train the networks with random transfer paths and noise.")
+    ] = True

@@ -1,21 +1,128 @@
-"""The page of recordings of one machine: the same charts as those of a set, without what only a simulation knows."""
+"""The page of recordings of one machine: the same charts as those of a set, without what only a simulation knows.
+
+Recordings of one machine as a page shows them: the healthy ones, and others with their verdicts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from diagnostics.base.extras import require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.explore.explorer import explorer_page
-from diagnostics.explore.payload import page_payload
-from diagnostics.explore.recordings_source import REFERENCE, ShownRecording, recordings_source
+from diagnostics.explore.payload import PageSource, packed_indicators, page_payload
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.machine.recording_indicators import RecordingIndicators
+from diagnostics.records.recording import Recording
+from diagnostics.records.state_classes import HEALTHY
+from siggen.errors import UsageError
+
+REFERENCE, UNKNOWN = "healthy reference", "not judged"
 
 COLUMNS = (
     *(("record_id", "Recording"), ("state", "Verdict"), ("name", "File"), ("speed_hz", "Speed [Hz]")),
     ("torque_nm", "Load"),
 )
 FILTERS = (("state", "Verdict"),)
+
+
+@dataclass(frozen=True, slots=True)
+class ShownRecording:
+    """A recording with its indicators; what was said of it; its load as the user gave it (NaN where he did not)."""
+
+    found: RecordingIndicators
+    verdict: str
+    load: float
+
+    @property
+    def healthy(self) -> bool:
+        """Whether it is one of the machine's healthy recordings."""
+        return self.verdict == REFERENCE
+
+
+def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
+    """Return recordings of one machine.
+
+    Parameters
+    ----------
+    shown : sequence of ShownRecording
+        At least one; all of the same rate and channels.
+
+    Raises
+    ------
+    UsageError
+        If rates or channels differ: charts and indicators could not be laid over each other.
+    """
+    first = shown[0].found
+    for one in shown[1:]:
+        _check_alike(first, one.found)
+    names = tuple(dict.fromkeys(name for one in shown for name in one.found.values))
+    values = np.array([[one.found.values.get(name, np.nan) for name in names] for one in shown])
+    return PageSource(
+        labels=_labels(shown),
+        overlay=nearest_healthy(shown),
+        records=lambda: _records(shown),
+        channels=tuple(first.recording.channels),
+        fs_hz=first.recording.fs_hz,
+        duration_s=max(one.found.recording.duration_s for one in shown),
+        indicators=packed_indicators(names, values, IndicatorSettings()),
+        damage={},
+        flanks=[{} for _ in shown],
+        quantities=[],
+        internals=lambda _detail, _fine: [{} for _ in shown],
+        measured=True,
+    )
+
+
+def _check_alike(first: RecordingIndicators, other: RecordingIndicators) -> None:
+    rates = first.recording.fs_hz, other.recording.fs_hz
+    if abs(rates[1] / rates[0] - 1.0) > 1e-6:
+        raise UsageError(
+            f"{other.name}: recorded at {rates[1]:g} Hz, {first.name} at {rates[0]:g} Hz; allowed: one rate on a page"
+        )
+    channels = tuple(first.recording.channels), tuple(other.recording.channels)
+    if channels[0] != channels[1]:
+        raise UsageError(
+            f"{other.name}: has the channels {', '.join(channels[1])}, {first.name} {', '.join(channels[0])}; allowed: "
+            "the same ones. Name them alike with --channel NAME=COLUMN"
+        )
+
+
+def _labels(shown: Sequence[ShownRecording]) -> dict[str, np.ndarray]:
+    count = len(shown)
+    return {
+        "record_id": np.arange(1, count + 1),
+        "name": np.array([one.found.name for one in shown]),
+        "state": np.array([one.verdict for one in shown]),
+        "fault": np.array([HEALTHY if one.healthy else "unknown" for one in shown]),
+        "specimen_id": np.arange(count),  # an indicator's place is among the other recordings
+        "operating_point_id": np.zeros(count, dtype=np.int64),
+        "speed_hz": np.array([one.found.pulses.speed_hz for one in shown]),
+        "torque_nm": np.array([one.load for one in shown]),
+        "damaged_area_mm2": np.full(count, np.nan),
+        "teeth_pinion": np.array([one.found.teeth[0] for one in shown]),
+        "teeth_gear": np.array([one.found.teeth[1] for one in shown]),
+    }
+
+
+def nearest_healthy(shown: Sequence[ShownRecording]) -> list[int | None]:
+    """Return the row of the healthy recording nearest in speed to each, never its own; None where there is none."""
+    speeds = [one.found.pulses.speed_hz for one in shown]
+    rows = [k for k, one in enumerate(shown) if one.healthy]
+    return [
+        min((k for k in rows if k != own), key=lambda k: abs(speeds[k] - speed), default=None)
+        for own, speed in enumerate(speeds)
+    ]
+
+
+def _records(shown: Sequence[ShownRecording]) -> Iterator[Recording]:
+    for number, one in enumerate(shown, start=1):
+        labels = {"record_id": number, "teeth_pinion": one.found.teeth[0], "teeth_gear": one.found.teeth[1]}
+        yield Recording(labels, one.found.recording.channels, one.found.pulses.times_s, one.found.recording.fs_hz)
 
 
 def write_recordings_page(

@@ -1,9 +1,13 @@
-"""Everything that the page's program needs of a set, as one value that JSON can hold."""
+"""Everything that the page's program needs of a set, as one value that JSON can hold.
+
+Damaged flanks of a record to scale: face width, ends of the flank, and the outline of every pit or spall.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import acos, cos, pi, radians, tan
 from typing import Any
 
 import numpy as np
@@ -13,22 +17,77 @@ import pyarrow.compute as pc
 from diagnostics.base.progress import Stage
 from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import Detail, page_detail
-from diagnostics.explore.flank_outlines import flank_size, outlines
 from diagnostics.explore.internal_waves import internal_waves, shown_internals
-from diagnostics.explore.order_axis import highest_order, order_axis
 from diagnostics.explore.packed import packed_floats
-from diagnostics.explore.record_views import PageAxes, record_views
+from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, record_views
 from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.recording import Recording, recordings
 from siggen.dataset.reading import Dataset
 
+ELLIPSE_CORNERS = 48
+DIGITS = 3
+
 SHOWN = (
     *("record_id", "specimen_id", "state", "fault", "split", "repeat", "operating_point_id", "start_angle_rad"),
     *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
 )
 GEARS = ("pinion", "gear")
+
+
+def flank_size(config: Mapping[str, Any], gear: str, teeth: int) -> dict[str, float] | None:
+    """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
+
+    Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
+    g_r = pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
+
+    Returns
+    -------
+    dict or None
+        None where the configuration does not give the gears as plain numbers.
+    """
+    try:
+        gears = config["gears"]
+        module, alpha = float(gears["module_mm"]), radians(float(gears["pressure_angle_deg"]))
+        shift = float(gears[gear].get("profile_shift", 0.0))
+        tip = module * (teeth / 2 + float(gears.get("addendum_coefficient", 1.0)) + shift)
+        face = float(gears["face_width_mm"])
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return None
+    pitch = module * teeth / 2
+    base = pitch * cos(alpha)
+    half = pi / (2 * teeth) + 2 * shift * tan(alpha) / teeth + tan(alpha) - alpha
+
+    def height_mm(radius: float) -> float:
+        slope = acos(base / radius)
+        return round(radius * cos(half - (tan(slope) - slope)) - base * cos(half), DIGITS)
+
+    return {"face_mm": face, "pitch_mm": height_mm(pitch), "tip_mm": height_mm(tip)}
+
+
+def outlines(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the damage of a record: gear, tooth, kind, depth, and corners (face, height) of the outline [mm]."""
+    return [
+        {
+            "gear": row["gear"],
+            "tooth": row["tooth"],
+            "kind": row["kind"],
+            "depth_mm": round(float(row["depth_mm"]), DIGITS),
+            "corners": _corners(row),
+        }
+        for row in rows
+    ]
+
+
+def _corners(row: Mapping[str, Any]) -> list[list[float]]:
+    face, height = np.asarray(row["polygon_face_mm"], float), np.asarray(row["polygon_height_mm"], float)
+    if face.size == 0:
+        angle = 2.0 * np.pi * np.arange(ELLIPSE_CORNERS) / ELLIPSE_CORNERS
+        face = row["face_mm"] + row["semi_axis_face_mm"] * np.cos(angle)
+        height = row["height_mm"] + row["semi_axis_profile_mm"] * np.sin(angle)
+    corners: list[list[float]] = np.round(np.stack([face, height], axis=1), DIGITS).tolist()
+    return corners
 
 
 @dataclass(frozen=True, slots=True)

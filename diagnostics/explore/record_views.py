@@ -1,23 +1,122 @@
-"""What the page shows of one channel of one record, packed."""
+"""What the page shows of one channel of one record, packed.
+
+Fewer points of a long signal by minimum and maximum of buckets, so that no impulse is lost. Source: standard.
+
+One axis of pinion orders for all records of a page, so that spectra can be subtracted point by point.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from diagnostics.explore.detail import Detail
-from diagnostics.explore.extreme_buckets import drawn_signal, outside
-from diagnostics.explore.order_axis import OrderAxis, decibels
 from diagnostics.explore.packed import packed_floats, packed_places, packed_steps
 from diagnostics.records.recording import Recording
 from diagnostics.signal.envelope_spectrum import envelope_spectrum
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle
 from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
 
+MESH_HARMONICS = 8.5
+FLOOR_M_S2 = 1e-9
+
 DECIBEL_STEP = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """Points of a signal to draw: sample numbers (n,), ascending, and values (n,)."""
+
+    sample: np.ndarray
+    value: np.ndarray
+
+
+def extreme_points(signal: np.ndarray, buckets: int) -> Drawn:
+    """Return the smallest and the largest sample of every bucket, at their own places.
+
+    Parameters
+    ----------
+    signal : (n,) float
+    buckets : int
+        Number of equal stretches; a signal of at most twice as many samples comes back whole.
+    """
+    samples = signal.size
+    if samples <= 2 * buckets:
+        return Drawn(np.arange(samples), np.asarray(signal))
+    edges = np.linspace(0, samples, buckets + 1).astype(np.int64)
+    found = [
+        low + place
+        for low, high in pairwise(edges)
+        for place in sorted((int(signal[low:high].argmin()), int(signal[low:high].argmax())))
+    ]
+    sample = np.unique(found)  # a bucket that does not vary has one extreme
+    return Drawn(sample, np.asarray(signal)[sample])
+
+
+def drawn_signal(signal: np.ndarray, buckets: int, fine: tuple[int, int]) -> Drawn:
+    """Return extremes of a signal with every sample of one stretch.
+
+    Parameters
+    ----------
+    signal : (n,) float
+    buckets : int
+        As of `extreme_points`.
+    fine : (int, int)
+        First sample of the stretch, and the one after its last.
+    """
+    sample = np.union1d(outside(extreme_points(signal, buckets).sample, fine), np.arange(*fine))
+    return Drawn(sample, np.asarray(signal)[sample])
+
+
+def outside(sample: np.ndarray, fine: tuple[int, int]) -> np.ndarray:
+    """Return the sample numbers that do not lie in a stretch."""
+    return np.asarray(sample[(sample < fine[0]) | (sample >= fine[1])])
+
+
+@dataclass(frozen=True, slots=True)
+class OrderAxis:
+    """Points at orders 0, step, 2 step ...; each stands for the orders nearest to it."""
+
+    step: float
+    points: int
+
+    def largest(self, amplitude: np.ndarray, revolutions: int) -> np.ndarray:
+        """Return the largest amplitude about every point (points,); the nearest one where none lies there.
+
+        Parameters
+        ----------
+        amplitude : (bins,) float64
+            At orders 0, 1/revolutions ...; NaN beyond its end.
+        revolutions : int
+        """
+        place = np.round(np.arange(amplitude.size) / (revolutions * self.step)).astype(np.int64)
+        found = np.full(self.points, -np.inf)
+        inside = place < self.points
+        np.maximum.at(found, place[inside], amplitude[inside])
+        empty = np.flatnonzero(np.isneginf(found))
+        nearest = np.round(empty * self.step * revolutions).astype(np.int64)
+        found[empty] = np.where(nearest < amplitude.size, amplitude[np.minimum(nearest, amplitude.size - 1)], np.nan)
+        return found
+
+
+def order_axis(highest_order: float, revolutions: int, points: int) -> OrderAxis:
+    """Return the axis up to an order: as fine as the longest record resolves, or as the points allow."""
+    step = max(1.0 / max(revolutions, 1), highest_order / max(points - 1, 1))
+    return OrderAxis(step, int(highest_order / step) + 1)
+
+
+def highest_order(teeth: int, fs_hz: float, slowest_hz: float) -> float:
+    """Return the last pinion order shown: 8.5 mesh harmonics, or the end of the band of the slowest record."""
+    return min(MESH_HARMONICS * teeth, SAMPLES_PER_TOOTH * teeth / 2, fs_hz / 2.0 / slowest_hz)
+
+
+def decibels(amplitude: np.ndarray) -> np.ndarray:
+    """Return levels over 1 m/s^2; what is below 1e-9 m/s^2 counts as that."""
+    return np.asarray(20.0 * np.log10(np.maximum(amplitude, FLOOR_M_S2)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,8 +19,7 @@ from diagnostics.indicators.cepstrum import BAND_SHARE, shaft_log_spectrum
 from diagnostics.indicators.history import central_moments, dominant_harmonic
 from diagnostics.indicators.indicator import Indicator
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.signal.demodulation import Modulation, demodulated
-from diagnostics.signal.mesh_band import mesh_baseband
+from diagnostics.signal.mesh_band import Modulation, demodulated, mesh_baseband
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name, band_signal
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_signals import Shaft, ShaftSignals, shaft_signals

@@ -48,7 +48,6 @@ def moment_over_history(fourth: float, variances: Sequence[float]) -> float:
     known="first record: Gaussian 3, sine 1.5",
     undefined=NO_HISTORY,
     source=f"Zakrajsek et al. 1993; {CONDITION_METRICS} takes residuals in chronological order",
-    history=True,
 )
 def na4(residual_fourth: float, residual_variances: Sequence[float]) -> float:
     """Return N sum (r_M - mean)^4 / {(1/M) sum_j sum (r_j - mean)^2}^2 of the last record.
@@ -76,7 +75,6 @@ def na4(residual_fourth: float, residual_variances: Sequence[float]) -> float:
     known="healthy: Gaussian 3; a c-fold residual: 3 c⁴",
     undefined="the specimen has no usable healthy record at this operating point",
     source="Decker et al. 1994",
-    history=True,
 )
 def na4_star(residual_fourth: float, healthy_residual_variances: Sequence[float]) -> float:
     """Return mu_4 of the last residual over the squared mean variance of the healthy records among them.
@@ -96,7 +94,6 @@ def na4_star(residual_fourth: float, healthy_residual_variances: Sequence[float]
     known="first record: narrow-band Gaussian 3.25",
     undefined=NO_HISTORY,
     source="Zakrajsek et al. 1994",
-    history=True,
 )
 def nb4(envelope_fourth: float, envelope_variances: Sequence[float]) -> float:
     """Return NA4's form for s = |b + j H(b)| of the band b round the mesh harmonic that dominates in the first record.

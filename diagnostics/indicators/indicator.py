@@ -20,6 +20,8 @@ STILL = "the signal does not vary (standard deviation below 1e-9 of its rms)"
 NO_LINE = "the mesh line is below 1e-9 of the strongest line, or a sideband is unresolved or outside the band"
 BOOK = "standard literature"
 CONDITION_METRICS = "MATLAB gearConditionMetrics"
+OF_A_HISTORY = "_variances"
+"""How names end that hold one value per record of a history."""
 
 Formula = Callable[..., float]
 
@@ -48,8 +50,6 @@ class Indicator:
         When it has no value.
     source : str
         Where it comes from; with MATLAB's convention where there is one.
-    history : bool
-        Whether it needs other records of the same specimen.
     """
 
     column: str
@@ -61,7 +61,11 @@ class Indicator:
     known: str
     undefined: str
     source: str
-    history: bool = False
+
+    @property
+    def history(self) -> bool:
+        """Whether it needs other records of the same specimen: its formula takes their variances."""
+        return any(name.endswith(OF_A_HISTORY) for name in self.parameters)
 
     @property
     def name(self) -> str:
@@ -108,12 +112,11 @@ def indicator(
     undefined: str,
     source: str,
     unit: str = "",
-    history: bool = False,
 ) -> Callable[[Formula], Formula]:
     """Return a decorator that puts a formula among the indicators; the arguments are those of `Indicator`."""
 
     def keep(function: Formula) -> Formula:
-        INDICATORS.append(Indicator(column, function, title, signal, formula, unit, known, undefined, source, history))
+        INDICATORS.append(Indicator(column, function, title, signal, formula, unit, known, undefined, source))
         return function
 
     return keep

@@ -15,7 +15,7 @@ from siggen.dataset.reading import Dataset
 def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1) -> FeatureMatrix:
     """Return one row per record: indicators of every channel, labels with their roles, gearbox and split.
 
-    The indicators are those that the classifiers of `siggen-diagnostics train` take. They are kept beside the set, so
+    The indicators are those that the classifiers of `siggen-diagnostics report` take. They are kept beside the set, so
     that only the first call computes them.
 
     Parameters

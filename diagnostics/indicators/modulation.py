@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from diagnostics.indicators.indicator import indicator
-from diagnostics.signal.demodulation import Modulation
+from diagnostics.signal.mesh_band import Modulation
 from diagnostics.signal.spectrum import line_amplitudes
 
 DEEPEST_RAD = 1.0

@@ -21,11 +21,10 @@ from diagnostics.records.record_problems import RecordProblem, clipped_channels,
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
 from diagnostics.records.usable_records import refused_parts
+from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.noise_sketch import noise_sketch
-from diagnostics.signal.order_domain import AngleGrid, angle_grid
+from diagnostics.signal.order_domain import AngleGrid, angle_grid, speed_variation_percent
 from diagnostics.signal.shaft_signals import Shaft, record_shafts
-from diagnostics.signal.speed_variation import speed_variation_percent
-from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
 from siggen.errors import UsageError
 
 WAVEFORM_HARMONICS = 20
@@ -172,18 +171,17 @@ def record_result(record: Recording, settings: IndicatorSettings | None = None) 
     lost = {channel for channel, _ in refused}
     usable = {} if "" in lost else {name: _float64(s) for name, s in record.channels.items() if name not in lost}
     pulses = _float64(record.tacho_s)
-    if not needs_tacho and usable:
+    if chosen.speed_range_hz is not None and usable:
         bad = {problem.channel for problem in problems}
         good = {name: signal for name, signal in usable.items() if name not in bad}
         try:
-            pulses = _tacholess(record, good or usable, chosen)
+            pulses = mesh_pulses(good or usable, record.fs_hz, _teeth(record), chosen.speed_range_hz).times_s
         except UsageError as error:
             problems, usable = [*problems, RecordProblem(int(record.labels["record_id"]), "", str(error))], {}
     channels = {name: ChannelResult({}, conditions=_channel_conditions(s)) for name, s in record.channels.items()}
     turns, notes = (0, 0), ""
     if usable:
-        teeth = (int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"]))
-        signals, shafts = record_signals(usable, pulses, record.fs_hz, teeth, chosen)
+        signals, shafts = record_signals(usable, pulses, record.fs_hz, _teeth(record), chosen)
         turns, notes = (shafts[0].revolutions, shafts[1].revolutions), shaft_notes(shafts)
         channels |= {name: _channel_result(own, record.channels[name], pulses) for name, own in signals.items()}
     conditions = _pulse_conditions(pulses)
@@ -220,6 +218,10 @@ def _waveform(average: np.ndarray, teeth: int) -> np.ndarray:
     return np.asarray(spectrum[: WAVEFORM_HARMONICS * teeth + 2].astype(np.complex64))
 
 
+def _teeth(record: Recording) -> tuple[int, int]:
+    return int(record.labels["teeth_pinion"]), int(record.labels["teeth_gear"])
+
+
 def _float64(values: np.ndarray) -> np.ndarray:
     return np.asarray(values, dtype=np.float64)
 
@@ -244,15 +246,3 @@ def _pulse_conditions(pulses: np.ndarray) -> dict[str, float]:
         "speed_variation_percent": speed_variation_percent(pulses),
         "start_turn": float((-pulses[0] / (pulses[1] - pulses[0])) % 1.0),
     }
-
-
-def _tacholess(record: Recording, channels: dict[str, np.ndarray], settings: IndicatorSettings) -> np.ndarray:
-    """Return the pulse times that the mesh lines of the clearest usable channel give."""
-    assert settings.speed_range_hz is not None
-    teeth = int(record.labels["teeth_pinion"])
-    clarity = {
-        name: mesh_ridge(signal, record.fs_hz, teeth, settings.speed_range_hz).clarity
-        for name, signal in channels.items()
-    }
-    clearest = channels[max(clarity, key=lambda name: clarity[name])]
-    return tacholess_pulses(clearest, record.fs_hz, teeth, settings.speed_range_hz)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from diagnostics.signal.difference_signal import SHAFT_ORDERS, SIDEBANDS
 from diagnostics.signal.order_bands import ORDER_BANDS, band_name
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH
+from diagnostics.signal.shaft_signals import SHAFT_ORDERS, SIDEBANDS
 from diagnostics.signal.spectral_kurtosis import FRAME_SAMPLES
 
 
@@ -31,7 +31,7 @@ class IndicatorSettings:
     frame_samples : int
         Frame of the spectral kurtosis.
     speed_range_hz : (float, float), optional
-        Where given, angles come from the mesh lines within this range of pinion speed, not from the pulses.
+        Where given, angles come from the lines of both shafts within this range of pinion speed, not from the pulses.
     """
 
     mesh_harmonics: int = 5

@@ -8,6 +8,7 @@ decoded together is shuffled together. Pure: the same arguments give the same or
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,38 +17,42 @@ from siggen.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """Which part of an epoch a reader has: rank of `world_size`, and worker of `workers` within the rank.
+class Shuffling:
+    """How an epoch is mixed, and which process this is.
+
+    Attributes
+    ----------
+    seed : int or None
+        None keeps the order of the files.
+    buffer_groups : int
+        Row groups that are shuffled together.
+    rank, world_size : int
+        Which of how many processes; each has an equal part of every epoch.
 
     Raises
     ------
     UsageError
-        If a number is not below its count.
+        If the rank is not below the number of processes.
     """
-
-    rank: int = 0
-    world_size: int = 1
-    worker: int = 0
-    workers: int = 1
-
-    def __post_init__(self) -> None:
-        for name, number, count in (
-            ("rank", self.rank, self.world_size),
-            ("worker", self.worker, self.workers),
-        ):
-            if not 0 <= number < count:
-                raise UsageError(f"{name}: received {number} of {count}; allowed are 0 to {count - 1}")
-
-
-@dataclass(frozen=True, slots=True)
-class Shuffling:
-    """How an epoch is mixed: seed, or None for the order of the files, and row groups that are shuffled together."""
 
     seed: int | None = 0
     buffer_groups: int = 4
+    rank: int = 0
+    world_size: int = 1
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.rank < self.world_size:
+            raise UsageError(f"rank: received {self.rank} of {self.world_size}; allowed are 0 to {self.world_size - 1}")
 
 
-def rank_windows(windows: int, part: Part) -> tuple[int, int]:
+class Lane(NamedTuple):
+    """Which of the workers of a process reads."""
+
+    worker: int = 0
+    workers: int = 1
+
+
+def rank_windows(windows: int, part: Shuffling) -> tuple[int, int]:
     """Return the first and the last but one position of the windows of a rank; ranks differ by one window at most."""
     return windows * part.rank // part.world_size, windows * (part.rank + 1) // part.world_size
 
@@ -60,7 +65,7 @@ def lane_sizes(windows: int, batch: int, workers: int) -> np.ndarray:
     return np.bincount(np.arange(sizes.size) % workers, weights=sizes, minlength=workers).astype(np.int64)
 
 
-def epoch_chunks(group: np.ndarray, epoch: int, part: Part, batch: int, shuffling: Shuffling) -> list[np.ndarray]:
+def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffling: Shuffling) -> list[np.ndarray]:
     """Return the windows that one worker reads in an epoch, chunk by chunk.
 
     Parameters
@@ -69,12 +74,12 @@ def epoch_chunks(group: np.ndarray, epoch: int, part: Part, batch: int, shufflin
         Row group of every window, ascending.
     epoch : int
         Another epoch, another order.
-    part : Part
-        Which reader.
+    reader : Lane
+        Which worker of the process.
     batch : int
         Windows of a batch.
     shuffling : Shuffling
-        Seed and size of the buffer.
+        Seed, size of the buffer, and which process.
 
     Returns
     -------
@@ -83,15 +88,15 @@ def epoch_chunks(group: np.ndarray, epoch: int, part: Part, batch: int, shufflin
     """
     place = _group_places(int(group[-1]) + 1 if group.size else 0, epoch, shuffling)
     sequence = np.argsort(place[group], kind="stable")
-    first, last = rank_windows(group.size, part)
-    ends = np.cumsum(lane_sizes(last - first, batch, part.workers))
-    start = int(ends[part.worker - 1]) if part.worker else 0
-    lane = sequence[first + start : first + int(ends[part.worker])]
+    first, last = rank_windows(group.size, shuffling)
+    ends = np.cumsum(lane_sizes(last - first, batch, reader.workers))
+    start = int(ends[reader.worker - 1]) if reader.worker else 0
+    lane = sequence[first + start : first + int(ends[reader.worker])]
     buffer = place[group[lane]] // shuffling.buffer_groups
     chunks = np.split(lane, np.flatnonzero(np.diff(buffer)) + 1) if lane.size else []
     if shuffling.seed is None:
         return chunks
-    rng = generator(shuffling.seed, Purpose.LOADER, epoch, 1 + part.rank, part.worker)
+    rng = generator(shuffling.seed, Purpose.LOADER, epoch, 1 + shuffling.rank, reader.worker)
     return [rng.permutation(chunk) for chunk in chunks]
 
 

@@ -17,7 +17,7 @@ import torch
 from torch.utils.data import Dataset as TorchDataset
 from torch.utils.data import Sampler
 
-from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks
+from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks
 from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
@@ -42,7 +42,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
     settings : StreamSettings, optional
         Default: windows of 8 pinion revolutions of 288 angle steps, every 4 revolutions.
     labels : sequence of str
-        Further labels, see `diagnostics.loader.window_labels`.
+        Further labels, see `diagnostics.loader.window_index`.
     transform : callable, optional
         Takes a sample and a generator, and returns what the model gets. The generator depends on seed, window and how
         often the window was drawn.
@@ -119,16 +119,12 @@ class RowGroupSampler(Sampler[int]):  # type: ignore[misc]
     windows : WindowDataset
         What is drawn from.
     shuffling : Shuffling, optional
-        Seed, and row groups that are mixed.
-    rank, world_size : int
-        Which of how many processes this is.
+        Seed, row groups that are mixed, and which of how many processes this is.
     """
 
-    def __init__(
-        self, windows: WindowDataset, shuffling: Shuffling | None = None, *, rank: int = 0, world_size: int = 1
-    ) -> None:
+    def __init__(self, windows: WindowDataset, shuffling: Shuffling | None = None) -> None:
         self.group = windows.index.group
-        self.shuffling, self.part = shuffling or Shuffling(), Part(rank, world_size)
+        self.shuffling = shuffling or Shuffling()
         self.epoch = 0
 
     def __len__(self) -> int:
@@ -146,4 +142,4 @@ class RowGroupSampler(Sampler[int]):  # type: ignore[misc]
         self.epoch = epoch
 
     def _chunks(self, epoch: int) -> list[np.ndarray]:
-        return epoch_chunks(self.group, epoch, self.part, 1, self.shuffling)
+        return epoch_chunks(self.group, epoch, Lane(), 1, self.shuffling)

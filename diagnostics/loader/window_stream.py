@@ -22,7 +22,7 @@ import torch
 from torch.utils.data import DataLoader, IterableDataset, default_collate, get_worker_info
 from torch.utils.data._utils.collate import default_collate_fn_map
 
-from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks, rank_windows
+from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks, rank_windows
 from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
@@ -73,14 +73,12 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         Default: windows of 8 pinion revolutions of 288 angle steps, every 4 revolutions.
     batch : int or None
         Windows of a batch; the last of a rank may be smaller. None: single windows, for `DataLoader(batch_size=...)`.
-    rank, world_size : int
-        Which of how many processes this is.
     shuffling : Shuffling, optional
-        Seed and buffer; `Shuffling(seed=None)` keeps the order of the files.
+        Seed and buffer, and which of how many processes this is; `Shuffling(seed=None)` keeps the order of the files.
     cache : Path, optional
         Folder for decoded records, read through memory mapping; worth it where they are read more than once.
     labels : sequence of str
-        Further labels, see `diagnostics.loader.window_labels`.
+        Further labels, see `diagnostics.loader.window_index`.
     transform : callable, optional
         Takes a single window with its labels and a generator, and returns what is batched. The generator depends on
         seed, epoch and window alone.
@@ -100,8 +98,6 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         settings: StreamSettings | None = None,
         *,
         batch: int | None = 32,
-        rank: int = 0,
-        world_size: int = 1,
         shuffling: Shuffling | None = None,
         cache: Path | None = None,
         labels: Sequence[str] = (),
@@ -110,7 +106,6 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         if batch is not None and batch < 1:
             raise UsageError(f"batch: received {batch}; allowed are 1 or more windows, or None for single ones")
         chosen = settings or StreamSettings()
-        self.part = Part(rank, world_size)
         self.batch = batch
         self.shuffling = shuffling or Shuffling()
         self.index = window_index(dataset, split, chosen, labels)
@@ -134,7 +129,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         """Batches of this rank in an epoch."""
         if self.batch is None:
             raise TypeError("a stream of single windows does not know into how many batches they will be put")
-        first, last = rank_windows(self.index.size, self.part)
+        first, last = rank_windows(self.index.size, self.shuffling)
         return (last - first + self.batch - 1) // self.batch
 
     def __iter__(self) -> Iterator[Any]:
@@ -147,8 +142,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
     def _epoch(self, epoch: int, delivered: int, worker: int, workers: int) -> Iterator[Any]:
         # torch asks worker 0 first; after k batches it is the turn of the one that would have come then
         lane = (worker + delivered) % workers
-        part = Part(self.part.rank, self.part.world_size, lane, workers)
-        chunks = epoch_chunks(self.index.group, epoch, part, self.batch or 1, self.shuffling)
+        chunks = epoch_chunks(self.index.group, epoch, Lane(lane, workers), self.batch or 1, self.shuffling)
         passed = len(range(lane, delivered, workers)) * (self.batch or 1)
         places = self._places(chunks, passed)
         if self.batch is None:
@@ -255,8 +249,8 @@ class WindowLoader:
             "seed": stream.shuffling.seed,
             "buffer_groups": stream.shuffling.buffer_groups,
             "batch": stream.batch,
-            "rank": stream.part.rank,
-            "world_size": stream.part.world_size,
+            "rank": stream.shuffling.rank,
+            "world_size": stream.shuffling.world_size,
             "workers": self.workers,
         }
 

@@ -1,22 +1,27 @@
 """Check: whether a new recording of a machine differs from its healthy ones; no state is named.
 
 Source: derived; the test of the change is `change_score`.
+
+Earlier checks of a machine, one line of JSON each beside its facts: what a trend is drawn from.
 """
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
-from math import log
+from datetime import UTC, datetime
+from math import isfinite, log
+from pathlib import Path
 
 import numpy as np
 
 from diagnostics.machine.healthy_state import pieces_of
-from diagnostics.machine.machine import Machine
+from diagnostics.machine.machine import CHECKS, Machine
 from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.change_score import FEWEST, ChangeScore, attainable_rate, change_score
-from diagnostics.training.log_features import log_values
+from diagnostics.training.referenced import log_values
 from siggen.errors import UsageError
 
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
@@ -24,6 +29,49 @@ SPEED_RATIO = 1.05
 """Up to which indicators are compared: a line moves by less than the width of most modes."""
 LOAD_RATIO = 1.2
 LISTED = 8
+
+
+@dataclass(frozen=True, slots=True)
+class PastCheck:
+    """One line: when it was made (UTC), of what, with which verdict, score and limit (None where there was none)."""
+
+    made: str
+    recording: str
+    verdict: str
+    speed_hz: float | None
+    score: float | None
+    limit: float | None
+
+
+def add_checks(folder: Path, checks: list[Check]) -> None:
+    """Append checks to the machine's history."""
+    made = datetime.now(UTC).isoformat(timespec="seconds")
+    with (folder / CHECKS).open("a", encoding="utf-8") as file:
+        for check in checks:
+            speed = check.speed_hz if isfinite(check.speed_hz) else None
+            score, limit = (None, None) if check.score is None else (check.score.score, check.score.limit)
+            row = PastCheck(made, check.recording, check.verdict, speed, score, limit)
+            file.write(json.dumps({name: getattr(row, name) for name in PastCheck.__slots__}) + "\n")
+
+
+def past_checks(folder: Path) -> list[PastCheck]:
+    """Return the history, oldest first.
+
+    Raises
+    ------
+    UsageError
+        If a line cannot be read; names it.
+    """
+    file = folder / CHECKS
+    if not file.exists():
+        return []
+    found = []
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+        try:
+            found.append(PastCheck(**json.loads(line)))
+        except (TypeError, ValueError) as error:
+            raise UsageError(f"{file}: line {number} is damaged ({error}); delete that line") from None
+    return found
 
 
 @dataclass(frozen=True, slots=True)

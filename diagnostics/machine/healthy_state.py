@@ -11,7 +11,7 @@ import numpy as np
 from diagnostics.base.progress import Advance
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.machine import Machine
-from diagnostics.machine.mesh_lines import check_mesh_lines
+from diagnostics.machine.recording_indicators import check_mesh_lines
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, RecordingFacts, read_recording

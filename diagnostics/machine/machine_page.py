@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnostics.machine.check import CHANGED, UNCHANGED, Check, rate_sentence
-from diagnostics.machine.check_history import PastCheck, past_checks
+from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, past_checks, rate_sentence
 from diagnostics.machine.machine import Machine
 from diagnostics.machine.recording_indicators import indicator_title
 from diagnostics.page import html

@@ -12,7 +12,7 @@ import siggen
 from diagnostics.machine.recording_indicators import RecordingIndicators, indicator_matrix, indicator_title
 from diagnostics.page import html
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.prediction.sideband_figure import sideband_figure
+from diagnostics.prediction.prediction_page import sideband_figure
 
 TABLE, PAGE = "indicators.csv", "indicators.html"
 

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from diagnostics.page.scripts import HINT_SCRIPT, SORT_SCRIPT
-from diagnostics.page.security_policy import security_policy
+from diagnostics.page.security_policy import HINT_SCRIPT, SORT_SCRIPT, security_policy
 from diagnostics.page.style_sheet import style_sheet
 
 PRINTED_ROWS = 20

@@ -14,16 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.prediction.known_reasons import known_reasons, reference_reasons
-from diagnostics.prediction.own_state import OwnState, own_state
+from diagnostics.prediction.known_reasons import OwnState, known_reasons, own_state, reference_reasons
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
+from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.release.training_distance import TrainingDistance
 from diagnostics.statistics.calibration import tempered
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.log_features import log_mean, log_values
+from diagnostics.training.referenced import log_mean, log_values
 from siggen.errors import UsageError
 
 NO_REFERENCE = (
@@ -297,7 +296,7 @@ def _network_vote(
     """Return the network's vote where it can take the recording, else why not."""
     if model.network is None:
         return (), ()
-    from diagnostics.prediction.network_vote import network_probabilities
+    from diagnostics.prediction.network_votes import network_probabilities
 
     facts = model.network[1]
     trained = {facts.windows.teeth, *(pinion for pinion, _ in model.facts.teeth)}
@@ -316,7 +315,7 @@ def _circular_vote(
     """Return the vote of the network on averages where the pieces have them, else why not."""
     if model.circular is None:
         return (), ()
-    from diagnostics.prediction.circular_vote import circular_probabilities
+    from diagnostics.prediction.network_votes import circular_probabilities
 
     network, facts = model.circular
     if not all(pieces.waveforms):

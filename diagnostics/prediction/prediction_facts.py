@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from diagnostics.page.wording import counted
-from diagnostics.prediction.own_state import OwnState
+from diagnostics.prediction.known_reasons import OwnState
+from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
-from diagnostics.release.model_facts import ModelFacts
 
 MEANING = (
     "The models were trained on simulated records only. No measured pitting was used. A probability compares the "

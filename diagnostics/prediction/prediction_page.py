@@ -1,20 +1,132 @@
-"""A prediction as a folder: JSON, a sideband plot per channel, and one page with both."""
+"""A prediction as a folder: JSON, a sideband plot per channel, and one page with both.
+
+What a prediction says, in sentences written from its numbers.
+
+Order spectrum of a recording around mesh harmonics with the sidebands of both shafts marked.
+"""
 
 from __future__ import annotations
 
 import json
+from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from diagnostics.base.extras import require_packages
 from diagnostics.page import html
-from diagnostics.page.style import png_bytes, styled
-from diagnostics.prediction.prediction import Prediction
+from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.wording import capitalised, counted, joined, percent
+from diagnostics.prediction.model_facts import ModelFacts
+from diagnostics.prediction.prediction import Prediction, Vote
 from diagnostics.prediction.prediction_facts import MEANING, prediction_facts, prediction_rows
-from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
-from diagnostics.prediction.sideband_figure import sideband_figure
-from diagnostics.release.model_facts import ModelFacts
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_pulses import ShaftPulses
+from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TITLES = {
+    "healthy_referenced": "differences from the healthy reference",
+    "network": "the network",
+    "circular": "the circular network",
+}
+
+HARMONICS_SHOWN = 4
+ORDERS_SHOWN = 4.5
+SIDEBANDS = 4
+DECADES_SHOWN = 5.0
+LINE_COLOUR = "#5b6b7b"
 
 INDICATORS_SHOWN = 400
+
+
+def prediction_summary(found: Prediction) -> list[str]:
+    """Return the answer or why there is none, the votes, the distance, and what they rest on."""
+    votes = [
+        f"{found.classes[vote.named]} by {TITLES.get(vote.classifier, vote.classifier)} ({_weight(vote)})"
+        for vote in found.votes
+    ]
+    near = found.nearness
+    side = "beyond" if near.outside else "within"
+    speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
+    if found.reasons:
+        reasons = [f"{capitalised(reason.rstrip('.'))}." for reason in found.reasons]
+        answer = f"The models give no answer for this recording. {' '.join(reasons)}"
+    else:
+        answer = f"The recording is most like the state {found.state}."
+        if found.contradiction:
+            answer += f" This answer is weak: {found.contradiction}."
+    if (own := found.own_state) is not None:
+        told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
+        answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
+    withheld = " Do not use these states." if found.reasons else ""
+    return [
+        answer,
+        *([f"The most probable state is {joined(votes)}.{withheld}"] if votes else []),
+        f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
+        f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more pinion "
+        f"revolutions. The pinion speed is {speed}, from the {found.pulses.origin}.",
+    ]
+
+
+def _weight(vote: Vote) -> str:
+    """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
+    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the {vote.parts} agree"]
+    right = [] if vote.accuracy is None else [f"right in {percent(vote.accuracy.value)} of its test records"]
+    return "; ".join([percent(float(vote.probability.max())), *agree, *right])
+
+
+def model_provenance(facts: ModelFacts) -> str:
+    """Return which program made the page, and which set the models were trained on."""
+    return (
+        f"Made by siggen-diagnostics {version('siggen')} with models trained on the set {facts.set_name}, identity "
+        f"{facts.identity}."
+    )
+
+
+def sideband_figure(recording: MeasuredRecording, teeth: tuple[int, int], pulses: ShaftPulses, channel: str) -> Figure:
+    """Return the spectrum of a channel around its first mesh harmonics, one row each, all on one scale."""
+    speed_hz = pulses.speed_hz
+    spectrum = order_spectrum(recording.channels[channel], pulses.times_s, recording.fs_hz, teeth[0])
+    highest = int((0.45 * recording.fs_hz / speed_hz - ORDERS_SHOWN) / teeth[0])
+    harmonics = range(1, min(HARMONICS_SHOWN, max(1, highest)) + 1)
+    figure, axes = new_figure(len(harmonics), 1, height_in=1.0 + 1.3 * len(harmonics), sharex=True, sharey=True)
+    top = 0.0
+    for axis, harmonic in zip(axes[:, 0], harmonics, strict=True):
+        top = max(top, _draw(axis, spectrum, teeth, harmonic))
+        title = f"{channel}, mesh harmonic {harmonic}: {harmonic * teeth[0] * speed_hz:.1f} Hz"
+        axis.set_title(title, loc="left", fontweight="bold")
+    axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
+    axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
+    axes[-1, 0].set_xlabel(f"Offset from the mesh line [pinion orders of {speed_hz:.4g} Hz]")
+    figure.supylabel("Amplitude [m/s²]", fontsize=10)
+    _legend(figure)
+    return figure
+
+
+def _draw(axis: Any, spectrum: OrderSpectrum, teeth: tuple[int, int], harmonic: int) -> float:
+    near = np.abs(spectrum.order - harmonic * teeth[0]) <= ORDERS_SHOWN
+    offset, amplitude = spectrum.order[near] - harmonic * teeth[0], spectrum.amplitude_m_s2[near]
+    axis.semilogy(offset, amplitude, color=LINE_COLOUR)
+    for step, marker, colour in ((teeth[0] / teeth[1], "|", GEAR_COLOUR), (1.0, "v", PINION_COLOUR)):
+        lines = np.array([k * step for k in range(-SIDEBANDS, SIDEBANDS + 1) if k])
+        reach = 1.5 / spectrum.revolutions
+        height = np.array([amplitude[np.abs(offset - line) <= reach].max(initial=1e-30) for line in lines])
+        axis.plot(lines, 1.9 * height, linestyle="none", marker=marker, markersize=4.5, color=colour)
+    return float(amplitude.max(initial=1e-30))
+
+
+def _legend(figure: Figure) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], linestyle="none", marker="v", markersize=4.5, color=PINION_COLOUR, label="pinion sidebands"),
+        Line2D([], [], linestyle="none", marker="|", markersize=6, color=GEAR_COLOUR, label="gear sidebands"),
+    ]
+    figure.legend(handles=handles, loc="outside upper right", ncols=2, fontsize=8)
 
 
 def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path:

@@ -14,14 +14,13 @@ from fractions import Fraction
 
 import numpy as np
 
-from diagnostics.indicators.own_columns import own_values
-from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.own_indicator import OwnIndicator, own_values
 from diagnostics.indicators.record import record_values
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.recording import Recording
-from diagnostics.release.floor_roughness import floor_features
 from siggen.errors import UsageError
 
 LARGEST_DENOMINATOR = 1000

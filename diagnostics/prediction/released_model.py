@@ -1,4 +1,7 @@
-"""A model folder read for use: skops, safetensors and JSON only, none of which executes what a file holds."""
+"""A model folder read for use: skops, safetensors and JSON only, none of which executes what a file holds.
+
+What each file of a model folder says it was trained on, so that files of two models are not used as one.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +12,20 @@ from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
 from diagnostics.indicators.indicator import base_name
-from diagnostics.indicators.own_columns import all_own
-from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.indicators.own_indicator import OwnIndicator, all_own
 from diagnostics.indicators.registry import BY_NAME
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.prediction.model_part import ModelPart, check_parts, check_size, classifier_part
-from diagnostics.release.model_facts import ModelFacts, read_accuracy, read_facts, read_hashes
-from diagnostics.release.model_seal import FACTS_FILE, check_files
-from diagnostics.release.release import REFERENCED
-from diagnostics.release.training_distance import TrainingDistance
+from diagnostics.prediction.model_facts import (
+    FACTS_FILE,
+    ModelFacts,
+    check_files,
+    read_accuracy,
+    read_facts,
+    read_hashes,
+)
+from diagnostics.prediction.release import REFERENCED
+from diagnostics.prediction.training_distance import TrainingDistance
+from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import CIRCULAR, NETWORK
 from diagnostics.training.baselines import FeatureClassifier
@@ -31,8 +39,8 @@ from diagnostics.training.classifier_file import (
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
-    from diagnostics.training.circular_files import CircularFacts
     from diagnostics.training.circular_network import CircularNetwork
+    from diagnostics.training.circular_training import CircularFacts
     from diagnostics.training.cnn import WideKernelNetwork
     from diagnostics.training.cnn_files import NetworkFile
 
@@ -41,8 +49,74 @@ UNHASHED = "this model has no hashes of its files, so a changed bit in one is no
 
 
 @dataclass(frozen=True, slots=True)
+class ModelPart:
+    """A file of a model folder: its name, the identity of the set it was trained on, its states and channels."""
+
+    file: str
+    identity: str
+    classes: tuple[str, ...]
+    channels: tuple[str, ...]
+
+
+def classifier_part(file: str, identity: str, classifier: FeatureClassifier) -> ModelPart:
+    """Return what the names beside a classifier on indicators say; channels are those of its features."""
+    channels = dict.fromkeys(name.split("__", 1)[1] for name in classifier.features if "__" in name)
+    return ModelPart(file, identity, classifier.classes, tuple(channels))
+
+
+def check_parts(folder: Path, facts: ModelFacts, parts: list[ModelPart]) -> None:
+    """Check that all files were trained on what `model.json` names.
+
+    Raises
+    ------
+    UsageError
+        Naming the file that differs, in what, and the way out.
+    """
+    for part in parts:
+        differences = [
+            f"{name} {_listed(own)} instead of {_listed(expected)}"
+            for name, own, expected in (
+                ("identity of the set", (part.identity,), (facts.identity,)),
+                ("states", part.classes, facts.classes),
+                ("channels", tuple(sorted(part.channels)), tuple(sorted(facts.channels))),
+            )
+            if own != expected
+        ]
+        if differences:
+            raise _foreign(folder, part.file, f"does not belong to {FACTS_FILE} beside it", differences)
+
+
+def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
+    """Check that a pipeline takes as many features as the names beside it, and knows no further states.
+
+    Raises
+    ------
+    UsageError
+        If the pipeline is that of another model.
+    """
+    takes, named = int(classifier.pipeline.n_features_in_), len(classifier.features)
+    highest, states = int(max(classifier.pipeline.classes_)), len(classifier.classes)
+    differences = [f"takes {takes} features instead of {named}"] if takes != named else []
+    if highest >= states:
+        differences.append(f"knows state {highest + 1} of {states}")
+    if differences:
+        raise _foreign(folder, file, "does not belong to the names beside it", differences)
+
+
+def _foreign(folder: Path, file: str, what: str, differences: list[str]) -> UsageError:
+    return UsageError(
+        f"{folder / file}: {what} ({'; '.join(differences)}). The files of a model are written together; copy the "
+        f"folder as a whole or train again: siggen-diagnostics report SET --models-only --out {folder}"
+    )
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(name[:12] if len(name) == 64 else name for name in names) or "none"
+
+
+@dataclass(frozen=True, slots=True)
 class ReleasedModel:
-    """Everything `train` wrote that a prediction needs.
+    """Everything `report` wrote that a prediction needs.
 
     Attributes
     ----------
@@ -81,12 +155,12 @@ class ReleasedModel:
 
 
 def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
-    """Read the folder that `siggen-diagnostics train` wrote.
+    """Read the models in a folder that `siggen-diagnostics report` wrote.
 
     Parameters
     ----------
     folder : Path
-        The folder; nothing in it is executed.
+        The folder, or the `models` in it; nothing in it is executed.
     own : sequence of OwnIndicator
         The user's indicators; those that the model was trained with have to be among them.
 
@@ -98,15 +172,16 @@ def load_model(folder: Path, own: Sequence[OwnIndicator] = ()) -> ReleasedModel:
     """
     if not folder.exists():
         raise UsageError(
-            f"{folder}: no such folder; MODEL is the folder that `siggen-diagnostics train SET --out MODEL` wrote"
+            f"{folder}: no such folder; MODEL is the folder that `siggen-diagnostics report SET --out MODEL` wrote"
         )
     if not folder.is_dir():
         raise UsageError(
-            f"{folder}: a model is the folder that `siggen-diagnostics train` wrote; single files, pickled ones above "
+            f"{folder}: a model is the folder that `siggen-diagnostics report` wrote; single files, pickled ones above "
             "all, are not read, since reading those would execute what they hold"
         )
+    folder = folder / MODELS_FOLDER if (folder / MODELS_FOLDER).is_dir() else folder
     if not (folder / FACTS_FILE).is_file():
-        raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics train` wrote")
+        raise UsageError(f"{folder}: holds no {FACTS_FILE}; give a folder that `siggen-diagnostics report` wrote")
     hashes = read_hashes(folder)
     if hashes is not None:
         check_files(folder, hashes)
@@ -190,6 +265,6 @@ def _network(folder: Path) -> tuple[WideKernelNetwork, NetworkFile]:
 
 
 def _circular(folder: Path) -> tuple[CircularNetwork, CircularFacts]:
-    from diagnostics.training.circular_files import load_circular
+    from diagnostics.training.circular_training import load_circular
 
     return load_circular(folder / CIRCULAR_FILE)

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from diagnostics.recordings.array_files import read_mat, read_numpy, read_wav
 from diagnostics.recordings.csv_file import read_csv
-from diagnostics.recordings.hdf5_file import read_hdf5
-from diagnostics.recordings.mat_file import read_mat
-from diagnostics.recordings.numpy_file import read_numpy
 from diagnostics.recordings.parquet_file import read_parquet
 from diagnostics.recordings.recorded_columns import Columns
-from diagnostics.recordings.tdms_file import read_tdms
-from diagnostics.recordings.universal_file import read_universal
-from diagnostics.recordings.wav_file import read_wav
+from diagnostics.recordings.recorder_files import read_hdf5, read_tdms, read_universal
 from siggen.errors import UsageError
 
 READERS: dict[str, Callable[[Path], Columns]] = {

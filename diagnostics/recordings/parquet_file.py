@@ -48,8 +48,8 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
     chosen = 0 if row is None and table.num_rows == 1 else row
     if chosen is None or not 0 <= chosen < table.num_rows:
         raise UsageError(
-            f"{path}: holds {table.num_rows} records, one per row; received row {row}. Choose one with --row, from 0 "
-            f"to {table.num_rows - 1} (for a reference: --reference FILE:ROW)."
+            f"{path}: holds {table.num_rows} records, one per row; received row {row}. Choose one as "
+            f"{path.name}:ROW, from 0 to {table.num_rows - 1}."
         )
     return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists}, simulated=simulated)
 

@@ -1,8 +1,12 @@
-"""Check of a whole set before features, classifiers or an audit: which records they cannot take, and the way out."""
+"""Check of a whole set before features, classifiers or an audit: which records they cannot take, and the way out.
+
+The channels of a set that are asked for by name.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import copy
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -10,12 +14,34 @@ from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, PROBLEMS_
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, UsageError
 
 RECORDS_SHOWN = 3
 CLIPPED = f"is clipped in more than {LARGEST_CLIPPED_SHARE:.1%} of the samples"
 CLIPPED_RECORDS = 0.05
 """Share of clipped records of a channel up to which they are noted, not refused: single ones clip in real sets too."""
+
+
+def with_channels(dataset: Dataset, names: Sequence[str]) -> Dataset:
+    """Return the set with the named channels only, in the set's order; all where none is named.
+
+    Raises
+    ------
+    UsageError
+        If the set has no channel of a name.
+    """
+    known = [channel.name for channel in dataset.channels]
+    if unknown := [name for name in names if name not in known]:
+        raise UsageError(f"--channel: received {', '.join(unknown)}; {dataset.path} has {', '.join(known)}")
+    if not names:
+        return dataset
+    chosen = tuple(channel for channel in dataset.channels if channel.name in names)
+    view = copy.copy(dataset)
+    try:
+        view.channels = chosen
+    except AttributeError:  # a set whose channels are derived takes them from a class of its own
+        view.__class__ = type("ChosenChannels", (type(dataset),), {"channels": chosen})
+    return view
 
 
 class RecordCheck:

@@ -11,10 +11,9 @@ from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import TITLES, Judged
-from diagnostics.training.learning_curve import CurvePoint
 from diagnostics.training.referenced import Referenced
 from diagnostics.training.split_study import SplitScore
-from diagnostics.training.studies import Studies
+from diagnostics.training.studies import CurvePoint, Studies
 from diagnostics.training.training import Training
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)

@@ -1,20 +1,28 @@
-"""All figures of a report by file name, with their captions; what cannot be drawn becomes a note."""
+"""All figures of a report by file name, with their captions; what cannot be drawn becomes a note.
+
+Figures of what the damage does to the mesh: stiffness curves of one specimen, and the loss over all specimens.
+
+Figures of records: waveform per state, and order spectrum around a mesh harmonic with its sidebands marked.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.explorer_link import explorer_link, indicator_links, records_line, state_links
 from diagnostics.page.provenance import without_path
-from diagnostics.page.style import state_colours
+from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.report import score_figures, stiffness_figures, vibration_figures
-from diagnostics.report.examples import example_set
-from diagnostics.report.indicator_terms import column_title
-from diagnostics.signal.order_spectrum import strongest_harmonic
+from diagnostics.report import score_figures
+from diagnostics.report.examples import Example, ExampleSet, example_set
+from diagnostics.report.indicator_figures import column_title
+from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.studies import Studies
 from diagnostics.training.training import Training
@@ -23,8 +31,164 @@ from siggen.dataset.reading import Dataset
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+DASHES = ("-", "--", "-.", ":")
+"""Lines that lie on each other or are printed without colour are told apart by their dashes."""
+LOSSES = {
+    "mesh_stiffness_loss_as_simulated": "force over approach at rest and at the record's torque, as simulated",
+    "mesh_stiffness_loss": "by potential energy, where a contact that loses its whole length carries nothing",
+}
+"""What the labels of a set say about the loss of mesh stiffness, the better one first."""
+
+REVOLUTIONS_SHOWN = 2
+ORDERS_SHOWN = 7.0
+SIDEBANDS = 6
+DECADES_SHOWN = 5.0
+TALLEST_IN = 9.5
+"""A figure of half a page's width that is taller does not fit a sheet."""
+
+BEHIND_COLOUR = "#b9c4cd"
+
 FIRST_HARMONICS = (1, 2)
 INDICATORS_SHOWN = 4
+
+
+def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colours: dict[str, str]) -> Figure:
+    """Return mesh stiffness over the pinion's angle, all states in one frame.
+
+    Parameters
+    ----------
+    curves : mapping of state to (angle_deg (k,), stiffness_n_per_m (k,))
+        What `siggen.mesh_stiffness_curves` returns.
+    colours : dict of str
+        Colour by state.
+    """
+    figure, axes = new_figure(height_in=3.4)
+    axis = axes[0, 0]
+    for place, (state, (angle_deg, stiffness_n_per_m)) in enumerate(curves.items()):
+        style = {"color": colours.get(state), "linestyle": DASHES[place % len(DASHES)], "linewidth": 1.2}
+        axis.plot(angle_deg, 1e-6 * np.asarray(stiffness_n_per_m), label=state, **style)
+    axis.set_xlabel("Pinion angle [°]")
+    axis.set_ylabel("Mesh stiffness [N/µm]")
+    axis.margins(x=0.01)
+    figure.legend(loc="outside upper center", ncols=min(len(curves), 3), fontsize=9)
+    return figure
+
+
+def loss_of_specimens(dataset: Dataset) -> tuple[dict[str, np.ndarray], str]:
+    """Return state -> largest loss of each of its specimens, and what this loss is, from the labels of a set.
+
+    Sets of schema version 1 have the loss by potential energy alone. The loss as simulated depends on the torque: of
+    the records of a specimen and state the largest one counts.
+    """
+    named = set(dataset.labels().column_names)
+    name = next(name for name in LOSSES if name in named)
+    table = dataset.labels(columns=["state", "specimen_id", name])
+    largest = table.group_by(["state", "specimen_id"], use_threads=False).aggregate([(name, "max")]).to_pydict()
+    states, losses = np.array(largest["state"]), np.array(largest[f"{name}_max"])
+    return {state: losses[states == state] for state in dict.fromkeys(largest["state"])}, LOSSES[name]
+
+
+def stiffness_loss_figure(
+    losses: Mapping[str, np.ndarray], classes: tuple[str, ...], colours: dict[str, str]
+) -> Figure:
+    """Return the largest relative loss of mesh stiffness, a dot per specimen, over the states."""
+    figure, axes = new_figure(height_in=2.8 if len(classes) < SLANTED else 3.4)
+    axis = axes[0, 0]
+    for position, state in enumerate(classes):
+        loss = 100.0 * losses[state]
+        spread = 0.5 * (np.arange(loss.size) / max(loss.size - 1, 1) - 0.5)
+        axis.plot(position + spread, loss, linestyle="none", marker="o", markersize=4, alpha=0.7, color=colours[state])
+    state_ticks(axis, classes)
+    axis.set_xlabel("State (one dot per specimen)")
+    axis.set_ylabel("Largest stiffness loss [%]")
+    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
+    return figure
+
+
+def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
+    """Return acceleration over two pinion revolutions, one row per state, all on one scale."""
+    rows = len(examples.examples)
+    figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
+    for axis, example in zip(axes[:, 0], examples.examples, strict=True):
+        start_s = example.tacho_s[0] if len(example.tacho_s) else 0.0
+        first = round(start_s * examples.fs_hz)
+        signal = example.signal_m_s2[first : first + round(REVOLUTIONS_SHOWN / examples.speed_hz * examples.fs_hz)]
+        axis.plot(1e3 * np.arange(signal.size) / examples.fs_hz, signal, color=colours[example.state], linewidth=0.6)
+        axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
+        for pulse in range(REVOLUTIONS_SHOWN + 1):
+            axis.axvline(1e3 * pulse / examples.speed_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
+    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
+    figure.supylabel("Acceleration [m/s²]", fontsize=10)
+    return figure
+
+
+def _height_in(frame: float, row: float, rows: int) -> float:
+    return min(frame + row * rows, max(TALLEST_IN, frame + 0.62 * rows))
+
+
+def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int) -> Figure:
+    """Return the order spectrum around one mesh harmonic, one row per state, the healthy state in grey behind."""
+    rows = len(examples.examples)
+    figure, axes = new_figure(rows, 1, height_in=_height_in(1.0, 1.25, rows), sharex=True, sharey=True)
+    top = max(
+        _around(example.spectrum, examples, harmonic)[1].max() for example in examples.examples if example.spectrum
+    )
+    for axis, example in zip(axes[:, 0], examples.examples, strict=True):
+        _draw_spectrum(axis, example, examples, harmonic, colours[example.state])
+        axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
+    axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
+    axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
+    mesh_hz = harmonic * examples.teeth[0] * examples.speed_hz
+    axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [pinion orders of {examples.speed_hz:.3g} Hz]")
+    figure.supylabel("Amplitude [m/s²]", fontsize=10)
+    _add_legend(axes[0, 0])
+    return figure
+
+
+def _around(spectrum: OrderSpectrum, examples: ExampleSet, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
+    centre = harmonic * examples.teeth[0]
+    near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
+    return spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]
+
+
+def _draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: int, colour: str) -> None:
+    healthy = examples.healthy
+    if healthy and healthy.spectrum and example is not healthy:
+        axis.semilogy(*_around(healthy.spectrum, examples, harmonic), color=BEHIND_COLOUR, linewidth=0.8)
+    axis.set_yscale("log")
+    if example.spectrum is None:
+        return
+    offset, amplitude = _around(example.spectrum, examples, harmonic)
+    axis.semilogy(offset, amplitude, color=colour)
+    ratio = examples.teeth[0] / examples.teeth[1]
+    for step, marker, marked in ((ratio, "|", GEAR_COLOUR), (1.0, "v", PINION_COLOUR)):
+        lines = np.array([k * step for k in range(-SIDEBANDS, SIDEBANDS + 1) if k])
+        height = np.array([_peak(offset, amplitude, line, 1.5 / example.spectrum.revolutions) for line in lines])
+        axis.plot(lines, height * 1.9, linestyle="none", marker=marker, markersize=4.5, color=marked)
+
+
+def _peak(offset: np.ndarray, amplitude: np.ndarray, line: float, reach: float) -> float:
+    """Return the largest amplitude within reach of a line."""
+    return float(amplitude[np.abs(offset - line) <= reach].max(initial=1e-30))
+
+
+def _add_legend(axis: Any) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], linestyle="none", marker="v", markersize=4.5, color=PINION_COLOUR, label="pinion sidebands"),
+        Line2D([], [], linestyle="none", marker="|", markersize=6, color=GEAR_COLOUR, label="gear sidebands"),
+        Line2D([], [], color=BEHIND_COLOUR, linewidth=1.5, label="healthy"),
+    ]
+    axis.legend(
+        handles=handles,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=3,
+        fontsize=8,
+        borderpad=0.0,
+        columnspacing=1.0,
+    )
 
 
 @dataclass(slots=True)
@@ -93,7 +257,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
         f"specimen {examples.specimen_id}, channel {examples.channel}, {examples.speed_hz:.3g}\u00a0Hz, "
         f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
     )
-    figure = vibration_figures.waveform_figure(examples, colours)
+    figure = waveform_figure(examples, colours)
     shown = {each.state: explorer_link(explorer, record=each.record_id) for each in examples.examples}
     behind = records_line("Records", shown)
     drawing.behind["waveforms"] = behind
@@ -103,7 +267,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
         drawing.notes.append("No order spectra: the example records hold no whole pinion revolution.")
         return
     for harmonic in sorted({*FIRST_HARMONICS, strongest_harmonic(spectra[0], examples.teeth[0])}):
-        figure = vibration_figures.spectrum_figure(examples, colours, harmonic)
+        figure = spectrum_figure(examples, colours, harmonic)
         window = f"Hann, {spectra[0].revolutions} pinion revolutions"
         caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
         drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
@@ -113,8 +277,8 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str],
 def _draw_damage(
     drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], colours: dict[str, str], explorer: str
 ) -> None:
-    losses, meaning = stiffness_figures.loss_of_specimens(dataset)
-    figure = stiffness_figures.stiffness_loss_figure(losses, classes, colours)
+    losses, meaning = loss_of_specimens(dataset)
+    figure = stiffness_loss_figure(losses, classes, colours)
     caption = f"Largest relative loss of mesh stiffness against healthy, from the labels: {meaning}."
     drawing.damage["stiffness_loss"] = (figure, caption)
     drawing.behind["stiffness_loss"] = records_line("Records", state_links(explorer, classes))
@@ -125,7 +289,7 @@ def _draw_damage(
         config = siggen.load_config(dataset.config)
         curves = siggen.mesh_stiffness_curves(config)
         meaning = siggen.mesh_stiffness_meaning(config)
-        figure = stiffness_figures.stiffness_figure(curves, colours)
+        figure = stiffness_figure(curves, colours)
     except Exception as error:
         drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")
         return

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnostics.records.recording import TACHO_NAME
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.signal.order_spectrum import OrderSpectrum, order_spectrum
+from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 

@@ -1,25 +1,36 @@
-"""Figures of the evaluation of indicators: curves over severity, size of damage and noise."""
+"""Figures of the evaluation of indicators: curves over severity, size of damage and noise.
+
+Indicators as people call them, with their definitions on hover and a link to the table of definitions.
+"""
 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from diagnostics.indicators.indicator import base_name
+from diagnostics.indicators.indicator_titles import indicator_titles
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.page.html import Cell
 from diagnostics.page.style import fault_colours, new_figure, state_ticks
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.report.indicator_terms import panel_title
 from diagnostics.statistics.assessment import SIZES
-from diagnostics.statistics.detectable_size import detection_curve
+from diagnostics.statistics.detectable_size import NoiseCurve, detection_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.judged_records import JudgedRecords
-from diagnostics.statistics.noise_curve import NoiseCurve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+AXES = ("vertical", "horizontal", "tangential", "axial")
+"""As channels of simulated sensors end."""
 
 CROWDED = 8
 """States beyond which their names are small."""
@@ -29,6 +40,45 @@ CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b
 MARKERS = "osD^vP"
 MOST_LINES = 5
 LEGEND_SIGNS = 66
+
+
+@cache
+def _titles() -> dict[str, str]:
+    return indicator_titles(IndicatorSettings())
+
+
+def column_title(column: str) -> str:
+    """Return what people call a column; the user's own indicators keep their names."""
+    name = column.partition("__")[0]
+    return _titles().get(name, name).rsplit(" [", 1)[0]
+
+
+def channel_title(channel: str) -> str:
+    """Return what people call a channel: sensor and axis (`lid_vertical` is lid, vertical); other names as they are."""
+    sensor, _, axis = channel.rpartition("_")
+    return f"{sensor.replace('_', ' ')}, {axis}" if sensor and axis in AXES else channel
+
+
+def term_cell(column: str) -> Cell:
+    """Return the cell that names a column: its title, which leads to the definition, its channel and its own name."""
+    known = BY_NAME.get(base_name(column))
+    channel = column.partition("__")[2]
+    small = f"{channel_title(channel)}; {column.partition('__')[0]}" if channel else column
+    return Cell(column_title(column), small, link=f"#term-{known.name}" if known else "")
+
+
+def in_a_sentence(column: str) -> str:
+    """Return a column as a sentence names it: its title in small letters where it is no acronym, and its channel."""
+    title, channel = column_title(column), column.partition("__")[2]
+    if title[1:2].islower():
+        title = title[:1].lower() + title[1:]
+    return f"{title} at {channel_title(channel)}" if channel else title
+
+
+def panel_title(column: str, width: int = 38) -> str:
+    """Return title and channel of a column for a figure, in lines of at most so many signs."""
+    title, channel = column_title(column), column.partition("__")[2]
+    return "\n".join(textwrap.wrap(f"{title} ({channel_title(channel)})" if channel else title, width))
 
 
 def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:

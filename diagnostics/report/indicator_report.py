@@ -21,16 +21,15 @@ from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.tables import set_table
 from diagnostics.page.wording import joined, percent
-from diagnostics.records.damage_kind import damage_kinds
-from diagnostics.records.state_classes import HEALTHY, ordered_states
+from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables
+from diagnostics.report.indicator_figures import column_title
 from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
-from diagnostics.report.indicator_terms import column_title
 from diagnostics.report.report import clipping_notes
 from diagnostics.statistics.assessment import AssessmentSettings, assessment, result_table
+from diagnostics.statistics.detectable_size import NoiseCurve, noise_curve
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.judged_records import JudgedRecords, judged_records
-from diagnostics.statistics.noise_curve import NoiseCurve, noise_curve
 from diagnostics.training.realism import meaning_of_scores
 from siggen.dataset.reading import Dataset
 

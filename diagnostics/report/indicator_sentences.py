@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from diagnostics.page.wording import counted, limits, percent
+from diagnostics.report.indicator_figures import in_a_sentence
 from diagnostics.report.indicator_tables import size_text
-from diagnostics.report.indicator_terms import in_a_sentence
 from diagnostics.statistics.indicator_result import IndicatorResult
 from diagnostics.statistics.multiple_tests import smallest_paired_p
 

@@ -1,10 +1,13 @@
-"""The report of a set: features, training, figures, metrics and one page that says what it all means."""
+"""The report of a set: features, training, figures, metrics and one page that says what it all means.
+
+What the audit of the same set says, where it was run; a report says what is missing where it was not.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.audit import ALONE
+from diagnostics.base.beside import beside
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
@@ -19,12 +24,10 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.page.wording import counted
+from diagnostics.page.wording import counted, decimal, joined
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.state_classes import ordered_states
-from diagnostics.release.saved_models import save_models
-from diagnostics.report.answer_figure import answer_figure
-from diagnostics.report.answer_sentences import answer_sentences
-from diagnostics.report.audit_beside import audit_beside, audit_sentence
+from diagnostics.report.answer import answer_figure, answer_sentences
 from diagnostics.report.drawing import draw
 from diagnostics.report.report_page import ANSWER, CAPTION, Reported, report_page
 from diagnostics.report.sentences import summary
@@ -45,6 +48,38 @@ if TYPE_CHECKING:
 THROUGH = "through_face"
 
 
+def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
+    """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
+    path = beside(dataset.path, "_audit") / "audit.json"
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    same = isinstance(found, dict) and found.get("identity") == dataset.manifest["identity"]
+    return found if same else None
+
+
+def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
+    """Say what the audit found, or what is not known without it."""
+    name = dataset.path.name
+    if audit is None:
+        return (
+            "The audit was not run. So it is not known whether something other than the damage gives the states away, "
+            f"nor what attackers on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
+            "this report again."
+        )
+    if audit.get("too_few_gearboxes"):
+        return str(audit.get("verdict"))
+    states = audit.get("strongest", {}).get(ALONE, {}).get("states", [])
+    reached = [
+        f"{state['state']} {decimal(state['auc']['value'])}"
+        for state in states
+        if state.get("auc", {}).get("value") is not None
+    ]
+    attackers = f" Its strongest attackers reach, on unseen gearboxes, an AUC of: {joined(reached)}." if reached else ""
+    return f"{audit.get('verdict', 'The audit gives no verdict.')}{attackers}"
+
+
 def write_report(
     dataset: Dataset,
     folder: Path,
@@ -53,7 +88,6 @@ def write_report(
     network: NetworkOptions | None = None,
     other: Any = None,
     own: Sequence[OwnIndicator] = (),
-    with_studies: bool = False,
     explorer: str = "",
     stage: Stage = silent_stage,
 ) -> Path:
@@ -68,13 +102,12 @@ def write_report(
     seed : int
         Seeds bootstrap, permutations and network.
     network : NetworkOptions, optional
-        Whether and how to train the network; without torch it is left out with a note.
+        Whether and how to train the network, and whether to run the studies; without torch it is left out with a
+        note.
     other : siggen Dataset, optional
         Another set to judge on.
     own : sequence of OwnIndicator
         The user's indicators.
-    with_studies : bool
-        Whether to run what takes minutes: splits and learning curve.
     explorer : str
         Name of the page to explore beside the report, to which records and counts then lead.
     stage : Stage
@@ -93,8 +126,10 @@ def write_report(
     with stage("separability", 1) as advance:
         found = separability(matrix, seed)
         advance()
-    training, notes = _trained(dataset, table, folder / "models", seed, network or NetworkOptions(), second, stage)
-    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if with_studies else (None, [])
+    network = network or NetworkOptions()
+    training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
+    wanted = network.studies
+    studies, study_notes = _studied(dataset, matrix, training, seed, other, stage) if wanted else (None, [])
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
         advance()

@@ -9,10 +9,10 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.report.indicator_terms import panel_title
+from diagnostics.report.indicator_figures import panel_title
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability
-from diagnostics.training.learning_curve import CurvePoint
+from diagnostics.training.studies import CurvePoint
 from diagnostics.training.training import Training
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from diagnostics.page.wording import (
     signed,
     signed_limits,
 )
-from diagnostics.report.indicator_terms import in_a_sentence
+from diagnostics.report.indicator_figures import in_a_sentence
 from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.judgement import NETWORK, PLAIN_NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged

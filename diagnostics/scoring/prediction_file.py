@@ -3,6 +3,8 @@
 One row per record and classifier: `record_id`, the columns of a task (`diagnostics.scoring.tasks`), and `classifier`
 where a file holds several. What trainings write names the set in its metadata, so that it is never laid beside another
 one.
+
+The columns of one classifier's predictions, brought into the order of the records; everything wrong in one list.
 """
 
 from __future__ import annotations
@@ -15,13 +17,144 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.scoring.tasks import PROBABILITY
+from diagnostics.records.state_classes import CLASS
+from diagnostics.scoring.tasks import DAMAGE, PROBABILITY, TASKS, Truth, probabilities
 from diagnostics.statistics.evaluation import Predictions
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
+
+SUM_TOLERANCE = 1e-3
+"""How far probabilities may be from 1 together: float32, and files that round to four digits."""
+SHOWN = 5
 
 PREDICTIONS_FILE, MODELS_FOLDER = "predictions.parquet", "models"
 RECORD, CLASSIFIER, SPLIT = "record_id", "classifier", "split"
 IDENTITY_KEY = b"diagnostics.identity"
+
+
+def matched_columns(table: pa.Table, truth: Truth, where: Any) -> dict[str, np.ndarray]:
+    """Return the columns of tasks, (n,) each in the order of the truth; classes as positions.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+        One row per record; records of other splits are left out, columns of no task too.
+    truth : Truth
+        Of n records.
+    where : path or str
+        What the message begins with.
+
+    Raises
+    ------
+    UsageError
+        Listing every record that is missing, comes twice or is unknown, and every value that cannot be.
+    """
+    problems: list[str] = []
+    place = _places(table, truth, problems)
+    columns = {} if place is None else _columns(table.take(pa.array(place)), truth, problems)
+    if problems:
+        lines = "\n".join(f"  {problem}" for problem in problems)
+        takes = "; ".join(f"{task.name} takes {task.takes}" for task in TASKS)
+        raise UsageError(
+            f"{where}: {counted(len(problems), 'problem')}\n{lines}\nOne row is needed for each of the "
+            f"{counted(truth.record_id.size, 'record')} of the split {truth.split}, with {RECORD} and the columns of a "
+            f"task: {takes}. Classes: {', '.join(truth.classes)}."
+        )
+    return columns
+
+
+def _places(table: pa.Table, truth: Truth, problems: list[str]) -> np.ndarray | None:
+    """Return the row of each record; None where they cannot be told."""
+    if RECORD not in table.column_names:
+        problems.append(f"no column {RECORD}; received {', '.join(table.column_names) or 'no columns'}")
+        return None
+    column = table.column(RECORD)
+    if not pa.types.is_integer(column.type) or column.null_count:
+        problems.append(f"{RECORD} holds {column.type}, {counted(column.null_count, 'empty value')}; allowed: integers")
+        return None
+    found = column.to_numpy(zero_copy_only=False)
+    for what, records in (
+        ("not in the set", np.setdiff1d(found, np.concatenate([truth.record_id, truth.elsewhere]))),
+        ("missing", np.setdiff1d(truth.record_id, found)),
+        ("there more than once", _doubled(found)),
+    ):
+        if records.size:
+            problems.append(f"{counted(records.size, 'record')} {what}: {RECORD} {_shown(records)}")
+    order = np.argsort(found, kind="stable")
+    kept = truth.record_id[np.isin(truth.record_id, found)]
+    return np.asarray(order[np.searchsorted(found[order], kept)])
+
+
+def _doubled(found: np.ndarray) -> np.ndarray:
+    values, counts = np.unique(found, return_counts=True)
+    return np.asarray(values[counts > 1])
+
+
+def _columns(table: pa.Table, truth: Truth, problems: list[str]) -> dict[str, np.ndarray]:
+    """Return the columns of tasks of a table in the order of the truth, as far as they can be used."""
+    record_id = table.column(RECORD).to_numpy(zero_copy_only=False)
+    known = {DAMAGE, *(PROBABILITY + name for name in truth.classes)}
+    columns: dict[str, np.ndarray] = {}
+    for name in table.column_names:
+        if name in known:
+            columns[name] = _numbers(table.column(name), name, record_id, problems)
+        elif name == CLASS:
+            columns[name] = _classes(table.column(name).to_pylist(), truth, record_id, problems)
+        elif name.startswith(PROBABILITY):
+            problems.append(f"column {name} is of no class")
+    _check_probabilities(columns, truth, record_id, problems)
+    if not problems and all(task.answers(columns, truth) is None for task in TASKS):
+        problems.append(f"no columns of a task; received {', '.join(table.column_names)}")
+    return columns
+
+
+def _numbers(column: pa.ChunkedArray, name: str, record_id: np.ndarray, problems: list[str]) -> np.ndarray:
+    if not (pa.types.is_integer(column.type) or pa.types.is_floating(column.type)):
+        problems.append(f"{name} holds {column.type}; allowed: numbers")
+        return np.zeros(record_id.size)
+    values = np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
+    bad = ~np.isfinite(values)
+    if name.startswith(PROBABILITY):
+        bad |= (values < -SUM_TOLERANCE) | (values > 1.0 + SUM_TOLERANCE)
+    if bad.any():
+        allowed = "0 to 1" if name.startswith(PROBABILITY) else "finite numbers"
+        problems.append(_bad(name, f"is {values[bad][0]:g}", record_id[bad], allowed))
+    return values
+
+
+def _classes(names: list[Any], truth: Truth, record_id: np.ndarray, problems: list[str]) -> np.ndarray:
+    """Return the positions of named classes; a state stands for its class."""
+    place = {state: truth.classes.index(name) for state, name in truth.class_of.items()}
+    found = np.array([place.get(name, -1) for name in names], dtype=np.int64)
+    if (found < 0).any():
+        first = next(name for name, number in zip(names, found.tolist(), strict=True) if number < 0)
+        problems.append(_bad(CLASS, f"is {str(first)[:60]!r}", record_id[found < 0], "a class"))
+    return found
+
+
+def _check_probabilities(
+    columns: dict[str, np.ndarray], truth: Truth, record_id: np.ndarray, problems: list[str]
+) -> None:
+    """Note classes without a column where others have one, and sums that are not 1."""
+    missing = [PROBABILITY + name for name in truth.classes if PROBABILITY + name not in columns]
+    if 0 < len(missing) < len(truth.classes):
+        problems.append(f"no column {', '.join(missing)}; allowed: one for every class, or none")
+    found = probabilities(columns, truth)
+    if found is None or not np.isfinite(found).all():
+        return
+    total = found.sum(axis=1)
+    bad = np.abs(total - 1.0) > SUM_TOLERANCE
+    if bad.any():
+        problems.append(_bad("the sum of the probabilities", f"is {total[bad][0]:g}", record_id[bad], "1"))
+
+
+def _bad(name: str, value: str, records: np.ndarray, allowed: str) -> str:
+    where = f"{counted(records.size, 'record')} ({RECORD} {_shown(records)})"
+    return f"{name} {value} in {where}; allowed: {allowed}"
+
+
+def _shown(records: np.ndarray) -> str:
+    more = " ..." if records.size > SHOWN else ""
+    return ", ".join(str(number) for number in records[:SHOWN].tolist()) + more
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +219,7 @@ def _read(path: Path) -> pa.Table:
 
 
 def baselines_file(folder: Path) -> Path:
-    """Return the file of predictions in a folder of `train` or `report`.
+    """Return the file of predictions in a folder of `report`.
 
     Raises
     ------
@@ -98,7 +231,7 @@ def baselines_file(folder: Path) -> Path:
         if (place / PREDICTIONS_FILE).is_file():
             return place / PREDICTIONS_FILE
     raise UsageError(
-        f"{folder}: has no {PREDICTIONS_FILE}; allowed: a folder that `siggen-diagnostics train` or `report` wrote. "
+        f"{folder}: has no {PREDICTIONS_FILE}; allowed: a folder that `siggen-diagnostics report` wrote. "
         "One of an earlier version has none: run that command again"
     )
 
@@ -115,5 +248,5 @@ def check_identity(table: pa.Table, identity: str, where: Any) -> None:
     if named != identity:
         raise UsageError(
             f"{where}: holds predictions of the set {named[:12]}; this one is {identity[:12]}. Train on this set: "
-            "siggen-diagnostics train"
+            "siggen-diagnostics report"
         )

@@ -4,14 +4,21 @@ The angle is a cubic spline through the exact pulse times (never the nominal spe
 average over many revolutions). Amplitudes at the angle steps come from a quintic B-spline on the twice oversampled
 record; oversampling, spline prefilter and band limit are one multiplication in the frequency domain. Source: order
 tracking by interpolation is standard literature; the B-spline prefilter follows Unser 1999, the rest derived.
+
+Slow speed variation of a record, from its shaft pulses.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+
+SLOW_BELOW_HZ = 2.5
+HALF_POWER = 0.443
+"""A moving average of length T has lost half of the power at 0.443 / T."""
 
 SAMPLES_PER_TOOTH = 128
 """Angle steps per mesh period: 128 keeps the band of a 51.2 kHz record above a mesh frequency of 400 Hz and one
@@ -21,6 +28,26 @@ OVERSAMPLING = 2
 EDGE_SAMPLES = 1024
 BAND_TAPER = 0.1
 """Share of the output band over which the anti-alias limit falls from one to zero."""
+
+
+def speed_variation_percent(tacho_s: np.ndarray) -> float:
+    """Return the standard deviation of the speed below 2.5 Hz over its mean [%]; NaN with fewer than three pulses.
+
+    Parameters
+    ----------
+    tacho_s : (k,) float64
+        Times of one pulse per revolution [s].
+
+    Notes
+    -----
+    The mean speed of each revolution is smoothed by a moving average that halves the power at 2.5 Hz. Source: derived.
+    """
+    if len(tacho_s) < 3:
+        return math.nan
+    speed_hz = 1.0 / np.diff(np.asarray(tacho_s, dtype=np.float64))
+    width = min(max(1, round(HALF_POWER / SLOW_BELOW_HZ * float(speed_hz.mean()))), speed_hz.size)
+    slow = np.convolve(speed_hz, np.full(width, 1.0 / width), mode="valid")
+    return 100.0 * float(slow.std() / speed_hz.mean())
 
 
 @dataclass(frozen=True, slots=True)

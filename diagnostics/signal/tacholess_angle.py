@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.signal.mesh_excess import frame_excess, other_speed
 from siggen.errors import UsageError
 
 FRAME_REVOLUTIONS = 4.0
@@ -26,8 +25,8 @@ PHASE_BANDWIDTH_ORDERS = 0.1
 7e-4 of its amplitude."""
 
 PASSES = 3
-LEAST_CLARITY = 0.1
-"""Five times what noise reaches: one of ten harmonics that stands out by e more than noise does."""
+NOISE_EXCESS = 1.0
+"""Logarithm of amplitude over its median that noise reaches (Rayleigh: 1 in 160 samples); less says nothing."""
 
 HARMONICS = tuple(range(1, 11))
 """Structural resonances decide which mesh harmonics are strong; often it is none of the first three."""
@@ -44,14 +43,11 @@ class MeshRidge:
     clarity : float
         Mean over frames and harmonics of how far the lines stand above noise, as natural logarithm of amplitude; white
         noise alone gives 0.01 to 0.02.
-    doubt : str
-        What the lines say against this speed; empty where nothing does.
     """
 
     time_s: np.ndarray
     speed_hz: np.ndarray
     clarity: float
-    doubt: str = ""
 
 
 def mesh_ridge(
@@ -81,7 +77,7 @@ def mesh_ridge(
     UsageError
         If the range is empty, the record is shorter than one frame of four revolutions, or no harmonic is in the band.
     """
-    check_speed_range(speed_range_hz)
+    _check_speed_range(speed_range_hz)
     low, high = speed_range_hz
     size = round(FRAME_REVOLUTIONS / low * fs_hz)
     if signal.size < size:
@@ -98,17 +94,41 @@ def mesh_ridge(
     speeds = np.arange(low, high, 0.25 * fs_hz / size / teeth / max(used))
     starts = np.arange(0, signal.size - size + 1, size // HOPS_PER_FRAME)
     lines_hz = teeth * np.outer(used, speeds)
-    score = np.stack([frame_excess(signal[i : i + size], fs_hz, lines_hz).sum(axis=0) for i in starts])
+    score = np.stack([_frame_excess(signal[i : i + size], fs_hz, lines_hz).sum(axis=0) for i in starts])
     reach = max(1, round(LARGEST_CHANGE_PER_HOP * 0.5 * (low + high) / (speeds[1] - speeds[0])))
     path = _best_path(score, reach)
     clarity = float(score[np.arange(starts.size), path].mean() / len(used))
-    apart = slice(None, None, HOPS_PER_FRAME)
-    frames = [signal[i : i + size] for i in starts[apart]]
-    doubt = other_speed(frames, fs_hz, teeth * speeds, path[apart], used) if clarity >= LEAST_CLARITY else ""
-    return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity, doubt)
+    return MeshRidge((starts + 0.5 * size) / fs_hz, speeds[path], clarity)
 
 
-def check_speed_range(speed_range_hz: tuple[float, float]) -> None:
+def _frame_excess(frame: np.ndarray, fs_hz: float, frequency_hz: np.ndarray) -> np.ndarray:
+    """Return the excess of log amplitude over the median of each row of frequencies, and over its noise.
+
+    Parameters
+    ----------
+    frame : (n,) float64
+        Piece of the record; weighted by a Hann window here.
+    fs_hz : float
+        Sampling frequency [Hz].
+    frequency_hz : (lines, candidates) float64
+        One row per line, one column per speed that it could have.
+
+    Returns
+    -------
+    (lines, candidates) float64
+        Zero where a line does not stand out.
+    """
+    from scipy import fft
+
+    padded = fft.next_fast_len(4 * frame.size, real=True)
+    spectrum = np.abs(fft.rfft(frame * np.hanning(frame.size), padded))
+    bins = np.rint(frequency_hz * padded / fs_hz).astype(np.int64)
+    level = np.log(spectrum[bins] + 1e-12 * spectrum.max() + 1e-300)
+    excess = level - np.median(level, axis=1, keepdims=True)
+    return np.asarray(np.maximum(excess - NOISE_EXCESS, 0.0))
+
+
+def _check_speed_range(speed_range_hz: tuple[float, float]) -> None:
     """Check that a range of speed holds one mesh harmonic only.
 
     Raises
@@ -148,25 +168,18 @@ def tacholess_pulses(
     teeth: int,
     speed_range_hz: tuple[float, float],
     harmonics: tuple[int, ...] = HARMONICS,
-    *,
-    least_clarity: float = LEAST_CLARITY,
-    doubts: bool = True,
 ) -> np.ndarray:
     """Return once-per-revolution pulse times of the shaft, from the mesh lines alone.
 
     The pulse's place on the shaft is arbitrary, so averages are shifted against those by a tacho; indicators are not.
     Drift of 4 % over the record, or up and down at 1 Hz, is followed within 0.03 of a tooth pitch at noise as strong as
-    the signal (tested); speed that swings by that much within ten revolutions is not. The range has to be right: that
-    the lines belong to another speed is noticed only where they contradict it plainly.
+    the signal (tested); speed that swings by that much within ten revolutions is not. The range has to be right, and
+    there must be mesh lines: `diagnostics.signal.mesh_pulses` finds the speed, and says how certain it is.
 
     Parameters
     ----------
     signal, fs_hz, teeth, speed_range_hz, harmonics :
         As of `mesh_ridge`.
-    least_clarity : float
-        Clarity below which the ridge counts as noise; 0 where the speed is known and the range is narrow around it.
-    doubts : bool
-        Refuse lines that plainly belong to another speed; not for a caller who compares several ranges himself.
 
     Returns
     -------
@@ -176,19 +189,9 @@ def tacholess_pulses(
     Raises
     ------
     UsageError
-        As `mesh_ridge`, if no mesh line stands above the noise within the range, or the lines belong to another speed.
+        As `mesh_ridge`.
     """
     ridge = mesh_ridge(signal, fs_hz, teeth, speed_range_hz, harmonics)
-    if ridge.clarity < least_clarity:
-        raise UsageError(
-            f"no mesh line stands above the noise within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft "
-            f"speed (clarity {ridge.clarity:.2f}, at least {least_clarity:g}). Check range and teeth, or give a tacho."
-        )
-    if doubts and ridge.doubt:
-        raise UsageError(
-            f"within {speed_range_hz[0]:g} to {speed_range_hz[1]:g} Hz of shaft speed the mesh lines fit best at "
-            f"{float(np.median(ridge.speed_hz)):.4g} Hz, but {ridge.doubt}. Check range and teeth, or give a tacho."
-        )
     time_s = np.arange(signal.size) / fs_hz
     turns = np.cumsum(np.interp(time_s, ridge.time_s, _smoothed(ridge.speed_hz))) / fs_hz
     centred = np.asarray(signal, dtype=np.float64) - np.mean(signal)

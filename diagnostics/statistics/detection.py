@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import (
     RESAMPLES,
     Interval,
@@ -19,6 +18,7 @@ from diagnostics.statistics.evaluation import (
     bootstrap_weights,
     weighted_auc,
 )
+from diagnostics.statistics.scores import area_interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.records.damage_kind import damage_kinds
-from diagnostics.records.state_classes import HEALTHY, ordered_states
-from diagnostics.statistics.area_interval import area_interval
+from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
+from diagnostics.statistics.scores import area_interval
 
 FALSE_ALARMS, FOUND = 0.05, 0.9
 FEWEST_HEALTHY = 20

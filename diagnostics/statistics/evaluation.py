@@ -154,6 +154,25 @@ def _own_pairs(
     return np.bincount(owner, won, specimens), np.bincount(owner, minlength=specimens).astype(np.float64)
 
 
+def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
+    """Return the AUC of every column, pairs of one gearbox among them: what a choice may rest on.
+
+    Parameters
+    ----------
+    values : (records, columns) float64
+    positive : (..., records) bool
+
+    Returns
+    -------
+    (..., columns) float64
+    """
+    from scipy.stats import rankdata
+
+    damaged = positive.sum(axis=-1, keepdims=True)
+    ranks = positive.astype(np.float64) @ rankdata(values, axis=0) - 0.5 * damaged * (damaged + 1)
+    return np.asarray(ranks / (damaged * (positive.shape[-1] - damaged)))
+
+
 def interval(samples: np.ndarray, specimens: int) -> Interval:
     """Return the interval of a statistic: row 0 is its value, the others its resamples."""
     defined = samples[1:][np.isfinite(samples[1:])]

@@ -18,7 +18,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import Interval, weighted_auc, weighted_midranks
 from diagnostics.statistics.judged_records import RESAMPLES, JudgedRecords, judged_records
-from diagnostics.statistics.paired_differences import shares_above
+from diagnostics.statistics.multiple_tests import shares_above
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Synchronous averages of a set for a network: lines of one pinion revolution, written out as rows of equal length.
 
 The lines are those that the one table of a set keeps, so no record is read again. A row has the same number of angle
-steps whatever the number of teeth. Source: residual as of `diagnostics.signal.difference_signal`; the rest derived.
+steps whatever the number of teeth. Source: residual as of `diagnostics.signal.shaft_signals`; the rest derived.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.indicators.table import RecordTable
-from diagnostics.signal.difference_signal import SHAFT_ORDERS
+from diagnostics.signal.shaft_signals import SHAFT_ORDERS
 from siggen.errors import DatasetError
 
 STEPS = 1024

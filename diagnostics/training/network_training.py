@@ -46,14 +46,15 @@ class NetworkOptions:
         `cpu` or `cuda`.
     augment : bool
         Whether training windows pass random paths.
-    ablation : bool
-        Whether to train a second network without random paths for comparison.
+    studies : bool
+        Whether to do what takes minutes: train a second network without random paths, compare ways to split, and draw a
+        learning curve.
     """
 
     cnn: bool = True
     device: str = "cpu"
     augment: bool = True
-    ablation: bool = False
+    studies: bool = False
 
 
 def check_device(device: str) -> None:
@@ -91,7 +92,7 @@ def judge_networks(
     settings = TrainingSettings(augmentation=Augmentation() if options.augment else None, device=options.device)
     trained, first = _judge(NETWORK, records, matrix, split, seed, settings, stage)
     results = [replace(first, permuted_auroc=_control(records, matrix, split, seed, settings, stage))]
-    if options.ablation and options.augment:
+    if options.studies and options.augment:
         plain = replace(settings, augmentation=None)
         results.append(_judge(PLAIN_NETWORK, records, matrix, split, seed, plain, stage)[1])
     facts = describe_network(trained, records.channels, records.settings, str(dataset.manifest["identity"]))

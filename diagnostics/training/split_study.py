@@ -15,9 +15,8 @@ import numpy as np
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.windows import by_channel
-from diagnostics.statistics.area_interval import area_interval
 from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
-from diagnostics.statistics.scores import Scores, scores
+from diagnostics.statistics.scores import Scores, area_interval, scores
 from diagnostics.training.baselines import fitted_classifier, rms_features, state_index
 from diagnostics.training.other_set import OTHER_SPECIMENS
 

@@ -12,7 +12,7 @@ from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import check_table, classifier_table
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import record_table
-from diagnostics.records.usable_channels import with_channels
+from diagnostics.records.usable_records import with_channels
 from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet
 from siggen.dataset import reading

@@ -16,11 +16,11 @@ import numpy as np
 import siggen
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.prediction.record_pieces import at_rate, record_pieces
+from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.recording import recordings
-from diagnostics.release.training_distance import TrainingDistance, calibrated_distance, distance_features
-from diagnostics.training.log_features import log_values
+from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
 
 GEARBOXES = (12, 36, 96)

@@ -13,9 +13,9 @@ import sys
 import numpy as np
 from scipy.stats import norm
 
-from diagnostics.attacks.held_out import wins
-from diagnostics.statistics.area_interval import area_interval
+from diagnostics.audit.held_out import wins
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval
+from diagnostics.statistics.scores import area_interval
 
 CASES = ((8, 0.9), (8, 0.99), (24, 0.9), (24, 0.97), (24, 0.99))
 SHARED, RESAMPLES = (-0.5, 0.0, 0.6), 200

@@ -23,17 +23,15 @@ import torch
 from torch import nn
 
 import siggen
-from diagnostics.attacks.band_columns import band_bank
-from diagnostics.attacks.column_attackers import best_column
-from diagnostics.attacks.convolution_features import revolution
-from diagnostics.attacks.held_out import dealt_folds, held_out_values, judged_rows
-from diagnostics.attacks.residual_lines import line_array, residual_lines
-from diagnostics.attacks.trial import Attacker, Trial, Verdicts
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.bank_detections import damaged_states
+from diagnostics.audit.column_attackers import best_column
+from diagnostics.audit.held_out import dealt_folds, held_out_values, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_pairs import reference_records
-from diagnostics.audit.signal_attackers import over_channels, signal_attackers
+from diagnostics.audit.residual_lines import band_bank, line_array, residual_lines
+from diagnostics.audit.signal_attackers import over_channels, revolution, signal_attackers
+from diagnostics.audit.trial import Attacker, Trial, Verdicts
 from diagnostics.base.single_thread import single_thread
 
 CHANNELS, EPOCHS, BATCH = (16, 32, 32), 12, 32

@@ -18,7 +18,7 @@ from typing import Any
 import pyarrow as pa
 
 import siggen
-from diagnostics.audit.audit_report import audit_set, write_audit
+from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
 from siggen.dataset.reading import Dataset
 
 NUMBERED = ("specimen_id", "record_id")
@@ -81,7 +81,7 @@ def main(paths: list[str]) -> None:
         dataset: Any = Joined([siggen.open(path) for path in paths], Path(folder) / "joined")
         wall, cpu = time.perf_counter(), time.process_time()
         print("| step | CPU | wall |\n|---|---|---|")
-        audit = audit_set(dataset, paired=True, with_realism=True, stage=timed)
+        audit = audit_set(dataset, AuditOptions(paired=True, with_realism=True), stage=timed)
         with timed("page and figures", 1):
             write_audit(audit, dataset, Path(folder) / "audit")
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

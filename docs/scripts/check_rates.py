@@ -19,7 +19,7 @@ from diagnostics.machine.healthy_state import healthy_state, pieces_of
 from diagnostics.machine.machine import Machine
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from diagnostics.statistics.change_score import change_score
-from diagnostics.training.log_features import log_values
+from diagnostics.training.referenced import log_values
 
 REPEATS, DRAWS = 26, 80
 SPALL = {"kind": "irregular", "gear": "pinion", "teeth": 1, "profile_length_mm": 1.0}

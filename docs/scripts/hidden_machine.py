@@ -17,7 +17,7 @@ import numpy as np
 import siggen
 from diagnostics.calibration.order_record import HIGHEST_SHARE, group_levels, line_groups, order_record
 from diagnostics.indicators.record import record_values
-from diagnostics.training.log_features import log_values
+from diagnostics.training.referenced import log_values
 from siggen.views.path_curves import path_curves
 
 FS_HZ, TEETH = 25_600.0, (18, 47)

@@ -7,19 +7,21 @@ from typing import Annotated
 
 import typer
 
-from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
 
 
+@grouped
 def errors(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
+    *,
     out: Annotated[
         Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per tooth.")
     ] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture of pitch and profiles to draw as well.")] = None,
-    show: Open = False,
+    picture: PictureOptions,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[
         str | None, typer.Option("--state", help="Which state, where states have gears of their own.")
@@ -38,7 +40,7 @@ def errors(
     from siggen.dataset.table_file import write_table_file
     from siggen.views.tooth_deviations import deviation_table, gear_charts
 
-    png = picture_place(png, show, "errors")
+    png = picture.place("errors")
     check_wanted(out, png, "errors")
     with working("drawing the errors of the teeth"):
         charts = gear_charts(load_config(config, overrides or ()), specimen, state)
@@ -50,4 +52,4 @@ def errors(
             from siggen.views.error_figure import save_error_figure
 
             save_error_figure(charts, png)
-        drawn(png, show)
+        picture.drawn(png)

@@ -7,22 +7,19 @@ from typing import Annotated, Any
 
 import typer
 
-from siggen.cli.engine_options import Address, AllowedLoss, EngineName
+from siggen.cli.engine_options import EngineOptions
+from siggen.cli.option_groups import grouped
 from siggen.cli.run_display import LogJson, run_shown
 
 
+@grouped
 def extend(
     folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     specimens: Annotated[
         str, typer.Option("--specimens", help="+N for N more gearboxes, or how many in all.", metavar="+N")
     ],
-    workers: Annotated[
-        int | None,
-        typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
-    ] = None,
-    engine: EngineName = None,
-    address: Address = None,
-    allowed_loss: AllowedLoss = 0.1,
+    *,
+    engine: EngineOptions,
     log_json: LogJson = None,
 ) -> None:
     """Add gearboxes to a finished set; the same command continues an interrupted extension.
@@ -37,14 +34,12 @@ def extend(
     Example: siggen extend sets/quickstart --specimens +100
     """
     from siggen.cli.generate import report
-    from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.extension import extend as extend_set
 
-    runner = engine if address is None else engine_of(engine, workers, address)
-    count = workers if runner is engine else None
+    runner, count = engine.runner()
     with run_shown(log_json, folder) as shown:
-        told: dict[str, Any] = {"events": shown.events, "allowed_loss": allowed_loss}
+        told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}
         generation = extend_set(folder, specimens, count, shown.progress, engine=runner, **told)
     report(generation, say=shown.say)
     typer.echo(str(generation.path))

@@ -7,22 +7,24 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
     from pyarrow import Table
 
 
+@grouped
 def flank(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
+    *,
     out: Annotated[
         Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, one row per single damage.")
     ] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture of the damaged flanks to draw as well.")] = None,
-    show: Open = False,
+    picture: PictureOptions,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     state: Annotated[str | None, typer.Option("--state", help="Only this state; by default all with damage.")] = None,
     overrides: Annotated[
@@ -38,7 +40,7 @@ def flank(
     from siggen.errors import UsageError
     from siggen.views.flank_views import flank_damage_table, flank_views
 
-    png = picture_place(png, show, "flank")
+    png = picture.place("flank")
     check_wanted(out, png, "flank")
     with working("drawing damage"):
         usable = load_config(config, overrides or ())
@@ -54,7 +56,7 @@ def flank(
             from siggen.views.flank_figure import save_flank_figure
 
             save_flank_figure(views, png)
-        drawn(png, show)
+        picture.drawn(png)
 
 
 def _without_lists(table: Table) -> Table:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from siggen.cli.engine_options import Address, AllowedLoss, EngineName
+from siggen.cli.engine_options import EngineOptions
+from siggen.cli.option_groups import grouped
 from siggen.cli.run_display import LogJson, run_shown
 from siggen.errors import counted
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 LISTED_FAILURES = 10
 
 
+@grouped
 def generate(
     config: Annotated[
         Path, typer.Argument(help="YAML file of the set, or a preset such as quickstart.", metavar="CONFIG")
@@ -27,17 +29,12 @@ def generate(
         Path,
         typer.Option("--out", help="Folder or s3://... of the set: new, empty, or begun before."),
     ],
-    workers: Annotated[
-        int | None,
-        typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
-    ] = None,
-    engine: EngineName = None,
-    address: Address = None,
+    *,
+    engine: EngineOptions,
     part: Annotated[
         str | None,
         typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
     ] = None,
-    allowed_loss: AllowedLoss = 0.1,
     log_json: LogJson = None,
     overrides: Annotated[
         list[str] | None,
@@ -57,7 +54,6 @@ def generate(
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
     from siggen.engines.processes import default_workers
-    from siggen.engines.registry import engine_of
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
@@ -68,11 +64,10 @@ def generate(
     with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded):
             shown.say(f"implausible: {sentence}")
-        if text := compilation_text(loaded, default_workers() if workers is None else workers):
+        if text := compilation_text(loaded, default_workers() if engine.workers is None else engine.workers):
             shown.say(text)
-        runner = engine if address is None else engine_of(engine, workers, address)
-        count, progress = workers if runner is engine else None, shown.progress
-        told: dict[str, Any] = {"events": shown.events, "allowed_loss": allowed_loss}
+        (runner, count), progress = engine.runner(), shown.progress
+        told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}
         if chosen is None:
             generation = generate_set(loaded, out, count, progress, engine=runner, **told)
         else:

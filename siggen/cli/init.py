@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from siggen.cli.option_groups import grouped
 
-def init(
-    out: Annotated[Path, typer.Option("--out", help="YAML file to write; never one that exists.")],
-    teeth: Annotated[str, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")] = "",
-    module: Annotated[str, typer.Option("--module", metavar="MM", help="Module.")] = "",
+
+@dataclass(frozen=True, slots=True)
+class RigNumbers:
+    """The machine."""
+
+    teeth: Annotated[str, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")] = ""
+    module: Annotated[str, typer.Option("--module", metavar="MM", help="Module.")] = ""
     face_width: Annotated[
         str, typer.Option("--face-width", metavar="MM", help="Face width; proposed where it is not given: 8 modules.")
-    ] = "",
+    ] = ""
     speed: Annotated[
         str,
         typer.Option(
             "--speed", metavar="HZ", help="Of the pinion: one, or lowest,highest. In Hz, or as 1450rpm or 1450/60."
         ),
-    ] = "",
+    ] = ""
     torque: Annotated[
         str,
         typer.Option(
@@ -29,8 +34,7 @@ def init(
             metavar="NM",
             help="On the pinion: one, or lowest,highest; where it is not given, what the gears are rated for.",
         ),
-    ] = "",
-    sensors: Annotated[int, typer.Option("--sensors", help="Number of accelerometers on the casing.")] = 2,
+    ] = ""
     bores: Annotated[
         str,
         typer.Option(
@@ -38,7 +42,15 @@ def init(
             metavar="MM,MM",
             help="Shaft diameters of pinion and gear; else for what the gears are rated for.",
         ),
-    ] = "",
+    ] = ""
+
+
+@grouped
+def init(
+    out: Annotated[Path, typer.Option("--out", help="YAML file to write; never one that exists.")],
+    *,
+    numbers: RigNumbers,
+    sensors: Annotated[int, typer.Option("--sensors", help="Number of accelerometers on the casing.")] = 2,
     pressure_angle: Annotated[float, typer.Option("--pressure-angle", help="Of the rack, in degrees.")] = 20.0,
     base: Annotated[str, typer.Option("--extends", help="Preset that gives everything else.")] = "bench",
     name: Annotated[str, typer.Option("--name", help="Of the set; by default the file's name.")] = "",
@@ -52,8 +64,6 @@ def init(
 
     Example: siggen init --teeth 25,56 --module 2 --speed 1450rpm --out rig.yaml
     """
-    from dataclasses import replace
-
     from siggen.checks.face_accuracy import covering_classes
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
@@ -65,8 +75,7 @@ def init(
 
     if out.exists():
         raise UsageError(f"{out}: is there already; give --out a new file")
-    answers = {"teeth": teeth, "module": module, "speed": speed}
-    answers |= {"face-width": face_width, "torque": torque, "bores": bores}
+    answers = {name.replace("_", "-"): said for name, said in asdict(numbers).items()}
     if not sys.stdin.isatty():
         refuse_missing(missing_answers(answers))
     for option in missing_answers(answers):

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -16,13 +17,14 @@ if TYPE_CHECKING:
     from siggen.views.natural_modes import SpecimenModes
 
 
+@grouped
 def modes(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
+    *,
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    show: Open = False,
+    picture: PictureOptions,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as dynamics.model=casing.")
@@ -39,7 +41,7 @@ def modes(
         check_table_file(out)
     from siggen.views.natural_modes import specimen_modes
 
-    png = picture_place(png, show, "modes")
+    png = picture.place("modes")
     with working("computing natural modes"):
         found = specimen_modes(load_config(config, overrides or ()), specimen)
     from rich.console import Console
@@ -53,7 +55,7 @@ def modes(
             from siggen.views.modes_figure import save_modes_figure
 
             save_modes_figure(found, png)
-        drawn(png, show)
+        picture.drawn(png)
 
 
 def _printed(found: SpecimenModes) -> Table:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -16,13 +17,14 @@ if TYPE_CHECKING:
     from siggen.views.path_curves import PathCurves
 
 
+@grouped
 def path(
     config: Annotated[
         Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
     ],
+    *,
     out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    show: Open = False,
+    picture: PictureOptions,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as housing.modal_mass_kg=30.")
@@ -42,7 +44,7 @@ def path(
         check_table_file(out)
     from siggen.views.path_curves import path_curves
 
-    png = picture_place(png, show, "path")
+    png = picture.place("path")
     with working("computing transfer paths"):
         found = path_curves(load_config(config, overrides or ()), specimen)
     from rich.console import Console
@@ -56,7 +58,7 @@ def path(
             from siggen.views.path_figure import save_path_figure
 
             save_path_figure(found, png)
-        drawn(png, show)
+        picture.drawn(png)
 
 
 def _printed(found: PathCurves) -> Table:

@@ -1,30 +1,44 @@
-"""The option --open of commands that draw: where the picture goes, and how it is shown."""
+"""The options --png and --open of commands that draw: where the picture goes, and how it is shown."""
 
 from __future__ import annotations
 
 import tempfile
 import webbrowser
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-Open = Annotated[bool, typer.Option("--open", help="Draw the picture and open it; without --png in a temporary file.")]
 
+@dataclass(frozen=True, slots=True)
+class PictureOptions:
+    """A picture."""
 
-def picture_place(png: Path | None, show: bool, command: str) -> Path | None:
-    """Return where the picture goes, None where none is wanted; checked, since what follows may take long.
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw.")] = None
+    show: Annotated[
+        bool, typer.Option("--open", help="Draw the picture and open it; without --png in a temporary file.")
+    ] = False
 
-    Raises
-    ------
-    UsageError
-        If the ending of --png is none that is drawn.
-    """
-    from siggen.views.picture_file import check_picture_file
+    def place(self, command: str) -> Path | None:
+        """Return where the picture goes, None where none is wanted; checked, since what follows may take long.
 
-    if png is None and not show:
-        return None
-    return check_picture_file(png or Path(tempfile.mkdtemp(prefix="siggen_")) / f"{command}.png")
+        Raises
+        ------
+        UsageError
+            If the ending of --png is none that is drawn.
+        """
+        from siggen.views.picture_file import check_picture_file
+
+        if self.png is None and not self.show:
+            return None
+        return check_picture_file(self.png or Path(tempfile.mkdtemp(prefix="siggen_")) / f"{command}.png")
+
+    def drawn(self, png: Path) -> None:
+        """Say where the picture is, and open it if asked for."""
+        typer.echo(str(png))
+        if self.show and not webbrowser.open(png.resolve().as_uri()):
+            typer.echo(f"note: no program was found to show it; open {png} yourself", err=True)
 
 
 def check_wanted(out: Path | None, png: Path | None, command: str) -> None:
@@ -45,10 +59,3 @@ def check_wanted(out: Path | None, png: Path | None, command: str) -> None:
             f"siggen {command}: nothing to write; give --out {command}.csv for the table, --png {command}.png for the "
             "picture, or --open to see it"
         )
-
-
-def drawn(png: Path, show: bool) -> None:
-    """Say where the picture is, and open it if asked for."""
-    typer.echo(str(png))
-    if show and not webbrowser.open(png.resolve().as_uri()):
-        typer.echo(f"note: no program was found to show it; open {png} yourself", err=True)

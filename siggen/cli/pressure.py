@@ -7,18 +7,20 @@ from typing import Annotated, Literal
 
 import typer
 
-from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
 
 
+@grouped
 def pressure(
     source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
     record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
+    *,
     out: Annotated[
         Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, a row per position and slice.")
     ] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    show: Open = False,
+    picture: PictureOptions,
     gear: Annotated[
         Literal["pinion", "gear"] | None, typer.Option("--gear", help="Whose flank; by default the damaged gear's.")
     ] = None,
@@ -46,7 +48,7 @@ def pressure(
     from siggen.views.face_pressure import face_pressure, pressure_table
     from siggen.views.pressure_figure import chosen_positions, largest_text, save_pressure_figure
 
-    png = picture_place(png, show, "pressure")
+    png = picture.place("pressure")
     check_wanted(out, png, "pressure")
     with working("simulating the record and solving the pressure across the face"):
         found = face_pressure(chosen_config(source, record, overrides or ()), record, gear, tooth)
@@ -60,4 +62,4 @@ def pressure(
     if out is not None:
         typer.echo(str(out))
     if png is not None:
-        drawn(png, show)
+        picture.drawn(png)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from siggen.cli.picture_option import Open, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -18,11 +19,12 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import Dataset
 
 
+@grouped
 def show(
     folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
     record: Annotated[int, typer.Option("--record", min=0, help="Id of the record (column record_id).")],
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw instead of the table.")] = None,
-    open_it: Open = False,
+    *,
+    picture: PictureOptions,
     channel: Annotated[str | None, typer.Option("--channel", help="Channel to draw; by default the first.")] = None,
 ) -> None:
     """Show the labels and damage of one record, or draw its waveform and its spectrum around the mesh harmonics.
@@ -33,12 +35,12 @@ def show(
 
     dataset = open_set(folder)
     found = dataset.record(record)
-    if (png := picture_place(png, open_it, "show")) is not None:
+    if (png := picture.place("show")) is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.record_figure import save_record_figure
 
             save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
-        drawn(png, open_it)
+        picture.drawn(png)
         return
     from rich.console import Console
 

@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from siggen.cli.picture_option import Open, check_wanted, drawn, picture_place
+from siggen.cli.option_groups import grouped
+from siggen.cli.picture_option import PictureOptions, check_wanted
 from siggen.cli.working import working
 
 
-def tvms(
-    config: Annotated[
-        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
-    ],
-    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to draw as well.")] = None,
-    show: Open = False,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
-    pitches: Annotated[
-        int | None,
-        typer.Option(
-            "--pitches", min=1, help="Tooth pitches to compute; by default two behind the last damaged tooth."
-        ),
-    ] = None,
+@dataclass(frozen=True, slots=True)
+class FurtherCurves:
+    """Further curves."""
+
     parts: Annotated[
         bool,
         typer.Option(
@@ -32,7 +24,32 @@ def tvms(
             help="Add the compliances that the damaged tooth's pair is made of: contact and tooth. With "
             "dynamics.mesh.law: pairs the contact is that of the pair alone under the torque, sink included.",
         ),
-    ] = False,
+    ] = False
+    potential_energy: Annotated[
+        bool,
+        typer.Option(
+            "--potential-energy",
+            help="Where damage acts as geometry: add the curve by potential energy, which is not used.",
+        ),
+    ] = False
+
+
+@grouped
+def tvms(
+    config: Annotated[
+        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
+    ],
+    *,
+    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
+    picture: PictureOptions,
+    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
+    pitches: Annotated[
+        int | None,
+        typer.Option(
+            "--pitches", min=1, help="Tooth pitches to compute; by default two behind the last damaged tooth."
+        ),
+    ] = None,
+    further: FurtherCurves,
     torque_nm: Annotated[
         float | None,
         typer.Option(
@@ -41,13 +58,6 @@ def tvms(
             help="Torque on the pinion [N m] where damage acts as geometry; by default of the first operating point.",
         ),
     ] = None,
-    potential_energy: Annotated[
-        bool,
-        typer.Option(
-            "--potential-energy",
-            help="Where damage acts as geometry: add the curve by potential energy, which is not used.",
-        ),
-    ] = False,
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.")
     ] = None,
@@ -71,7 +81,7 @@ def tvms(
     from siggen.views.stiffness_figure import save_stiffness_figure
     from siggen.views.table_error import table_error_text
 
-    png = picture_place(png, show, "tvms")
+    png = picture.place("tvms")
     check_wanted(out, png, "tvms")
     with working("computing the mesh stiffness of every state"):
         usable = load_config(config, overrides or ())
@@ -80,10 +90,10 @@ def tvms(
         meaning = stiffness_meaning(usable, torque)
         error = table_error_text(usable, specimen)
     if out is not None:
-        write_table_file(curve_table(curves, parts=parts, potential_energy=potential_energy), out)
+        write_table_file(curve_table(curves, **asdict(further)), out)
     if png is not None:
         with working("drawing the picture", compiles=False):
-            save_stiffness_figure(curves, png, parts=parts, potential_energy=potential_energy, title=meaning)
+            save_stiffness_figure(curves, png, **asdict(further), title=meaning)
     typer.echo(meaning, err=True)
     typer.echo(error, err=True)
     for note in model_notes(usable):
@@ -91,4 +101,4 @@ def tvms(
     if out is not None:
         typer.echo(str(out))
     if png is not None:
-        drawn(png, show)
+        picture.drawn(png)

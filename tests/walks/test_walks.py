@@ -18,7 +18,7 @@ from tests.walks.walking import FS_HZ, recorded, walk
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
 SIZE = "--set specimens=6 --set duration_s=0.6 --set 'splits={train: 10, validation: 4, test: 6}'"
-RECORDING = "set/data/test-00000.parquet --row 4 --fs 25600 --teeth 18,47 --tacho tacho_s"
+RECORDING = "set/data/test-00000.parquet:4 --fs 25600 --teeth 18,47 --tacho tacho_s"
 
 
 @pytest.fixture(scope="session")
@@ -33,7 +33,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def models(rig: Path) -> Path:
-    walk(rig, "siggen-diagnostics train set --no-cnn --out models")
+    walk(rig, "siggen-diagnostics report set --models-only --no-cnn --out models")
     return rig / "models"
 
 
@@ -72,7 +72,9 @@ def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path,
     (rig / "tree.py").write_text(tree)
     (rig / "network.py").write_text(network)
     in_python = walk(rig, "python tree.py")
-    by_command = walk(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")
+    by_command = walk(
+        rig, "siggen-diagnostics report set --predictions mine.parquet --baselines models --out scores.csv"
+    )
     assert by_command.removesuffix("scores.csv\n") == in_python
     rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
     assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
@@ -148,6 +150,6 @@ def test_predict_by_classifiers_on_indicators(rig: Path, models: Path) -> None:
 
 @pytest.mark.slow  # trains both networks
 def test_predict_by_networks(rig: Path) -> None:
-    walk(rig, "siggen-diagnostics train set --out all_models")
+    walk(rig, "siggen-diagnostics report set --models-only --out all_models")
     said = walk(rig, f"siggen-diagnostics predict all_models {RECORDING} --out by_networks")
     assert "network" in said

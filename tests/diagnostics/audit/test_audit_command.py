@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
-from diagnostics.audit import network_attacker
+from diagnostics.audit import signal_attackers
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 from siggen.sets.verification import verify
@@ -30,8 +30,8 @@ def clean() -> PlantedSet:
 @pytest.fixture(autouse=True)
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps of training: what they find is tested with the attackers."""
-    monkeypatch.setattr(network_attacker, "SHOWN", 40)
-    monkeypatch.setattr(network_attacker, "FEWEST_EPOCHS", 1)
+    monkeypatch.setattr(signal_attackers, "SHOWN", 40)
+    monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import pytest
 
+from diagnostics.audit.attack_tables import verdict_words
 from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.bank_detections import ChanceLimit
+from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
 from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.card_section import verdict_words
 from diagnostics.audit.detectability import Detection
-from diagnostics.audit.gearboxes_needed import gearboxes_needed
 from diagnostics.audit.separability_findings import verdict
 from diagnostics.statistics.evaluation import Interval
 

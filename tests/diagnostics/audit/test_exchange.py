@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.attacks.chance import bank_maxima, permuted
-from diagnostics.attacks.column_attackers import best_column
-from diagnostics.attacks.held_out import dealt_folds
+from diagnostics.audit.chance import bank_maxima, permuted
+from diagnostics.audit.column_attackers import best_column
+from diagnostics.audit.held_out import dealt_folds
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.reference_pairs import exchange_blocks, reference_records
 

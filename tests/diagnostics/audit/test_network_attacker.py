@@ -1,4 +1,4 @@
-"""The audit's network is that of `train`: it finds a burst wherever it stands, and says the same twice."""
+"""The audit's network is that of `report`: it finds a burst wherever it stands, and says the same twice."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.attacks.trial import Trial
-from diagnostics.audit import network_attacker
+from diagnostics.audit import signal_attackers
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.trial import Trial
 
 GEARBOXES, STEPS = 16, 1024
 SPECIMEN, DAMAGED = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, False, True], GEARBOXES)
@@ -33,12 +33,12 @@ def test_it_finds_a_burst_wherever_it_is_and_says_the_same_twice(
     referenced: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("torch")
-    monkeypatch.setattr(network_attacker, "SHOWN", 900)
+    monkeypatch.setattr(signal_attackers, "SHOWN", 900)
     # the other healthy record of the gearbox: record 1 for record 0, record 0 for the others
     reference = np.array([1, 0, 0] * GEARBOXES) + 3 * SPECIMEN if referenced else None
 
     def score() -> np.ndarray:
-        attacker = network_attacker.network_attacker("network", bursts(), reference, 0)
+        attacker = signal_attackers.network_attacker("network", bursts(), reference, 0)
         assert attacker is not None
         assert attacker.usable.all()
         assert not attacker.permutable
@@ -54,8 +54,8 @@ def test_a_record_without_average_or_reference_is_not_asked_about() -> None:
     found = bursts()
     found.waveforms[3] = [np.empty(0, np.complex64)]
     reference = np.where(SPECIMEN == 0, -1, 3)  # the references of all others are record 3, which has no average
-    alone = network_attacker.network_attacker("network", found, None, 0)
-    beside = network_attacker.network_attacker("network", found, reference, 0)
+    alone = signal_attackers.network_attacker("network", found, None, 0)
+    beside = signal_attackers.network_attacker("network", found, reference, 0)
     assert alone is not None
     assert beside is not None
     assert np.flatnonzero(~alone.usable).tolist() == [3]

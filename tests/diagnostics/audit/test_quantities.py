@@ -7,12 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from diagnostics.indicators.line_levels import line_levels
+from diagnostics.indicators.line_levels import line_levels, synchronous_ratio_db
 from diagnostics.indicators.record import record_result
 from diagnostics.records.recording import Recording
-from diagnostics.signal.order_lines import noise_density, order_lines
-from diagnostics.signal.speed_variation import speed_variation_percent
-from diagnostics.signal.synchronous_ratio import synchronous_ratio_db
+from diagnostics.signal.order_domain import speed_variation_percent
+from diagnostics.signal.spectrum import noise_density, order_lines
 
 TEETH = (18, 47)
 STEPS, REVOLUTIONS = 512, 60

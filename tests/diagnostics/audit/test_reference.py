@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.audit.reference_comparison import discriminator_auc, reference_comparison
-from diagnostics.audit.reference_folder import WindowSet, reference_windows
+from diagnostics.audit.reference_comparison import WindowSet, discriminator_auc, reference_comparison, reference_windows
 from diagnostics.signal.window_features import FEATURES, RATE_HZ, signal_windows, window_features
 from siggen.errors import UsageError
 

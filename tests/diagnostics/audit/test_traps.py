@@ -9,8 +9,7 @@ import pytest
 from planted_set import Plant, measured
 from planted_traps import FOUND_AS, TRAPS, with_permuted_states
 
-from diagnostics.audit.condition_attackers import condition_layers
-from diagnostics.audit.condition_traps import condition_traps
+from diagnostics.audit.condition_traps import condition_layers, condition_traps
 from diagnostics.audit.error_draws import chance_bound, likeness
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.separability_findings import separability_findings, verdict

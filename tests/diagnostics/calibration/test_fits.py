@@ -10,12 +10,10 @@ import pytest
 from diagnostics.calibration.calibration import path_gains
 from diagnostics.calibration.healthy_blocks import Block, healthy_blocks
 from diagnostics.calibration.jackknife import jackknife
-from diagnostics.calibration.noise_fit import noise_fit
+from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
-from diagnostics.calibration.path_draws import liftered, minimum_phase, path_level_db
-from diagnostics.calibration.path_level import path_level_doubt
-from diagnostics.calibration.sensor_fit import smallest_step
+from diagnostics.calibration.path_draws import liftered, minimum_phase, path_level_db, path_level_doubt
 from diagnostics.recordings.measured_recording import RecordingFacts
 
 FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400

@@ -12,8 +12,6 @@ import pytest
 
 import siggen
 from diagnostics.calibration.healthy_blocks import Block, HealthyBlocks
-from diagnostics.calibration.injected_rows import splits_of
-from diagnostics.calibration.injected_set import write_injected
 from diagnostics.calibration.injection import (
     SHUFFLED,
     WHITE,
@@ -21,6 +19,8 @@ from diagnostics.calibration.injection import (
     control_difference,
     injected,
     simulated_differences,
+    splits_of,
+    write_injected,
 )
 from diagnostics.page.provenance import origin_sentence
 from siggen.errors import UsageError

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from diagnostics.calibration.order_record import OrderRecord, line_groups, order_record
-from diagnostics.calibration.second_stage import machine_multiples, second_stage, stage_lines
-from diagnostics.calibration.wave_lines import wave_lines
+from diagnostics.calibration.second_stage import machine_multiples, second_stage, stage_lines, wave_lines
 
 FS_HZ, SAMPLES = 12_800.0, 25_600
 HIGHEST_ORDER = 170.0

@@ -26,7 +26,7 @@ from tests.dataset.resealed_set import reseal
 COMMANDS = {
     "indicators": ("--out", "out"),
     "table": ("--out", "out.parquet"),
-    "train": ("--no-cnn", "--out", "out"),
+    "models": ("--models-only", "--no-cnn", "--out", "out"),
     "report": ("--no-cnn", "--out", "out"),
     "audit": ("--out", "out"),
 }
@@ -162,13 +162,13 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ALL),
     "empty folder": (emptied, ("no data set here",), ALL),
     "photos": (photos, ("not a siggen data set",), ALL),
-    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "train", "audit")),
+    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "models", "audit")),
     "no healthy": (
         some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "--out FILE.parquet"), ("indicators",),
     ),
     "healthy only": (some_rows(lambda row: row["state"] == "healthy"), ("no damaged records",), ("indicators",)),
-    "single state": (some_rows(lambda row: row["state"] == "slight"), ("single state", "Add damaged"), ("train",)),
-    "one gearbox": (some_rows(lambda row: row["specimen_id"] == 0), ("has no specimens", "specimens=N"), ("train",)),
+    "single state": (some_rows(lambda row: row["state"] == "slight"), ("single state", "Add damaged"), ("models",)),
+    "one gearbox": (some_rows(lambda row: row["specimen_id"] == 0), ("has no specimens", "specimens=N"), ("models",)),
 }  # fmt: skip
 """What is wrong: how it is made, what the message has to say besides the set's name, and which commands refuse it."""
 
@@ -189,7 +189,7 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
     edit, parts, _ = BAD[what]
     edit(folder)
     monkeypatch.chdir(tmp_path)
-    program = "indicators" if command == "table" else command
+    program = {"table": "indicators", "models": "report"}.get(command, command)
     assert run(monkeypatch, program, str(folder), *COMMANDS[command]) == 2
     error = capsys.readouterr().err
     assert error.startswith("siggen-diagnostics: ")

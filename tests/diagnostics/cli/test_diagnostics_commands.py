@@ -14,7 +14,7 @@ import pytest
 
 import diagnostics.cli.app
 import siggen.cli.app
-from diagnostics.cli.app import main
+from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
 from siggen.columns.record import ID_COLUMNS, LABEL_COLUMNS, OPERATING_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
@@ -28,11 +28,11 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return int(stop.value.code or 0)
 
 
-@pytest.mark.parametrize("command", [[], ["indicators"], ["train"], ["report"], ["predict"]])
+@pytest.mark.parametrize("command", [one for some in COMMANDS.values() for one in some])
 def test_every_command_explains_itself_with_an_example(
-    command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(monkeypatch, *command, "-h") == 0
+    assert run(monkeypatch, command.__name__, "-h") == 0
     assert "Example: siggen-diagnostics" in capsys.readouterr().out
 
 
@@ -48,11 +48,11 @@ def test_help_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("command", ["indicators", "train", "report"])
+@pytest.mark.parametrize("command", ["indicators", "audit", "report"])
 def test_a_folder_without_a_set_is_a_usage_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = {"indicators": ["--out", "x.csv"], "train": ["--out", "y"], "report": []}[command]
+    out = {"indicators": ["--out", "x.csv"], "audit": ["--out", "y"], "report": []}[command]
     assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
     error = capsys.readouterr().err
     assert error.startswith("siggen-diagnostics: ")
@@ -66,7 +66,7 @@ def test_missing_extra_names_the_line_that_installs_it(
     monkeypatch.setattr(
         "diagnostics.base.extras.missing_packages", lambda *names: ("torch",) if "torch" in names else ()
     )
-    assert run(monkeypatch, "train", str(tmp_path), "--out", str(tmp_path / "m")) == 2
+    assert run(monkeypatch, "report", "--models-only", str(tmp_path)) == 2
     assert "pip install 'siggen[cnn]'" in capsys.readouterr().err
 
 
@@ -149,7 +149,7 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
     assert "not one of 6 records can be used" in error
     assert "they have to last 0.24 s" in error
     assert run(monkeypatch, "indicators", "x", "--speed-range", "40,30") == 2
-    assert "speed range" in capsys.readouterr().err
+    assert "--speed-range: received 40 to 30 Hz" in capsys.readouterr().err
 
 
 def test_columns_that_are_read_exist_in_every_set() -> None:

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.explore.beside_page import write_beside_page
-from diagnostics.explore.recordings_source import ShownRecording
+from diagnostics.explore.measured_page import ShownRecording
 from diagnostics.machine.recording_indicators import RecordingIndicators, recording_indicators
 from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.errors import UsageError

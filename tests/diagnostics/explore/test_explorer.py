@@ -19,14 +19,13 @@ import pytest
 
 from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
-from diagnostics.explore.explorer import ExplorerOptions, write_explorer
-from diagnostics.explore.predictions import predicted_labels
+from diagnostics.explore.explorer import ExplorerOptions, predicted_labels, write_explorer
 from diagnostics.explore.server import page_server
 from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
-from diagnostics.release.saved_models import save_models
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
 from siggen.errors import UsageError

@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
-from diagnostics.explore.recordings_source import ShownRecording, recordings_source
-from diagnostics.machine.check_history import PastCheck
+from diagnostics.explore.measured_page import ShownRecording, recordings_source
+from diagnostics.machine.check import PastCheck
 from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.measured_recording import RecordingFacts
 from siggen.errors import UsageError

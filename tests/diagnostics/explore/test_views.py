@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from diagnostics.explore.detail import Detail
-from diagnostics.explore.flank_outlines import flank_size, outlines
-from diagnostics.explore.order_axis import OrderAxis
-from diagnostics.explore.record_views import PageAxes, record_views
+from diagnostics.explore.payload import flank_size, outlines
+from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
 from diagnostics.records.recording import Recording
 from diagnostics.signal.envelope_spectrum import envelope_spectrum
 from siggen.gears.damage.heights import flank_heights

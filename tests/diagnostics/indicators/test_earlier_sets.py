@@ -10,7 +10,7 @@ import numpy as np
 import siggen
 from diagnostics.indicators.classifier_table import classifier_table
 from diagnostics.indicators.table import record_table
-from diagnostics.report.stiffness_figures import LOSSES, loss_of_specimens
+from diagnostics.report.drawing import LOSSES, loss_of_specimens
 
 FIRST = Path(__file__).parents[2] / "sets" / "schema_1"
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from diagnostics.indicators.average import energy_ratio, fm0, fm4, noise_share
 from diagnostics.indicators.level import crest_factor, kurtosis, rms
 from diagnostics.indicators.sidebands import relative_amplitude, sideband_index, sideband_level_factor, sideband_ratio
-from diagnostics.signal.difference_signal import separated_average
+from diagnostics.signal.shaft_signals import separated_average
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH = 18

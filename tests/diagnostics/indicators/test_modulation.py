@@ -13,7 +13,7 @@ from scipy.special import jv
 from diagnostics.indicators.cepstrum import cepstral_peak, shaft_log_spectrum
 from diagnostics.indicators.modulation import amplitude_modulation, phase_modulation_rad
 from diagnostics.indicators.sidebands import sideband_asymmetry_db, sideband_power
-from diagnostics.signal.demodulation import Modulation, demodulated
+from diagnostics.signal.mesh_band import Modulation, demodulated
 from diagnostics.signal.spectrum import line_amplitudes
 
 TEETH, SAMPLES = 18, 18 * 128

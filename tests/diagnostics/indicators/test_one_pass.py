@@ -75,7 +75,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     calls = counted(monkeypatch)
     for command, *options in (
         ("indicators", "--out", "ranking"),
-        ("train", "--no-cnn", "--out", "models"),
+        ("report", "--models-only", "--no-cnn", "--out", "models"),
         ("audit", "--out", "audit"),
         ("indicators", "--out", "features.parquet"),
     ):
@@ -144,7 +144,7 @@ def test_a_damaged_or_unwritable_table_is_computed_again(folder: Path, monkeypat
 
 
 def test_a_chosen_channel_reads_the_table_of_all(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from diagnostics.records.usable_channels import with_channels
+    from diagnostics.records.usable_records import with_channels
 
     whole = record_table(reading.open(folder))
     calls = counted(monkeypatch)
@@ -169,7 +169,7 @@ def test_an_own_indicator_goes_through_features_training_audit_report_and_predic
     assert "peak_to_peak (" in Path("report/models/model_card.md").read_text()
     capsys.readouterr()
     recording = str(min((folder / "data").glob("test*.parquet")))
-    predict = ("predict", "report/models", recording, "--row", "0", "--fs", "12800", "--teeth", "18,47")
+    predict = ("predict", "report/models", f"{recording}:0", "--fs", "12800", "--teeth", "18,47")
     assert run(monkeypatch, *predict, "--tacho", "tacho_s") == 2
     assert "give --indicator MODULE:peak_to_peak" in capsys.readouterr().err
     assert run(monkeypatch, *predict, "--tacho", "tacho_s", *own) == 0, capsys.readouterr().err

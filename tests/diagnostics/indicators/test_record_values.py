@@ -91,7 +91,7 @@ def test_fm4_of_a_perfect_record_is_undefined_when_the_angle_is_exact() -> None:
     settings = IndicatorSettings(samples_per_tooth=16)
     time_s = np.arange(18 * 16 * 20) / (18 * 16)
     signal = np.cos(2 * np.pi * 18 * time_s)
-    from diagnostics.signal.difference_signal import separated_average
+    from diagnostics.signal.shaft_signals import separated_average
     from diagnostics.signal.synchronous_average import synchronous_average
 
     average = synchronous_average(signal, 18, settings.samples_per_tooth).signal

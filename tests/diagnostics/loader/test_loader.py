@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diagnostics.loader.epoch_order import Part, Shuffling, epoch_chunks, lane_sizes
+from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks, lane_sizes
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.loader.window_stream import WindowLoader, WindowStream
 from siggen.errors import DatasetError, UsageError
@@ -52,13 +52,10 @@ def test_parts_share_the_windows_without_gap_or_double(
     seed: int | None,
 ) -> None:
     group = np.repeat(np.arange(len(counts)), counts)
-    shuffling = Shuffling(seed, buffer_groups)
     found = []
     for rank in range(world_size):
-        lanes = [
-            epoch_chunks(group, epoch, Part(rank, world_size, worker, workers), batch, shuffling)
-            for worker in range(workers)
-        ]
+        shuffling = Shuffling(seed, buffer_groups, rank, world_size)
+        lanes = [epoch_chunks(group, epoch, Lane(worker, workers), batch, shuffling) for worker in range(workers)]
         assert all(np.unique(group[chunk]).size <= buffer_groups for lane in lanes for chunk in lane)
         found.append([np.concatenate([*lane, np.empty(0, dtype=int)]) for lane in lanes])
     assert sorted(np.concatenate([*itertools.chain(*found)]).tolist()) == list(range(group.size))
@@ -77,7 +74,9 @@ def test_workers_have_their_batches_strictly_in_turn(windows: int, batch: int, w
 def test_every_window_comes_once_per_epoch(dataset: Any, world_size: int, workers: int) -> None:
     expected = sorted(contents(loader(dataset, shuffling=Shuffling(seed=None))))
     assert len(set(expected)) == len(expected) == window_index(dataset, "train", StreamSettings()).size
-    ranks = [loader(dataset, workers, rank=rank, world_size=world_size) for rank in range(world_size)]
+    ranks = [
+        loader(dataset, workers, shuffling=Shuffling(rank=rank, world_size=world_size)) for rank in range(world_size)
+    ]
     found = [contents(rank) for rank in ranks]
     assert sorted(itertools.chain(*found)) == expected
     assert max(map(len, found)) - min(map(len, found)) <= 1

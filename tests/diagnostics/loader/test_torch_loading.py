@@ -96,7 +96,7 @@ def test_a_transform_of_a_stream_draws_by_seed_epoch_and_window(dataset: Any, wo
 
 def test_ranks_of_the_sampler_share_the_windows(dataset: Any) -> None:
     windows = WindowDataset(dataset, "train")
-    ranks = [RowGroupSampler(windows, rank=rank, world_size=3) for rank in range(3)]
+    ranks = [RowGroupSampler(windows, Shuffling(rank=rank, world_size=3)) for rank in range(3)]
     assert sorted(number for rank in ranks for number in rank) == list(range(len(windows)))
     assert [len(rank) for rank in ranks] == [72, 72, 72]
 

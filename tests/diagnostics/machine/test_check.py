@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from diagnostics.cli.app import app
-from diagnostics.machine.check_history import past_checks
+from diagnostics.machine.check import past_checks
 from siggen.errors import SiggenError
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0

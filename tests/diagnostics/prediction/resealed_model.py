@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from diagnostics.release.model_seal import file_hashes, sealed_text
+from diagnostics.prediction.model_facts import file_hashes, sealed_text
 
 
 def reseal(folder: Path, **entries: Any) -> None:

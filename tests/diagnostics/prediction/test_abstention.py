@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from diagnostics.release.group_bound import group_bound
-from diagnostics.release.noise_floor import noise_floor, octaves_hz
-from diagnostics.release.training_distance import (
+from diagnostics.prediction.noise_floor import noise_floor, octaves_hz
+from diagnostics.prediction.training_distance import (
     calibrated_distance,
     distance_facts,
     distance_features,
     distance_from_facts,
+    group_bound,
 )
 from diagnostics.training.splits import SpecimenSplit
 

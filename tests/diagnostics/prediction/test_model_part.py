@@ -12,7 +12,7 @@ import pytest
 
 from diagnostics.cli.app import main
 from diagnostics.prediction.released_model import load_model
-from diagnostics.release.saved_models import save_models
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.training.baselines import logistic_pipeline
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models
@@ -51,7 +51,7 @@ def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str,
     with pytest.raises(UsageError, match=r"feature_names\.json: does not belong to model\.json") as found:
         load_model(folder)
     assert message in str(found.value)
-    assert f"siggen-diagnostics train SET --out {folder}" in str(found.value)
+    assert f"siggen-diagnostics report SET --models-only --out {folder}" in str(found.value)
 
 
 def test_features_of_other_channels_are_refused_with_exit_code_2(

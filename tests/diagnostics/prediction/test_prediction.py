@@ -15,12 +15,12 @@ import pytest
 from pyarrow import parquet
 
 from diagnostics.cli.app import main
+from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
+from diagnostics.prediction.saved_models import save_models
+from diagnostics.prediction.training_distance import fit_part
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
-from diagnostics.release.distance_part import fit_part
-from diagnostics.release.model_facts import manifest_digest
-from diagnostics.release.saved_models import save_models
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.training import train_models

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.prediction.prediction import Nearness, Vote
-from diagnostics.prediction.prediction_sentences import model_provenance, prediction_summary
+from diagnostics.prediction.prediction_page import model_provenance, prediction_summary
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.statistics.evaluation import Interval
 

@@ -22,18 +22,17 @@ from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.prediction.release import REFERENCED, release
+from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.healthy_references import healthy_references
-from diagnostics.release.release import REFERENCED, release
-from diagnostics.release.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
-from diagnostics.training import circular_network, circular_training
+from diagnostics.training import circular_network
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
-from diagnostics.training.log_features import healthy_referenced, reference_speed_ratio
 from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.referenced import referenced_classifiers
+from diagnostics.training.referenced import healthy_referenced, reference_speed_ratio, referenced_classifiers
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import Training, train_models, training_metrics
 
@@ -145,7 +144,7 @@ def other(trained: tuple[Path, Path], make_dataset: Callable[..., Any]) -> Any:
 
 
 def predict(
-    monkeypatch: pytest.MonkeyPatch, folder: Path, file: Path, out: Path, *more: str
+    monkeypatch: pytest.MonkeyPatch, folder: Path, file: Path | str, out: Path, *more: str
 ) -> tuple[int, dict[str, Any]]:
     arguments = ("--fs", str(FS_HZ), "--teeth", "18,47", "--tacho", "tacho_s", "--out", str(out), *more)
     monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "predict", str(folder), str(file), *arguments])
@@ -169,12 +168,12 @@ def test_a_model_of_a_set_with_repeats_answers_by_differences_to_a_reference(
 ) -> None:
     assert other.table.num_rows == 6
     folder, file = trained
-    code, found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", f"{file}:0,3")
+    code, found = predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", f"{file}:0,3")
     assert code == 0
     assert found["state"] == "severe"
     assert list(found["probabilities"]) == ["healthy_referenced"]
     assert found["distance"] != found["distance_without_reference"]
-    code, healthy = predict(monkeypatch, folder, file, tmp_path, "--row", "3", "--reference", f"{file}:0")
+    code, healthy = predict(monkeypatch, folder, f"{file}:3", tmp_path, "--reference", f"{file}:0")
     assert code == 0
     assert healthy["state"] == "healthy"
 
@@ -199,7 +198,7 @@ def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
 ) -> None:  # fmt: skip
     few = partial(circular_network.CircularSettings, most_epochs=12)
     monkeypatch.setattr(circular_network, "CircularSettings", few)
-    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
+    monkeypatch.setattr(circular_network, "PERMUTED_EPOCHS", 2)
     averages, options = averaged_records(indicators_of_measured), NetworkOptions()
     matrix, split = feature_matrix(features_of_measured), training.split
     trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
@@ -254,7 +253,7 @@ def test_a_long_label_stands_apart_from_its_text(
 ) -> None:  # fmt: skip
     assert other.table.num_rows == 6
     folder, file = trained
-    predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", f"{file}:0")
+    predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", f"{file}:0")
     assert "by healthy_referenced: healthy " in capsys.readouterr().out
 
 
@@ -264,11 +263,11 @@ def test_references_at_another_rate_are_brought_to_that_of_the_model(
     folder, file = trained
     np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)), tacho_s=pulses(other, 0))
     reference = ("--reference", str(tmp_path / "fast.npz"), "--reference-fs", str(2 * FS_HZ))
-    code, found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)
+    code, found = predict(monkeypatch, folder, f"{file}:2", tmp_path, *reference)
     assert code == 0
     assert found["state"] == "severe"
     slow_range = ("--reference", f"{file}:0")
-    same = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *slow_range)[1]
+    same = predict(monkeypatch, folder, f"{file}:2", tmp_path, *slow_range)[1]
     # the way up and down again costs what the two filters leave out near half the rate
     near = found["probabilities"]["healthy_referenced"]["severe"]
     assert near == pytest.approx(same["probabilities"]["healthy_referenced"]["severe"], abs=0.05)
@@ -280,7 +279,7 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     folder, file = trained
     np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)), tacho_s=pulses(other, 0))
     reference = ("--reference", str(tmp_path / "slow.npz"), "--reference-fs", str(FS_HZ * 3 // 4))
-    found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", *reference)[1]
+    found = predict(monkeypatch, folder, f"{file}:2", tmp_path, *reference)[1]
     assert found["state"] == "abstains"
     assert any(
         text.startswith("reference slow.npz: the sampling rate is 9600 Hz") for text in found["reasons_to_abstain"]
@@ -288,7 +287,7 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     np.savez(
         tmp_path / "hurried.npz", **channels(other, 0, (5, 6)), tacho_s=5.0 / 6.0 * pulses(other, 0)
     )  # read at the old rate: 6/5 of the speed
-    found = predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(tmp_path / "hurried.npz"))[1]
+    found = predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", str(tmp_path / "hurried.npz"))[1]
     assert found["state"] == "abstains"
     assert any("reference hurried.npz: the pinion speed is 36" in text for text in found["reasons_to_abstain"])
 
@@ -302,7 +301,7 @@ def test_the_recording_is_no_reference_to_itself(
         tmp_path / "copy.npz", **channels(other, 2), tacho_s=pulses(other, 2)
     )  # the same samples under another name and format
     for said in (f"{file}:0,2", str(tmp_path / "copy.npz")):
-        assert predict(monkeypatch, folder, file, tmp_path / "out", "--row", "2", "--reference", said)[0] == 2
+        assert predict(monkeypatch, folder, f"{file}:2", tmp_path / "out", "--reference", said)[0] == 2
         message = " ".join(capsys.readouterr().err.split())
         assert "has the same samples as the recording" in message
         assert "Give another recording of the same machine in healthy state" in message
@@ -315,8 +314,8 @@ def test_a_reference_that_cannot_be_read_is_named_with_the_way_out(
 ) -> None:  # fmt: skip
     assert other.table.num_rows == 6
     folder, file = trained
-    for said, message in ((file, "--reference FILE:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
-        assert predict(monkeypatch, folder, file, tmp_path, "--row", "2", "--reference", str(said))[0] == 2
+    for said, message in ((file, "other.parquet:ROW"), (f"{file}:6", "from 0 to 5"), ("gone.csv", "gone.csv")):
+        assert predict(monkeypatch, folder, f"{file}:2", tmp_path, "--reference", str(said))[0] == 2
         assert message in "".join(capsys.readouterr().err.split("\n")).replace("  ", " ")
 
 

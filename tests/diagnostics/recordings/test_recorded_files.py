@@ -113,7 +113,7 @@ def test_a_record_of_this_package_is_read_by_row_with_its_pulses(tmp_path: Path)
     first, second = signals().astype(np.float32)
     rows = {"accel_vertical_m_s2": [first, second], "accel_horizontal_m_s2": [second, first]}
     pq.write_table(pa.table({**rows, "tacho_s": [[0.1, 0.2], [0.1, 0.3]], "record_id": [0, 1]}), tmp_path / "a.parquet")
-    with pytest.raises(UsageError, match=r"holds 2 records.*--row, from 0 to 1"):
+    with pytest.raises(UsageError, match=r"holds 2 records.*a.parquet:ROW, from 0 to 1"):
         read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ))
     found = read_recording(tmp_path / "a.parquet", NAMES, RecordingFacts(fs_hz=FS_HZ, row=1, tacho="tacho_s"))
     np.testing.assert_array_equal(found.channels["vertical"], second)

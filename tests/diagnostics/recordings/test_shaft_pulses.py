@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.recordings.line_evidence import line_evidence
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
-from diagnostics.recordings.speed_search import range_parts
+from diagnostics.signal.line_evidence import line_evidence
+from diagnostics.signal.speed_search import range_parts
 from siggen.errors import UsageError
 from tests.diagnostics.calibration.hidden_machine import hidden_record
 

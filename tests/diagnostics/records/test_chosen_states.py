@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from diagnostics.records.chosen_states import chosen_states
+from diagnostics.records.state_classes import chosen_states
 from siggen.errors import UsageError
 
 

@@ -16,9 +16,9 @@ import pytest
 from diagnostics.base.progress import silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.loader.window_index import StreamSettings, window_index
-from diagnostics.release.model_facts import read_facts
-from diagnostics.release.saved_models import save_models
-from diagnostics.report.detection_tables import detection_blocks
+from diagnostics.prediction.model_facts import read_facts
+from diagnostics.prediction.saved_models import save_models
+from diagnostics.report.detector_table import detection_blocks
 from diagnostics.report.sentences import scores_sentence
 from diagnostics.training.baselines import state_index
 from diagnostics.training.network_training import NetworkOptions

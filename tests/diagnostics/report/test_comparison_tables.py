@@ -13,8 +13,7 @@ from diagnostics.page.style import png_bytes, styled
 from diagnostics.report.comparison_tables import curve_table, split_sentence, split_table, study_blocks, verdict
 from diagnostics.report.score_figures import learning_curve_figure
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.learning_curve import CurvePoint
-from diagnostics.training.studies import Studies
+from diagnostics.training.studies import CurvePoint, Studies
 
 
 def row(title: str, area: float) -> Any:

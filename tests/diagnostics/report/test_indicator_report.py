@@ -18,7 +18,7 @@ from diagnostics.indicators.registry import ALL
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.report.indicator_report import kind_notes, write_indicator_report
 from diagnostics.statistics.assessment import AssessmentSettings
-from diagnostics.statistics.noise_curve import noise_curve
+from diagnostics.statistics.detectable_size import noise_curve
 
 SETTINGS = AssessmentSettings(resamples=60)
 

@@ -21,9 +21,8 @@ from diagnostics.audit.audit import ALONE
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.provenance import without_path
-from diagnostics.report.audit_beside import audit_beside, audit_sentence
-from diagnostics.report.report import write_report
-from diagnostics.signal.order_spectrum import OrderSpectrum, strongest_harmonic
+from diagnostics.report.report import audit_beside, audit_sentence, write_report
+from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
 from diagnostics.training.network_training import NetworkOptions
 from diagnostics.training.realism import meaning_of_scores
 from siggen.errors import DatasetError

@@ -15,11 +15,11 @@ import pytest
 
 import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
-from diagnostics.records.label_roles import LABEL_ROLES
+from diagnostics.indicators.matrix import LABEL_ROLES
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
-from diagnostics.scoring.score_table import Scored, ScoreRow
-from diagnostics.scoring.truth import truth_of
+from diagnostics.scoring.score import Scored, ScoreRow
+from diagnostics.scoring.tasks import truth_of
 from diagnostics.statistics.evaluation import Predictions
 from siggen.errors import UsageError
 

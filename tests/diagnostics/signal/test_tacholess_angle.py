@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from diagnostics.signal.mesh_pulses import mesh_pulses
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.synchronous_average import synchronous_average
 from diagnostics.signal.tacholess_angle import mesh_ridge, tacholess_pulses
@@ -87,17 +88,16 @@ def test_range_that_holds_another_multiple_of_the_speed_only_is_refused(
     speed_hz: float, wrong: tuple[float, float], phase: float
 ) -> None:
     signal, _ = swinging(speed_hz, "1.0", 0.02, phase, noise=0.3)
-    with pytest.raises(UsageError, match=r"Check range and teeth"):
-        tacholess_pulses(signal, FS_HZ, TEETH, (wrong[0] * speed_hz, wrong[1] * speed_hz))
+    with pytest.raises(UsageError, match=r"the lines fit|are not told apart|no lines of these shafts"):
+        mesh_pulses({"a": signal}, FS_HZ, (TEETH, 47), (wrong[0] * speed_hz, wrong[1] * speed_hz))
 
 
 def test_sidebands_at_every_order_are_no_reason_to_refuse_the_right_range() -> None:
     # a spall: a short pulse once per revolution beside the mesh lines gives lines at all orders, half-way ones too
     signal, turns = swinging(30.0, "1.0", 0.02, 1.0, noise=0.1)
     pulse = np.exp(-(((turns + 0.5) % 1.0 - 0.5) ** 2) / (2 * 0.01**2)) * np.cos(2 * np.pi * 40 * turns)
-    ridge = mesh_ridge(signal + 3.0 * pulse, FS_HZ, TEETH, (22.0, 40.0))
-    assert ridge.doubt == ""
-    assert np.median(ridge.speed_hz) == pytest.approx(30.0, rel=0.01)
+    found = mesh_pulses({"a": signal + 3.0 * pulse}, FS_HZ, (TEETH, 47), (22.0, 40.0))
+    assert np.median(1.0 / np.diff(found.times_s)) == pytest.approx(30.0, rel=0.01)
 
 
 def test_stronger_lines_of_another_speed_for_a_moment_do_not_make_it_jump() -> None:
@@ -126,8 +126,8 @@ def test_one_sided_sideband_of_the_other_shaft_does_not_wobble_the_angle() -> No
 def test_noise_without_a_mesh_line_is_refused() -> None:
     noise = np.random.default_rng(3).standard_normal(25_600)
     assert mesh_ridge(noise, FS_HZ, TEETH, (25.0, 36.0)).clarity < 0.03
-    with pytest.raises(UsageError, match="no mesh line stands above the noise"):
-        tacholess_pulses(noise, FS_HZ, TEETH, (25.0, 36.0))
+    with pytest.raises(UsageError, match="no lines of these shafts stand above the noise"):
+        mesh_pulses({"a": noise}, FS_HZ, (TEETH, 47), (25.0, 36.0))
 
 
 def test_strong_high_harmonics_do_when_the_first_three_are_buried() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.attacks.held_out import wins
-from diagnostics.statistics.area_interval import area_interval, clopper_pearson, effective_size
+from diagnostics.audit.held_out import wins
 from diagnostics.statistics.evaluation import bootstrap_weights, interval
+from diagnostics.statistics.scores import area_interval, clopper_pearson, effective_size
 
 RESAMPLES, TRIALS = 100, 150
 

@@ -11,12 +11,18 @@ from hypothesis import strategies as st
 from scipy import stats
 from sklearn.isotonic import IsotonicRegression
 
+from diagnostics.statistics.assessment import cohens_d, explained_share, paired_d
 from diagnostics.statistics.detectable_size import detection_curve, isotonic, size_at, weighted_quantile
-from diagnostics.statistics.effect_size import cohens_d, paired_d
-from diagnostics.statistics.monotonicity import ladder_steps, monotonicity
-from diagnostics.statistics.multiple_tests import false_discovery, holm, paired_p, smallest_paired_p, two_sample_p
-from diagnostics.statistics.paired_differences import paired_records, shares_above
-from diagnostics.statistics.sensitivity import explained_share
+from diagnostics.statistics.judged_records import ladder_steps, monotonicity
+from diagnostics.statistics.multiple_tests import (
+    false_discovery,
+    holm,
+    paired_p,
+    paired_records,
+    shares_above,
+    smallest_paired_p,
+    two_sample_p,
+)
 
 
 def ones(count: int) -> np.ndarray:

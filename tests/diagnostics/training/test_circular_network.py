@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import torch
 
-from diagnostics.signal.difference_signal import separated_average
+from diagnostics.signal.shaft_signals import separated_average
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.training.average_rows import (
     STEPS,
@@ -19,7 +19,6 @@ from diagnostics.training.average_rows import (
     padded_lines,
     with_references,
 )
-from diagnostics.training.circular_files import export_circular_onnx, load_circular, save_circular
 from diagnostics.training.circular_network import (
     CircularNetwork,
     CircularSettings,
@@ -27,7 +26,12 @@ from diagnostics.training.circular_network import (
     circular_probability,
     train_circular,
 )
-from diagnostics.training.circular_training import TrainedCircularFile
+from diagnostics.training.circular_training import (
+    TrainedCircularFile,
+    export_circular_onnx,
+    load_circular,
+    save_circular,
+)
 from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import UsageError
 

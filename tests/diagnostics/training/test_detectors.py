@@ -6,10 +6,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from diagnostics.attacks.column_attackers import column_auc
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.training.detectors import BOOSTED, CHOSEN, CLASSIFIER, INDICATOR, judged_detectors
-from diagnostics.training.fold_scores import chosen_scores, dealt, distance, inner_scores
+from diagnostics.statistics.evaluation import column_auc
+from diagnostics.training.detectors import (
+    BOOSTED,
+    CHOSEN,
+    CLASSIFIER,
+    INDICATOR,
+    chosen_scores,
+    dealt,
+    distance,
+    inner_scores,
+    judged_detectors,
+)
 
 GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")

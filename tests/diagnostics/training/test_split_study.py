@@ -15,9 +15,9 @@ from diagnostics.records.recording import recordings
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.scores import scores
 from diagnostics.training.baselines import rms_features, train_classifier
-from diagnostics.training.learning_curve import learning_curve
 from diagnostics.training.split_study import crossed, fold_scores, held_out, speed_bands, split_study
 from diagnostics.training.splits import specimen_split
+from diagnostics.training.studies import learning_curve
 
 CLASSES = ("healthy", "worn")
 

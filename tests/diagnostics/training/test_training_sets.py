@@ -13,7 +13,7 @@ import pyarrow.compute as pc
 import pytest
 
 from diagnostics.base.progress import silent_stage
-from diagnostics.records.usable_channels import with_channels
+from diagnostics.records.usable_records import with_channels
 from diagnostics.training.network_training import NetworkOptions, check_device
 from diagnostics.training.other_set import check_other_set
 from diagnostics.training.training import OtherSet, train_models, training_metrics

@@ -1,0 +1,274 @@
+"""What a released model says about itself: data, labels, channels, rates, and where its training records lie.
+
+What `model.json` promises of the files beside it: their hashes, and a digest of itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.splits import TEST
+from siggen.dataset.reading import Dataset
+from siggen.errors import UsageError
+
+FACTS_FILE = "model.json"
+MODEL_FILES = (
+    *("classifier.skops", "feature_names.json", "cnn.safetensors", "cnn.onnx", "model_card.md"),
+    *("circular.safetensors", "circular.onnx"),
+    *("referenced_classifier.skops", "referenced_feature_names.json"),
+)
+"""All files of a model beside `model.json`, those that not every training writes among them."""
+
+DIGEST = "digest"
+
+FORMAT = "siggen-diagnostics model 4"
+UNHASHED_FORMAT = "siggen-diagnostics model 3"
+"""Written before files had hashes; read, and said to have none."""
+
+
+def sealed_text(content: Mapping[str, Any]) -> str:
+    """Return JSON that carries the SHA-256 of itself, so that any changed byte shows."""
+    return _text({**content, DIGEST: hashlib.sha256(_text(content).encode()).hexdigest()})
+
+
+def unsealed_text(text: str) -> dict[str, Any]:
+    """Return the content of sealed JSON.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON object, or not what its digest promises.
+    """
+    found = json.loads(text)
+    if not isinstance(found, dict):
+        raise ValueError(f"received {type(found).__name__} instead of an object")
+    digest = found.pop(DIGEST, None)
+    if sealed_text(found) != text:
+        raise ValueError(f"it was changed: its content does not match its own digest {digest}")
+    return found
+
+
+def file_hashes(folder: Path) -> dict[str, str]:
+    """Return the SHA-256 of every file of a model that is there, by name."""
+    return {name: _sha256(folder / name) for name in MODEL_FILES if (folder / name).is_file()}
+
+
+def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
+    """Compare the files of a model with their hashes; files that are gone are noted by whoever needs them.
+
+    Raises
+    ------
+    UsageError
+        Naming every file that differs, or that nobody promised.
+    """
+    there = file_hashes(folder)
+    if changed := [name for name, found in there.items() if hashes.get(name) != found]:
+        raise UsageError(
+            f"{folder}: {', '.join(changed)} not as {FACTS_FILE} promises (SHA-256 differs): damaged, changed, or of "
+            "another model. The files of a model are written together; copy the folder as a whole or train again: "
+            f"siggen-diagnostics report SET --models-only --out {folder}"
+        )
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _text(content: Mapping[str, Any]) -> str:
+    return json.dumps(dict(content), indent=1, allow_nan=False) + "\n"
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFacts:
+    """A released model's own description.
+
+    Attributes
+    ----------
+    set_name, identity, manifest_digest : str
+        The set it was trained on: name, SHA-256 of its configuration, SHA-256 of its manifest (which holds the hash of
+        every file).
+    classes, channels : tuple of str
+        States and channel names, in the models' order.
+    unit : str
+        Unit of every channel.
+    fs_hz, duration_s : float
+        Rate and length of the training records.
+    teeth : tuple of (int, int)
+        Pairs of teeth that occur in training and validation, as all that follows: models never saw test records.
+    speed_range_hz, torque_range_nm : (float, float)
+        Operating points.
+    fewest_revolutions : int
+        Pinion revolutions of the shortest average.
+    reference_speed_ratio : float or None
+        Largest ratio, 1 or more, of the speeds of a record and of one it refers to; None without the
+        healthy-referenced variant.
+    """
+
+    set_name: str
+    identity: str
+    manifest_digest: str
+    classes: tuple[str, ...]
+    channels: tuple[str, ...]
+    unit: str
+    fs_hz: float
+    duration_s: float
+    teeth: tuple[tuple[int, int], ...]
+    speed_range_hz: tuple[float, float]
+    torque_range_nm: tuple[float, float]
+    fewest_revolutions: int
+    reference_speed_ratio: float | None = None
+
+
+def manifest_digest(manifest: dict[str, Any]) -> str:
+    """Return the SHA-256 of a manifest's content, the `digest` that `manifest.json` carries."""
+    content = json.dumps(manifest, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> ModelFacts:
+    """Return the facts of models trained on a set; ranges are those of its training and validation records.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set.
+    table : pyarrow.Table
+        Its feature table.
+    classes : tuple of str
+        States in the order of the models.
+    """
+    seen = table.filter(pc.not_equal(table.column("split"), TEST))
+
+    def column(name: str) -> np.ndarray:
+        return np.asarray(seen.column(name).to_pylist())
+
+    def limits(name: str) -> tuple[float, float]:
+        return float(column(name).min()), float(column(name).max())
+
+    pairs = {(int(a), int(b)) for a, b in zip(column("teeth_pinion"), column("teeth_gear"), strict=True)}
+    return ModelFacts(
+        set_name=str(dataset.manifest.get("name", dataset.path.name)),
+        identity=str(dataset.manifest["identity"]),
+        manifest_digest=manifest_digest(dataset.manifest),
+        classes=classes,
+        channels=tuple(channel.name for channel in dataset.channels),
+        unit=dataset.channels[0].unit,
+        fs_hz=float(dataset.fs_hz),
+        duration_s=float(dataset.duration_s),
+        teeth=tuple(sorted(pairs)),
+        speed_range_hz=limits("speed_hz"),
+        torque_range_nm=limits("torque_nm"),
+        fewest_revolutions=int(column("revolutions_pinion").min()),
+    )
+
+
+def write_facts(
+    facts: ModelFacts,
+    distance: TrainingDistance,
+    referenced: TrainingDistance | None,
+    scores: dict[str, Any],
+    folder: Path,
+) -> None:
+    """Write `model.json` with the hashes of all files beside it, so it comes last."""
+    content = {
+        "format": FORMAT,
+        "facts": asdict(facts),
+        "scores": scores,
+        "distance": distance_facts(distance),
+        "referenced_distance": distance_facts(referenced) if referenced else None,
+        "files": file_hashes(folder),
+    }
+    (folder / FACTS_FILE).write_text(sealed_text(content), encoding="utf-8")
+
+
+def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:
+    """Read `model.json`: facts, distance, and the distance of the healthy-referenced variant where there is one.
+
+    Raises
+    ------
+    UsageError
+        If it is missing, damaged or of another format.
+    """
+    path = folder / FACTS_FILE
+    try:
+        content = _content(path)
+        facts = {name: _tuples(value) for name, value in content["facts"].items()}
+        referenced = content["referenced_distance"]
+        return (
+            ModelFacts(**facts),
+            distance_from_facts(content["distance"]),
+            distance_from_facts(referenced) if referenced else None,
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def read_accuracy(folder: Path) -> dict[str, Interval]:
+    """Read the accuracy of every classifier on the test specimens from `model.json`.
+
+    Raises
+    ------
+    UsageError
+        If it is missing or damaged.
+    """
+    path = folder / FACTS_FILE
+    try:
+        tested = _content(path)["scores"]["test"]
+        return {name: _interval(score["accuracy"]) for name, score in tested.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def read_hashes(folder: Path) -> dict[str, str] | None:
+    """Read the SHA-256 of every file of a model from `model.json`; None for a model from before there were any.
+
+    Raises
+    ------
+    UsageError
+        If it is missing or damaged.
+    """
+    path = folder / FACTS_FILE
+    try:
+        content = _content(path)
+        return None if content["format"] == UNHASHED_FORMAT else dict(content["files"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise _unusable(path, error) from error
+
+
+def _content(path: Path) -> dict[str, Any]:
+    """Return what `model.json` says, if it is whole and of a format that is read."""
+    text = path.read_text(encoding="utf-8")
+    content: dict[str, Any] = json.loads(text)
+    found = content.get("format")
+    if found == UNHASHED_FORMAT:
+        return content
+    if found != FORMAT:
+        raise ValueError(f"received format {found!r}; allowed are {FORMAT!r} and {UNHASHED_FORMAT!r}")
+    return unsealed_text(text)
+
+
+def _interval(numbers: dict[str, float | None]) -> Interval:
+    return Interval(**{name: math.nan if value is None else float(value) for name, value in numbers.items()})
+
+
+def _unusable(path: Path, error: Exception) -> UsageError:
+    return UsageError(
+        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics report` wrote with this version"
+    )
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(entry) for entry in value) if isinstance(value, list) else value

@@ -1,0 +1,260 @@
+"""The folder of all models of a training: classifiers, network, facts for recordings and card.
+
+The card that goes with saved models: what they are, on what they were trained, what their scores mean.
+
+The part of the model card on use with recordings: what the models are limited to, and when they abstain.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from diagnostics.indicators.classifier_table import table_settings
+from diagnostics.indicators.indicator import base_name
+from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
+from diagnostics.prediction.release import Release, release, save_release
+from diagnostics.scoring.prediction_file import PredictedRecords, write_predictions
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.judgement import Judged
+from diagnostics.training.classifier_file import save_classifier
+from diagnostics.training.realism import meaning_of_scores
+from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
+from diagnostics.training.training import Training
+from siggen.dataset.reading import Dataset
+
+
+def model_card(training: Training, dataset: Dataset) -> str:
+    """Return the card as Markdown.
+
+    Parameters
+    ----------
+    training : Training
+        The judged classifiers.
+    dataset : siggen Dataset
+        The set they were trained on.
+    """
+    parts = [
+        f"# Gear fault classifiers trained on {dataset.path.name}",
+        meaning_of_scores(dataset.config),
+        "## Data",
+        _data(training, dataset),
+        "## Files",
+        _files(training),
+        "## Scores on test specimens",
+        _scores(training),
+        _probabilities(training),
+        "## Limits",
+        "The models were trained on simulated records only. Do not use the scores as an estimate of performance on "
+        "measured records.",
+    ]
+    if training.notes:
+        parts += ["## Notes", "\n".join(f"* {note}" for note in training.notes)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _data(training: Training, dataset: Dataset) -> str:
+    count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
+    channels = ", ".join(f"{channel.name} [{channel.unit}]" for channel in dataset.channels)
+    return "\n".join(
+        [
+            f"* identity of the set: `{dataset.manifest['identity']}`",
+            f"* {class_text(training.split)}",
+            f"* specimens: {count} (no specimen is in two splits)",
+            f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
+        ]
+    )
+
+
+def class_text(split: SpecimenSplit) -> str:
+    """Return the classes, and which states they hold where that is not one each."""
+    merged = {name: states for name, states in split.members.items() if len(states) > 1}
+    if not merged:
+        return f"states: {', '.join(split.classes)}"
+    held = "; ".join(f"{name}: records of {', '.join(states)}" for name, states in merged.items())
+    return f"classes: {', '.join(split.classes)} ({held})"
+
+
+def _files(training: Training) -> str:
+    lines = [
+        f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
+        f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
+        f"columns are standardised. C = {training.classifier.strength:g} was chosen by cross-validation over training "
+        "and validation gearboxes. `feature_names.json` lists the columns in order, with the settings of their "
+        f"definitions. Columns: {columns_text(training.classifier.features)}",
+    ]
+    if training.network:
+        facts = training.network.facts
+        windows = facts.windows
+        lines += [
+            f"* `cnn.safetensors`: 1-D network with a wide first layer. A window has {windows.revolutions} pinion "
+            f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles. The input is "
+            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2. The network normalises it.",
+            "* `cnn.onnx`: the same network, input `windows`, output `logits`. Average the class probabilities over "
+            f"the windows of a record. Windows are {windows.hop_revolutions} revolutions apart.",
+        ]
+    if training.circular:
+        count = len(training.circular.channels)
+        lines += [
+            "* `circular.safetensors`: convolutional network round the pinion's synchronous average. The input is "
+            f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
+            "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
+            "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
+            "* `circular.onnx`: the same network, input `rows`, output `logits`.",
+        ]
+    if training.referenced and len(training.referenced.judged) > 2:
+        lines.append("* The circular network beside a healthy record is judged in `metrics.json`; it is not saved.")
+    return "\n".join(lines)
+
+
+def columns_text(columns: Sequence[str]) -> str:
+    """Return the indicators that columns are of, with how many columns each has."""
+    counts = Counter(base_name(name) for name in columns)
+    return ", ".join(f"{name} ({count})" for name, count in counts.items())
+
+
+def _scores(training: Training) -> str:
+    titles = (
+        *("classifier", "accuracy", "balanced accuracy", "macro-AUROC", "detection AUROC"),
+        "macro-AUROC with permuted labels",
+    )
+    head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
+    first = training.judged[0].scores
+    return "\n".join([head, *(_row(found) for found in training.judged)]) + (
+        "\n\nThe 95 % intervals come from a bootstrap over test specimens. Always naming the most frequent class gives "
+        f"an accuracy of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}. Chance is 0.50 "
+        "for both AUROC. Detection is healthy against all damaged records, by 1 - p(healthy)."
+    )
+
+
+def _row(found: Judged) -> str:
+    permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
+    scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
+    detected = interval_text(found.detection.every) if found.detection else "-"
+    cells = (found.name, *map(interval_text, scores), detected, permuted)
+    return f"| {' | '.join(cells)} |"
+
+
+def _probabilities(training: Training) -> str:
+    titles = (
+        *("classifier", "T", "Brier score without T", "Brier score with T"),
+        *("calibration error without T", "calibration error with T", "calibration error if true"),
+    )
+    rows = [
+        " | ".join(
+            [
+                judged.name,
+                f"{found.temperature:.2f}",
+                *map(interval_text, (found.brier_before, found.brier, found.before, found.after)),
+                f"{found.honest:.2f}",
+            ]
+        )
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
+    return "\n".join(lines) + (
+        "\n\nThe saved models give probabilities with the temperature T. T comes from validation specimens. It is 1 "
+        "where it does not help validation specimens that are left out of its fit. Chance alone makes the calibration "
+        "error positive. The last column gives its value on these records if the probabilities (with T) were true."
+    )
+
+
+def interval_text(found: Interval) -> str:
+    """Return value and limits with two decimals, or 'undefined'."""
+    if found.value != found.value:
+        return "undefined"
+    if found.low != found.low:
+        return f"{found.value:.2f} (no interval)"
+    return f"{found.value:.2f} [{found.low:.2f}, {found.high:.2f}]"
+
+
+def release_card(found: Release) -> str:
+    """Return the section as Markdown."""
+    facts, distance = found.facts, found.distance
+    teeth = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
+    lines = [
+        "## Use on recordings",
+        f"* digest of the set's manifest (the manifest holds the hash of every file): `{facts.manifest_digest}`",
+        f"* `model.json`: channels ({', '.join(facts.channels)}), {facts.fs_hz:g} Hz, {teeth} teeth, "
+        f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz pinion speed, "
+        f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
+        "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",
+        f"* distance to the training records: the threshold is {distance.threshold:.2f}, from "
+        f"{distance.held_out_specimens} held-out specimens. It refuses {found.test_outside:.1%} of the test records, "
+        "which are of the same family.",
+    ]
+    if found.referenced:
+        accuracy = found.referenced.scores.accuracy.value
+        lines.append(
+            "* `referenced_classifier.skops`: uses log features minus those of healthy records of the same gearbox in "
+            f"another state, repeat or operating point. Its accuracy is {accuracy:.2f} on test specimens."
+        )
+    return "\n\n".join([lines[0], "\n".join(lines[1:])]) + "\n"
+
+
+def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: Path) -> list[str]:
+    """Write all models and the model card into a folder; return notes on what could not be written.
+
+    Parameters
+    ----------
+    training : Training
+        What to save.
+    table : pyarrow.Table
+        The feature table; its settings go along.
+    dataset : siggen Dataset
+        Names the set in the card.
+    folder : Path
+        Created where missing.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (FACTS_FILE, *MODEL_FILES):
+        # a network of an earlier run must not lie beside a card that does not know it
+        (folder / name).unlink(missing_ok=True)
+    identity, notes = set_identity(dataset), []
+    save_classifier(training.classifier, table_settings(table), identity, folder)
+    if training.network:
+        from diagnostics.training.cnn_files import export_onnx, save_network
+
+        network, facts = training.network.trained.network, training.network.facts
+        save_network(network, facts, folder / "cnn.safetensors")
+        try:
+            export_onnx(network, facts, folder / "cnn.onnx")
+        except (RuntimeError, ImportError) as error:
+            notes.append(f"ONNX export failed: {error}")
+    if training.circular:
+        from diagnostics.training.circular_training import export_circular_onnx, save_circular
+
+        save_circular(training.circular, folder / "circular.safetensors")
+        try:
+            export_circular_onnx(training.circular, folder / "circular.onnx")
+        except (RuntimeError, ImportError) as error:
+            notes.append(f"ONNX export of the circular network failed: {error}")
+    write_predictions(_predicted(training, table), identity, folder)
+    released = release(training, table, dataset)
+    notes += [released.note] if released.note else []
+    card = f"{model_card(training, dataset)}\n{release_card(released)}"
+    (folder / "model_card.md").write_text(card, encoding="utf-8")
+    save_release(training, released, table, folder)
+    return notes
+
+
+def _predicted(training: Training, table: pa.Table) -> list[PredictedRecords]:
+    """Return what every classifier says of the validation and test records of the table."""
+    record_id, split = np.asarray(table.column("record_id").to_pylist()), training.split
+    parts = [(VALIDATION, split.validation, "validation"), (TEST, split.test, "predictions")]
+    return [
+        PredictedRecords(judged.name, name, record_id[mask], found)
+        for judged in training.judged
+        for name, mask, attribute in parts
+        if (found := getattr(judged, attribute)) is not None
+    ]
+
+
+def set_identity(dataset: Dataset) -> str:
+    """Return the identity of a set, a SHA-256 of its configuration."""
+    return str(dataset.manifest["identity"])

@@ -1,0 +1,106 @@
+"""`report --models-only` with another set, studies and unusable input: exit codes and what is written."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pytest
+
+from diagnostics.cli.app import main
+from siggen.dataset import reading
+
+SPLITS = ("train",) * 4 + ("validation",) * 2 + ("test",) * 3
+
+
+def run(monkeypatch: pytest.MonkeyPatch, sets: dict[str, Any], *arguments: str) -> int:
+    monkeypatch.setattr(reading, "open", lambda path: sets[Path(path).name])
+    monkeypatch.setattr(sys, "argv", ["siggen-diagnostics", "report", "--models-only", *arguments])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return int(stop.value.code or 0)
+
+
+@pytest.fixture(scope="module")
+def sets(make_dataset: Callable[..., Any]) -> dict[str, Any]:
+    """Two sets of different gearboxes."""
+    other = make_dataset(("test",) * 3, seed=8)
+    return {"first": make_dataset(SPLITS), "second": replace(other, manifest={"identity": "1" * 64, "name": "second"})}
+
+
+@pytest.mark.slow
+def test_another_set_and_studies_are_in_the_metrics(
+    sets: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arguments = ("first", "--out", str(tmp_path), "--test", "second", "--studies", "--no-cnn")
+    assert run(monkeypatch, sets, *arguments) == 0
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    assert set(metrics["classifiers_on_other_set"]) == {"indicators", "boosting", "rms"}
+    splits = {row["split"]: row for row in metrics["studies"]["splits"]}
+    # all records have the same speed, so there is no speed to leave out
+    assert set(splits) == {
+        *("random windows (leaky)", "records", "specimens", "other set"),
+        *("single channel: specimens", "single channel: one sensor", "single channel: one sensor of other specimens"),
+    }
+    assert [point["training_specimens"] for point in metrics["studies"]["learning_curve"]] == [1, 2, 3, 4]
+    assert "calibration error" in (tmp_path / "model_card.md").read_text()
+
+
+def healthy_only(dataset: Any) -> Any:
+    return replace(dataset, table=dataset.table.filter(pc.equal(dataset.table.column("state"), "healthy")))
+
+
+def one_training_specimen(dataset: Any) -> Any:
+    column = dataset.table.column("specimen_id")
+    keep = pc.or_(pc.equal(column, 0), pc.greater_equal(column, 4))
+    return replace(dataset, table=dataset.table.filter(keep))
+
+
+def silent_channel(dataset: Any) -> Any:
+    name = "accel_bearing_vertical_m_s2"
+    position = dataset.table.schema.get_field_index(name)
+    kind = dataset.table.schema.field(name).type
+    values = pa.array(np.zeros(dataset.table.num_rows * kind.list_size, dtype=np.float32))
+    return replace(
+        dataset,
+        table=dataset.table.set_column(position, name, pa.FixedSizeListArray.from_arrays(values, kind.list_size)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "parts"),
+    [
+        (healthy_only, (), ("single state ['healthy']", "Add damaged")),
+        (one_training_specimen, (), ("one specimen of healthy, slight, severe", "specimens=N")),
+        (silent_channel, (), ("channel bearing_vertical is constant", "--channel bearing_horizontal")),
+        (lambda found: found, ("--channel", "top"), ("received top", "bearing_vertical, bearing_horizontal")),
+        (lambda found: found, ("--test", "slower"), ("6400 Hz", "fs_hz: 12800")),
+        (lambda found: found, ("--device", "tpu"), ("received 'tpu'", "cpu, cuda")),
+        (lambda found: found, ("--device", "cuda"), ("--device cuda: ", "leave --device out to train on the CPU")),
+    ],
+    ids=["healthy", "one specimen", "silent", "channel", "rate", "device", "absent"],
+)
+def test_unusable_input_ends_with_2_and_a_way_out(
+    sets: dict[str, Any],
+    change: Callable[[Any], Any],
+    options: tuple[str, ...],
+    parts: tuple[str, ...],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    network = () if "--device" in options else ("--no-cnn",)
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    offered = {"first": change(sets["first"]), "slower": replace(sets["second"], fs_hz=6400.0)}
+    assert run(monkeypatch, offered, "first", "--out", str(tmp_path / "out"), *network, *options) == 2
+    error = capsys.readouterr().err
+    for part in ("siggen-diagnostics: ", *parts):
+        assert part in error
+    assert not (tmp_path / "out").exists()

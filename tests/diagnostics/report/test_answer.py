@@ -1,0 +1,112 @@
+"""Three sentences say which damage is found from which size on, by what and how surely, and no more than is known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences
+from diagnostics.statistics.detector import Detector, FoundSize, StateFound
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.training.detectors import CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors
+
+FOUND_MEANS = "Found: the record gives an alarm, as 5 % of healthy records do."
+BESIDE = "With a healthy record of the same gearbox"
+
+
+def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
+    share = Interval(0.4, 0.3, 0.5)
+    states = {
+        "slight": StateFound("pitting", 1.0, Interval(0.6, 0.5, 0.7), share),
+        "severe": StateFound("pitting", 8.0, Interval(0.9, 0.8, 1.0), share),
+    }
+    sizes = {"pitting": FoundSize(Interval(found_mm2, 2.0, math.inf), 1.0, 8.0)}
+    area = Interval(auc, auc - 0.1, auc + 0.1)
+    return Detector("logistic regression", False, area, states, sizes, 72, 24, healthy)
+
+
+def with_choice(found: dict[str, Detector]) -> dict[str, Detector]:
+    """Return detectors with the first, which the other gearboxes choose."""
+    return {**found, CHOSEN: next(iter(found.values()))} if found else {}
+
+
+def said(**found: Detector) -> dict[str, str]:
+    return {
+        question: text.replace("\xa0", " ") for question, text in answer_sentences(Detectors(with_choice(found), {}))
+    }
+
+
+def test_a_size_that_is_reached_has_limits_and_one_that_is_not_gives_the_share_of_the_largest() -> None:
+    reached = said(**{CLASSIFIER: detector(0.8, 4.0)})["From which size"]
+    assert reached == (
+        f"Pitting is found in nine of ten records from 4 mm² on (2 mm² to beyond the largest of the set). {FOUND_MEANS}"
+    )
+    never = said(**{CLASSIFIER: detector(0.8, math.inf)})["From which size"]
+    assert never == (
+        "Pitting: nine of ten records are found at no size of the set. Of the largest (severe, up to 8 mm²) it is 40 % "
+        f"of records (30 % to 50 %). {FOUND_MEANS}"
+    )
+
+
+def test_a_large_area_is_written_in_full_with_two_digits() -> None:
+    spalled = replace(detector(0.8, 164.0), sizes={"pitting": FoundSize(Interval(164.0, 96.0, 1240.0), 1.0, 2000.0)})
+    found = said(**{CLASSIFIER: spalled})["From which size"]
+    assert found == f"Pitting is found in nine of ten records from 160 mm² on (96 mm² to 1200 mm²). {FOUND_MEANS}"
+
+
+def test_the_choice_is_named_with_the_others_beside_it_and_a_network_of_few_gearboxes_is_never_chosen() -> None:
+    network = replace(detector(1.0, 1.0), title="1-D network", specimens=5)
+    indicator = replace(detector(0.9, 4.0), title=INDICATOR, basis="rms__side_1_axial")
+    found = said(**{INDICATOR: indicator, CLASSIFIER: detector(0.8, 4.0), NETWORKS: network})
+    assert found["By what"] == (
+        "Each group of gearboxes is judged by the detector that is best on the others (nested cross-validation): "
+        "always the best single indicator (RMS at side 1, axial). AUC 0.90 (0.80 to 1.00) for all damage together; 0.5 "
+        "is chance. Each alone: logistic regression 0.80 (0.70 to 0.90), 1-D network 1.00 (0.90 to 1.10) on 5 test "
+        "gearboxes alone."
+    )
+
+
+def test_few_healthy_records_and_no_detector_at_all_are_said() -> None:
+    few = replace(detector(0.8, 4.0, healthy=7), sizes={})
+    assert "7 healthy records set no threshold" in said(**{CLASSIFIER: few})["From which size"]
+    assert list(said()) == ["No answer"]
+    assert "the set has one healthy record per gearbox" in said(**{CLASSIFIER: few})[BESIDE]
+
+
+def test_a_healthy_record_beside_says_what_is_then_found_in_nine_of_ten() -> None:
+    beside = replace(detector(0.9, 4.0), referenced=True)
+    answers = dict(
+        answer_sentences(Detectors(with_choice({CLASSIFIER: detector(0.8, 6.0)}), with_choice({CLASSIFIER: beside})))
+    )
+    assert answers[BESIDE].replace("\xa0", " ") == (
+        "AUC 0.90 (0.80 to 1.00) by the logistic regression. Nine of ten records are then found of pitting from 4 mm² "
+        "on (2 mm² to beyond the largest of the set)."
+    )
+
+
+def test_a_choice_that_differs_from_fold_to_fold_is_said_and_stands_above_what_it_chose_from() -> None:
+    mixed = replace(detector(0.7, 4.0), picks=(("gradient boosting", 4), ("logistic regression", 1)))
+    answers = dict(answer_sentences(Detectors({CLASSIFIER: detector(0.8, 6.0), CHOSEN: mixed}, {})))
+    assert answers["By what"].replace("\xa0", " ") == (
+        "Each group of gearboxes is judged by the detector that is best on the others (nested cross-validation): "
+        "gradient boosting for 4 of 5 groups and logistic regression for 1. AUC 0.70 (0.60 to 0.80) for all damage "
+        "together; 0.5 is chance. Each alone: logistic regression 0.80 (0.70 to 0.90). To pick the largest of these "
+        "would use the answer. No network was trained."
+    )
+    assert "from 4 mm²" in answers["From which size"].replace("\xa0", " ")
+
+
+def test_the_figure_has_a_mark_for_the_chosen_size_and_says_where_sizes_are_too_few() -> None:
+    one = detector(0.8, 4.0)
+    slight = StateFound("spalling", 1.0, Interval(0.6, 0.5, 0.7), None)
+    mixed = replace(one, states={**one.states, "small": slight}, picks=(("gradient boosting", 5),))
+    figure = answer_figure(Detectors({CLASSIFIER: one, CHOSEN: mixed}, {}))
+    assert figure is not None
+    above, below = figure.axes
+    marks = {(line.get_color(), float(line.get_xdata()[0])) for line in below.lines if line.get_marker() == "o"}
+    assert marks == {(LOOKS[CHOSEN][1], 4.0)}
+    assert [text.get_text() for text in below.texts] == ["too few sizes"]
+    underlined = [line.get_linestyle() for line in below.lines if not line.get_clip_on()]
+    drawn = [line.get_linestyle() for line in above.lines if line.get_color() == LOOKS[CHOSEN][1]]
+    assert underlined == drawn
+    assert len(set(drawn)) == 2
