@@ -17,6 +17,7 @@ from diagnostics.cli.explore import explore
 from diagnostics.cli.indicators import indicators
 from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
+from diagnostics.cli.score import score
 from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 PROGRAM = "siggen-diagnostics"
@@ -32,7 +33,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 COMMANDS: dict[str, tuple[Callable[..., None], ...]] = {
-    "A set, in the order of work": (audit, indicators, report, predict),
+    "A set, in the order of work": (audit, indicators, report, score, predict),
     "A machine of your own, in the order of work": (baseline, check, calibrate),
     "Look at a set, or at recordings": (explore,),
 }

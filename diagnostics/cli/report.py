@@ -1,10 +1,9 @@
-"""`siggen-diagnostics report`: classifiers of a set, siggen's own or the user's, judged on unseen gearboxes."""
+"""`siggen-diagnostics report`: classifiers of a set, trained and judged on unseen gearboxes."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,29 +20,6 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import Dataset
 
 
-@dataclass(frozen=True, slots=True)
-class PredictionOptions:
-    """Your own classifier."""
-
-    predictions: Annotated[
-        Path | None,
-        typer.Option(
-            "--predictions",
-            metavar="FILE",
-            help="Train nothing; judge these predictions, .parquet or .csv: record_id, and damage (a number that rises "
-            "with damage), p_CLASS of every class (probabilities), or class (its name).",
-            show_default=False,
-        ),
-    ] = None
-    baselines: Annotated[
-        Path | None,
-        typer.Option(
-            "--baselines", metavar="DIR3", help="Folder of a report: its classifiers are judged on the same records."
-        ),
-    ] = None
-    split: Annotated[str, typer.Option("--split", metavar="test|validation", help="Whose records are judged.")] = "test"
-
-
 @grouped
 def report(
     directory: Annotated[
@@ -55,8 +31,8 @@ def report(
         typer.Option(
             "--out",
             "-o",
-            metavar="DIR2 | TABLE",
-            help="Folder for the report, DIR_report unless told; with --predictions a .parquet or .csv file.",
+            metavar="DIR2",
+            help="Folder for the report, DIR_report unless told.",
             show_default=False,
         ),
     ] = None,
@@ -65,28 +41,17 @@ def report(
     ] = False,
     indicator: OwnIndicators = None,
     training: TrainingOptions,
-    yours: PredictionOptions,
     pages: PageOptions,
     seed: Seed = 0,
 ) -> None:
     """Train classifiers on a set, judge them on gearboxes that they have not seen, and write report.html and models.
 
-    Beside the page: metrics.json, tables and figures. With --predictions the predictions of your own classifier are
-    judged and printed, with limits over gearboxes. Missing, doubled and unknown records are refused in one list.
+    Beside the page: metrics.json, tables and figures.
 
     Example: siggen-diagnostics report data/quickstart --studies
 
     Example: siggen-diagnostics report data/quickstart --models-only --out models --test data/other_gears
-
-    Example: siggen-diagnostics report data/quickstart --predictions mine.parquet --baselines data/quickstart_report
     """
-    if yours.predictions is not None:
-        given: dict[str, object] = {"--models-only": models_only, "--indicator": indicator, "--explore": pages.explore}
-        given |= {"--open": pages.show, "options of training": training != TrainingOptions()}
-        _refuse(given, "--predictions trains nothing and writes no page")
-        _scored(directory, yours.predictions, yours, out, seed)
-        return
-    _refuse({"--baselines": yours.baselines, "--split": yours.split != "test"}, "they go with --predictions FILE")
     if models_only:
         _refuse({"--explore": pages.explore, "--open": pages.show}, "--models-only writes no page")
     from diagnostics.base.beside import beside
@@ -179,18 +144,3 @@ def _models(
     for note in (*trained.notes, *notes):
         typer.echo(f"note: {note}", err=True)
     return folder
-
-
-def _scored(directory: Path, predictions: Path, yours: PredictionOptions, table: Path | None, seed: int) -> None:
-    """Print how predictions are judged, and write the rows where they are wanted."""
-    from diagnostics.indicators.classifier_table import check_suffix, write_table
-    from diagnostics.scoring.score import score
-    from siggen.dataset.reading import open as open_set
-
-    if table:
-        check_suffix(table)
-    found = score(open_set(directory), predictions, baselines=yours.baselines, split=yours.split, seed=seed)
-    typer.echo(str(found))
-    if table:
-        write_table(found.to_table(), table)
-        typer.echo(str(table))

@@ -1,4 +1,4 @@
-"""`siggen-diagnostics report`: one command that trains, writes models alone, or judges predictions of others."""
+"""`siggen-diagnostics report`: one command that trains, and writes a page or models alone."""
 
 from __future__ import annotations
 
@@ -16,10 +16,6 @@ runner = CliRunner()
 @pytest.mark.parametrize(
     ("arguments", "refused"),
     [
-        (("--predictions", "mine.csv", "--models-only"), "--models-only: --predictions trains nothing"),
-        (("--predictions", "mine.csv", "--no-cnn"), "options of training: --predictions trains nothing"),
-        (("--predictions", "mine.csv", "--explore", "--open"), "--explore, --open: --predictions trains nothing"),
-        (("--baselines", "old"), "--baselines: they go with --predictions FILE"),
         (("--models-only", "--open"), "--open: --models-only writes no page"),
     ],
 )
