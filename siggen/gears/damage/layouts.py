@@ -66,14 +66,11 @@ def clustered_centres(
     *,
     height_low_m: float = -np.inf,
     height_high_m: float = np.inf,
-    face_centre_m: float | None = None,
-    face_spread_m: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return heights and face coordinates of a cluster, (n,) each [m].
 
-    Heights are normal about their centre, cut off at their limits; so are face coordinates when they have a spread,
-    else they are uniform. Each pit takes two uniform numbers from `rng`, so that a smaller cluster is the beginning
-    of a larger one.
+    Heights are normal about their centre, cut off at their limits; face coordinates are uniform. Each pit takes two
+    uniform numbers from `rng`, so that a smaller cluster is the beginning of a larger one.
 
     Parameters
     ----------
@@ -86,8 +83,6 @@ def clustered_centres(
         Limits across the face [m].
     height_low_m, height_high_m : float
         Limits of the heights [m].
-    face_centre_m, face_spread_m : float or None
-        Mean (None: middle of the limits) and standard deviation (None: uniform) across the face [m].
 
     Raises
     ------
@@ -103,10 +98,7 @@ def clustered_centres(
         )
     uniform = rng.random((count, 2))
     height = _cut_normal(uniform[:, 0], height_centre_m, height_spread_m, height_low_m, height_high_m)
-    if face_spread_m is None:
-        return height, face_low_m + (face_high_m - face_low_m) * uniform[:, 1]
-    middle = 0.5 * (face_low_m + face_high_m) if face_centre_m is None else face_centre_m
-    return height, _cut_normal(uniform[:, 1], middle, face_spread_m, face_low_m, face_high_m)
+    return height, face_low_m + (face_high_m - face_low_m) * uniform[:, 1]
 
 
 def _cut_normal(uniform: FloatArray, mean: float, spread: float, low: float, high: float) -> FloatArray:

@@ -31,13 +31,11 @@ def test_fewer_pits_and_layers_are_a_subset_of_more(layers, per_layer, more_laye
     assert places(layers, per_layer) == places(layers + more_layers, per_layer)[: len(few)]
 
 
-@given(st.integers(1, 30), st.integers(0, 30), st.one_of(st.none(), st.floats(0.1e-3, 5e-3)))
-def test_a_smaller_cluster_is_the_beginning_of_a_larger_one(count, more, spread):
+@given(st.integers(1, 30), st.integers(0, 30))
+def test_a_smaller_cluster_is_the_beginning_of_a_larger_one(count, more):
     def cluster(n):
         rng = np.random.default_rng(7)
-        return clustered_centres(
-            rng, n, 2e-3, 0.5e-3, 0.0, 20e-3, height_low_m=1e-3, height_high_m=4e-3, face_spread_m=spread
-        )
+        return clustered_centres(rng, n, 2e-3, 0.5e-3, 0.0, 20e-3, height_low_m=1e-3, height_high_m=4e-3)
 
     for small, large in zip(cluster(count), cluster(count + more), strict=True):
         assert np.array_equal(small, large[:count])
@@ -56,19 +54,9 @@ def test_clusters_keep_their_limits_and_have_the_cut_normal_and_uniform_distribu
 
 
 def test_a_cluster_far_from_its_limits_stays_inside_them():
-    height, face = clustered_centres(
-        np.random.default_rng(1),
-        50,
-        9e-3,
-        0.1e-3,
-        0.0,
-        1e-3,
-        height_high_m=5e-3,
-        face_centre_m=0.2e-3,
-        face_spread_m=0.0,
-    )
+    height, face = clustered_centres(np.random.default_rng(1), 50, 9e-3, 0.1e-3, 0.0, 1e-3, height_high_m=5e-3)
     assert np.all(height <= 5e-3)
-    assert np.all(face == 0.2e-3)
+    assert np.all((face >= 0.0) & (face <= 1e-3))
 
 
 def test_layouts_without_pits_or_room_are_refused():
