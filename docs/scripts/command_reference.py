@@ -9,14 +9,19 @@ import os
 import re
 import subprocess
 import sys
+from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"siggen": "siggen/cli/app.py", "siggen-diagnostics": "diagnostics/cli/app.py"}
+OFTEN = 3
+"""An option that so many commands describe in the same words stands once, in a table of its own."""
+OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
+NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
 HEAD = """# Commands
 
-This page is printed by `python docs/scripts/command_reference.py` from the help of the programs. `siggen COMMAND -h`
-shows the same in a terminal.
+This page is printed by `make reference` from the help of the programs; `siggen COMMAND -h` shows it in a terminal.
 
 | exit code | meaning |
 | --- | --- |
@@ -26,6 +31,7 @@ shows the same in a terminal.
 | 3 | done, but some records failed; the set is usable and the manifest names them |
 | 4 | `verify` found a difference, or `audit --strict` found a trap or too few gearboxes |
 | 130 | interrupted; the same command goes on where it stopped |
+
 """
 
 
@@ -37,10 +43,48 @@ def helped(program: str, app: str) -> str:
     text = re.sub(r"^\* `--(install-completion|show-completion|help)`.*\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"\*\*Commands\*\*:\n\n(\* .*\n)+", "", text)  # cut off in the middle of their sentences
     text = re.sub(r"\*\*Options\*\*:\n\n(?!\*)", "", text)
-    text = text.replace("```console\n$ ", "```text\n")  # how a command is called, not a command
+    text = re.sub(r"\*\*Usage\*\*:\n\n```console\n\$ (.*)\n```", r"`\1`", text)
+    text = re.sub(r"\*\*Arguments\*\*:\n\n((?:\* .*\n)+)\n(?:\*\*Options\*\*:\n\n)?", r"\1", text)
+    text = text.replace("**Options**:\n\n", "")
     return re.sub(r"^#", "##", text, flags=re.MULTILINE).strip()
 
 
+def shared(text: str) -> dict[str, str]:
+    """Return option -> meaning of those that several commands describe alike, the most frequent one of each name."""
+    counted = Counter(OPTION.findall(text))
+    found: dict[str, str] = {}
+    for (option, meaning), count in counted.most_common():
+        if count >= OFTEN and option.startswith("-") and name(option) not in map(name, found):
+            found[option] = meaning
+    return found
+
+
+def name(option: str) -> str:
+    """Return the name of an option without its value: `--fs` of `--fs <float>`."""
+    match = NAME.match(option)
+    return match[1] if match else option
+
+
+def with_references(text: str, options: Mapping[str, str]) -> str:
+    """Return the help with a line of names in the place of options that stand in the table."""
+
+    def listed(match: re.Match[str]) -> str:
+        lines = [(found[0], found[1], found[2]) for found in OPTION.finditer(match[0])]
+        own = [line for line, option, meaning in lines if options.get(option) != meaning]
+        names = [f"`{name(option)}`" for _, option, meaning in lines if options.get(option) == meaning]
+        return "".join(own) + (f"* as [below](#options-of-several-commands): {', '.join(names)}\n" if names else "")
+
+    return re.sub(r"(?:^\* `[^`]*`: .*\n)+", listed, text, flags=re.MULTILINE)
+
+
+def page() -> str:
+    """Return the page."""
+    text = "\n\n".join(helped(program, app) for program, app in PROGRAMS.items()) + "\n"
+    options = shared(text)
+    rows = [f"| `{option.replace('|', chr(92) + '|')}` | {meaning} |" for option, meaning in sorted(options.items())]
+    table = ["", "## Options of several commands", "", "| option | meaning |", "| --- | --- |", *rows]
+    return HEAD + with_references(text, options) + "\n".join(table)
+
+
 if __name__ == "__main__":
-    print(HEAD)
-    print("\n\n".join(helped(program, app) for program, app in PROGRAMS.items()))
+    print(page())
