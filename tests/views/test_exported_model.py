@@ -129,9 +129,13 @@ def largest(own: list, other: list) -> float:
     return max(float(np.abs(a - b).max() / np.ptp(a)) for a, b in zip(own, other, strict=True))
 
 
-def typical(own: list, other: list) -> float:
-    """Return the largest rms difference of any quantity over its swing: a film's force jumps where flanks touch."""
-    return max(float(np.sqrt(np.mean((a - b) ** 2)) / np.ptp(a)) for a, b in zip(own, other, strict=True))
+def with_spikes(own: list, other: list) -> tuple[float, float]:
+    """Return the largest difference of the approach over its swing, and the share of samples of the force beyond 1e-3.
+
+    A film that is squeezed out gives a spike of the force shorter than a sample, whose height is that of one instant.
+    """
+    beyond = np.abs(own[1] - other[1]) > 1e-3 * np.ptp(own[1])
+    return largest(own[:1], other[:1]), float(beyond.mean())
 
 
 def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its_file_alone() -> None:
@@ -157,11 +161,12 @@ under an impact of 250 N, by up to 5e-3 of the mesh force, with 1e-6 by 2e-4."""
 
 @pytest.mark.parametrize("coupling", ["none", "body"])
 def test_scipy_gives_the_motion_with_film_and_damping_by_asperity_share(coupling: str) -> None:
-    # Films begin and end with a step: both solvers are of first order there.
     model, own = begun_with_film(coupling)
     assert {"law.contact.touch_m", "law.damping_film_root_kg"} <= set(model)
     assert model["law.film_n_s_per_m"] > 0.0
-    assert typical(own, by_scipy(model, own, FINE)) < 1e-3
+    motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
+    assert motion < 1e-3
+    assert spikes < 0.01
 
 
 def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_of_it() -> None:
@@ -169,7 +174,9 @@ def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_
     for seed in range(3):
         model, changed = begun_with_film("none", 120, last_bits(seed))
         assert 0.0 < largest(own, changed) < 1e-9
-        assert typical(own, by_scipy(model, own, FINE)) < 1e-3
+        motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
+        assert motion < 1e-3
+        assert spikes < 0.01
 
 
 @pytest.mark.parametrize(
