@@ -62,12 +62,10 @@ NAMES = {
 
 HEAD = """# Columns of a set
 
-This page is printed by `python docs/scripts/column_reference.py` from the columns that siggen writes. The files carry
-the same texts as metadata of their fields (`unit`, `meaning`).
-
-`CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. The last column names the section of the YAML file that
-a set needs to have the column; without an entry every set has it. Sets with numbers from files have besides
-`path_number_CHANNEL` (which of the `files` of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
+This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
+(`unit`, `meaning`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. A column needs the section of the YAML
+file that the last cell names; without an entry every set has it. Sets with numbers from files have besides
+`path_number_CHANNEL` (which file of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
 `lines_CHANNEL_m_s2` (RMS).
 """
 
