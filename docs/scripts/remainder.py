@@ -10,8 +10,8 @@ import sys
 
 import numpy as np
 
-from diagnostics.signal.asynchronous_part import asynchronous_part
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
+from diagnostics.signal.synchronous_average import asynchronous_part
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.record.simulation import simulate
