@@ -9,14 +9,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diagnostics.indicators.labelled_matrix import table
+    from diagnostics.indicators.classifier_table import table
     from diagnostics.scoring.score import score
 
 __all__ = ["score", "table"]
 
 _HOMES = {
     "score": "diagnostics.scoring.score",
-    "table": "diagnostics.indicators.labelled_matrix",
+    "table": "diagnostics.indicators.classifier_table",
 }
 
 

@@ -12,10 +12,9 @@ import numpy as np
 
 from diagnostics.audit.attack_tables import attack_parts, shown_ladders, tried
 from diagnostics.audit.audit import Audit
-from diagnostics.audit.audit_sentences import audit_summary
+from diagnostics.audit.audit_sentences import audit_summary, reference_parts
 from diagnostics.audit.detectability import SIZES, TARGETS, DetectedLength, Detection, differ_in_length, length_at
 from diagnostics.audit.envelope import QuantityShare, Realism
-from diagnostics.audit.reference_tables import reference_parts
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import provenance

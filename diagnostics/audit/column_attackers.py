@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from diagnostics.audit.held_out import DEALS
-from diagnostics.audit.trial import Attacker, Trial, Verdicts
+from diagnostics.audit.held_out import DEALS, Attacker, Trial, Verdicts
 from diagnostics.statistics.evaluation import column_auc
 
 PENALTIES = np.logspace(-4.0, 3.0, 8)

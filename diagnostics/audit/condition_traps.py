@@ -18,16 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.audit.bank_detections import damaged_states
-from diagnostics.audit.chance import bank_maxima, permuted
+from diagnostics.audit.bank_detections import bank_maxima, damaged_states, permuted
 from diagnostics.audit.column_attackers import all_columns, best_column
-from diagnostics.audit.finding import Finding
-from diagnostics.audit.held_out import HeldOut, dealt_folds, held_out, judged_rows
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.record_groups import column_group
-from diagnostics.audit.reference_pairs import exchange_blocks, reference_records
-from diagnostics.audit.trial import Attacker
-from diagnostics.indicators.noise_levels import NOISE_LEVELS
+from diagnostics.audit.finding import Finding, column_group
+from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
+from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
+from diagnostics.indicators.background_levels import NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 
 METADATA, BYTE, ORDER, NOISE = "metadata", "bytes", "order", "noise"

@@ -15,8 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc

@@ -25,11 +25,10 @@ import numpy as np
 from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
 from diagnostics.audit.condition_traps import condition_traps
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
-from diagnostics.audit.error_draws import error_draws
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.simple_thresholds import simple_thresholds
-from diagnostics.audit.state_ties import state_ties
+from diagnostics.audit.state_ties import error_draws, state_ties
 from diagnostics.page.wording import counted, decimal
 
 SETTINGS = frozenset(

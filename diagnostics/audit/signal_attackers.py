@@ -28,10 +28,9 @@ import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.column_attackers import all_columns, best_column
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.held_out import Attacker, Trial, Verdicts
+from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.residual_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines, whitened
-from diagnostics.audit.trial import Attacker, Trial, Verdicts
 from diagnostics.base.extras import missing_packages
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit

@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.audit.finding import Finding
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
 
 QUANTITIES = ("rms", "kurtosis")

@@ -1,4 +1,4 @@
-"""How long work says how far it is: a stage has a title and a number of steps, and is told of every step."""
+"""Progress of long work: what it is told to, and bars on stderr where that is a terminal."""
 
 from __future__ import annotations
 
@@ -13,3 +13,17 @@ Stage = Callable[[str, int], AbstractContextManager[Advance]]
 def silent_stage(title: str, steps: int) -> Iterator[Advance]:  # noqa: ARG001 - the same call as a stage that speaks
     """Say nothing."""
     yield lambda: None
+
+
+@contextmanager
+def terminal_stage(title: str, steps: int) -> Iterator[Advance]:
+    """Show a bar for one stage; a stage that ends early (a network that stops) fills it."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
+        task = bar.add_task(title, total=steps)
+        yield lambda: bar.advance(task)
+        bar.update(task, completed=steps)

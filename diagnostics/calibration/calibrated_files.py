@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.calibration.calibration import Calibration, ChannelFit
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted
 from diagnostics.calibration.noise_fit import NoiseFit
 from diagnostics.calibration.own_lines import OwnLine
 from diagnostics.calibration.source_library import PLACES

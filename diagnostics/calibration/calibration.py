@@ -15,8 +15,7 @@ import numpy as np
 
 import siggen
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.calibration.healthy_blocks import HealthyBlocks
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks, jackknife
 from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, SensorFit, noise_fit, sensor_fit
 from diagnostics.calibration.order_record import (
     HIGHEST_SHARE,

@@ -14,8 +14,7 @@ import numpy as np
 from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
 from diagnostics.calibration.calibrated_files import TOO_FEW, data_folder, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
-from diagnostics.calibration.healthy_blocks import HealthyBlocks
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks
 from diagnostics.calibration.likeness import (
     LEVELS,
     RANGE,

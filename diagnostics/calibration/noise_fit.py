@@ -13,10 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.calibration.healthy_blocks import Block
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Block, Fitted, jackknife
 from diagnostics.calibration.order_record import OrderRecord, turns_of
-from diagnostics.signal.asynchronous_part import asynchronous_part, band_signal
+from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
 
 LARGEST_BITS = 24
 HEADROOM = 4.0

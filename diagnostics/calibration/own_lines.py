@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
 from diagnostics.calibration.order_record import LINE_BINS, OrderRecord, line_places
 
 OVER_FLOOR, MOST_LINES, SAME_BINS = 10.0, 300, 1.6

@@ -26,7 +26,7 @@ from math import gcd
 
 import numpy as np
 
-from diagnostics.calibration.jackknife import FEWEST_RECORDINGS, Fitted, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, jackknife
 from diagnostics.calibration.order_record import LEAST_SHARE, LINE_BINS, SAME_ORDER, OrderRecord, line_places
 from diagnostics.calibration.own_lines import LEAST_SPREAD, SHAFT_ORDERS, UNKNOWN_SPREAD, OwnLine
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.training_options import OwnIndicators
+from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.option_groups import grouped
 
 
@@ -82,7 +82,7 @@ def audit(
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.base.beside import beside
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.page.wording import counted
     from siggen.dataset.reading import open as open_set

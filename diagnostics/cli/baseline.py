@@ -38,7 +38,7 @@ def baseline(
 
     Example: siggen-diagnostics baseline may.csv june.csv july.csv --fs 25600 --teeth 25,56 --speed-range 14,26 -o rig
     """
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.check import rate_sentence
     from diagnostics.machine.healthy_state import healthy_state
     from diagnostics.machine.machine import save_machine

@@ -93,13 +93,13 @@ def calibrate(
     """
     import siggen
     from diagnostics.base.extras import require_packages
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.calibration.calibrated_files import check_new, write_calibration
     from diagnostics.calibration.calibration import calibrated, rig_teeth
     from diagnostics.calibration.calibration_page import calibration_page
     from diagnostics.calibration.healthy_blocks import healthy_blocks, held_out_blocks, rig_channels
     from diagnostics.calibration.injection import write_injected
     from diagnostics.calibration.path_draws import family_size
-    from diagnostics.cli.progress import terminal_stage
 
     check_new(out, injection.inject)
     if page.compared:
@@ -136,7 +136,7 @@ def _tell(found: Calibration) -> None:
     import numpy as np
 
     from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
-    from diagnostics.calibration.jackknife import FEWEST_RECORDINGS
+    from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
     from diagnostics.calibration.path_draws import path_level_doubt
 
     for fit in found.channels:

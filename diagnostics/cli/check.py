@@ -32,7 +32,7 @@ def check(
     Example: siggen-diagnostics check rig august.csv september.csv
     """
     from diagnostics.base.extras import require_packages
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.check import CHANGED, add_checks, check_recording, rate_sentence
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page

@@ -11,9 +11,8 @@ import typer
 
 from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
-from diagnostics.cli.page_options import Open, opened
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
-from diagnostics.cli.training_options import OwnIndicators
+from diagnostics.cli.set_options import Open, OwnIndicators, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -223,7 +222,7 @@ def _refuse_set_options(options: SetOptions) -> None:
 
 def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions, show: bool) -> Path | None:
     """Serve the page of a set, or write it and return where."""
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, explorer_of, write_explorer
     from diagnostics.indicators.own_indicator import load_indicators
     from siggen.dataset.reading import open as open_set
@@ -244,7 +243,7 @@ def _recordings_page(
     amount: AmountOptions,
 ) -> Path:
     """Write the page of recordings, of a machine or of described files; beside a set where one is named."""
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.measured_page import write_recordings_page
 
     folder, healthy = Path(targets[0]), compared.healthy or []

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.page_options import EXPLORER, PageOptions, opened
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
-from diagnostics.cli.training_options import OwnIndicators
+from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -98,7 +97,7 @@ def indicators(
         return
     from diagnostics.base.beside import beside
     from diagnostics.base.extras import require_packages
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.ranking_table import ranking_table
     from diagnostics.indicators.settings import IndicatorSettings
@@ -129,7 +128,7 @@ def indicators(
 
 
 def _explorer(dataset: Dataset, folder: Path, workers: int, own: tuple[OwnIndicator, ...]) -> None:
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.explorer import ExplorerOptions, write_explorer
 
     write_explorer(dataset, folder / EXPLORER, ExplorerOptions(workers=workers, own=own), terminal_stage)
@@ -137,7 +136,7 @@ def _explorer(dataset: Dataset, folder: Path, workers: int, own: tuple[OwnIndica
 
 def _table_alone(directory: Path, out: Path, indicator: OwnIndicators, workers: int) -> None:
     """Write the indicators of every record and channel, as classifiers take them, without judging any."""
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.classifier_table import check_table, classifier_table, write_table
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.indicators.table import record_table
@@ -163,9 +162,8 @@ def _of_recordings(
 ) -> None:
     """Write and print the indicators of recordings."""
     from diagnostics.base.extras import require_packages
-    from diagnostics.cli.progress import terminal_stage
-    from diagnostics.machine.recording_indicators import recording_indicators
-    from diagnostics.machine.recordings_page import write_recordings
+    from diagnostics.base.progress import terminal_stage
+    from diagnostics.machine.recording_indicators import recording_indicators, write_recordings
 
     require_packages("the page of indicators", "matplotlib")
     if teeth is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
-from diagnostics.cli.training_options import OwnIndicators
+from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -59,14 +59,14 @@ def predict(
     Example: siggen-diagnostics predict data/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
     """
     from diagnostics.base.extras import require_packages
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.recordings.measured_recording import read_recording
 
     require_packages("prediction", "sklearn", "skops")
     with terminal_stage("reading the models", 1):
         from diagnostics.prediction.prediction import predict_recording
-        from diagnostics.prediction.prediction_facts import MEANING, prediction_rows
+        from diagnostics.prediction.prediction_page import MEANING, prediction_rows
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.page_options import EXPLORER, PageOptions, opened
-from diagnostics.cli.training_options import OwnIndicators, Seed, TrainingOptions
+from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, Seed, TrainingOptions, opened
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -92,7 +91,7 @@ def _page(
     explore: bool,
 ) -> Path:
     """Write the report, and the page to explore beside it where it is wanted; return the report's path."""
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.report.report import write_report
 
     dataset, second = sets
@@ -119,7 +118,7 @@ def _models(
     own: tuple[OwnIndicator, ...],
 ) -> Path:
     """Train, and write the models and what they reach; return their folder."""
-    from diagnostics.cli.progress import terminal_stage
+    from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.classifier_table import feature_matrix
     from diagnostics.prediction.saved_models import save_models
     from diagnostics.training.studies import run_studies, studies_metrics

@@ -1,6 +1,8 @@
 """Everything that the page's program needs of a set, as one value that JSON can hold.
 
 Damaged flanks of a record to scale: face width, ends of the flank, and the outline of every pit or spall.
+
+Transmission error, mesh force and mesh stiffness of records, where a set stores what no sensor sees.
 """
 
 from __future__ import annotations
@@ -17,14 +19,20 @@ import pyarrow.compute as pc
 from diagnostics.base.progress import Stage
 from diagnostics.explore.chosen_records import overlaid_records
 from diagnostics.explore.detail import Detail, page_detail
-from diagnostics.explore.internal_waves import internal_waves, shown_internals
 from diagnostics.explore.packed import packed_floats
-from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, record_views
-from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
+from diagnostics.explore.record_views import PageAxes, highest_order, order_axis, packed_wave, record_views
+from diagnostics.indicators.registry import indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
 from diagnostics.records.recording import Recording, recordings
 from siggen.dataset.reading import Dataset
+
+WAVES_SHOWN = {
+    "transmission_error_m": ("Transmission error", "µm", 1e6),
+    "mesh_force_n": ("Mesh force", "N", 1.0),
+    "mesh_stiffness_n_per_m": ("Mesh stiffness", "N/µm", 1e-6),
+}
+"""Title, shown unit and factor of the quantities that the page draws, of those that a set may store."""
 
 ELLIPSE_CORNERS = 48
 DIGITS = 3
@@ -34,6 +42,43 @@ SHOWN = (
     *("damaged_area_mm2", "speed_hz", "torque_nm", "teeth_pinion", "teeth_gear"),
 )
 GEARS = ("pinion", "gear")
+
+
+def shown_internals(dataset: Dataset) -> list[dict[str, str]]:
+    """Return name, title and shown unit of the stored quantities that the page draws; none for a set without them."""
+    stored = {column.name for column in getattr(dataset, "internal_columns", ())}
+    return [
+        {"name": name, "title": title, "unit": unit} for name, (title, unit, _) in WAVES_SHOWN.items() if name in stored
+    ]
+
+
+def internal_waves(
+    dataset: Dataset, ids: np.ndarray, detail: Detail, fine: list[tuple[int, int]]
+) -> list[dict[str, Any]]:
+    """Return the packed quantities of every record by name; empty for records that the set stores none of.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+    ids : (n,) int64
+        Records of the page.
+    detail : Detail
+        How many points.
+    fine : list of (int, int)
+        Stretch of every record that is kept whole, as of its signals.
+    """
+    found: list[dict[str, Any]] = [{} for _ in ids]
+    names = [quantity["name"] for quantity in shown_internals(dataset)]
+    place = {int(record): row for row, record in enumerate(ids)}
+    if not names:
+        return found
+    for batch in dataset.internals(columns=["record_id", *names], batch_rows=16):
+        for line, record in enumerate(batch.column("record_id").to_pylist()):
+            row = place.get(record)
+            if row is not None:
+                series = {name: WAVES_SHOWN[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
+                found[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
+    return found
 
 
 def flank_size(config: Mapping[str, Any], gear: str, teeth: int) -> dict[str, float] | None:

@@ -17,8 +17,8 @@ import numpy as np
 from diagnostics.explore.detail import Detail
 from diagnostics.explore.packed import packed_floats, packed_places, packed_steps
 from diagnostics.records.recording import Recording
-from diagnostics.signal.envelope_spectrum import envelope_spectrum
 from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, AngleGrid, angle_grid, resample_to_angle
+from diagnostics.signal.spectrum import envelope_spectrum
 from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
 
 MESH_HARMONICS = 8.5

@@ -1,8 +1,12 @@
-"""What classifiers and the report take of the one table: all indicators of single records, with labels."""
+"""What classifiers and the report take of the one table: all indicators of single records, with labels.
+
+`diagnostics.table`: all indicators of a set with labels, for one's own classifier.
+"""
 
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -12,8 +16,9 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.own_indicator import load_indicators
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.indicators.table import RecordTable
+from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.records.record_problems import problem_list
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.records.state_classes import CLASS, class_names
@@ -25,6 +30,37 @@ BOOKKEEPING = ("revolutions_pinion", "revolutions_gear", "notes")
 SETTINGS_KEY = b"diagnostics.indicators"
 NOTES_KEY = b"diagnostics.notes"
 WRITERS = (".parquet", ".csv")
+
+
+def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1) -> FeatureMatrix:
+    """Return one row per record: indicators of every channel, labels with their roles, gearbox and split.
+
+    The indicators are those that the classifiers of `siggen-diagnostics report` take. They are kept beside the set, so
+    that only the first call computes them.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        What `siggen.open` returned.
+    indicators : sequence of str
+        Your own besides, as `MODULE:FUNCTION`.
+    workers : int
+        Processes for the first call.
+
+    Returns
+    -------
+    FeatureMatrix
+
+    Raises
+    ------
+    DatasetError
+        If records cannot be used; the message names them.
+    """
+    found = record_table(dataset, own=load_indicators(list(indicators)), workers=workers)
+    notes = check_table(found, dataset)
+    for note in notes:
+        warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
+    return feature_matrix(classifier_table(found, notes))
 
 
 def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: bool = False) -> tuple[str, ...]:

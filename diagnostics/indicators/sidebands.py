@@ -1,4 +1,4 @@
-"""Indicators of the sidebands that a shaft's modulation puts beside the mesh lines."""
+"""Indicators of lines of an average: sidebands, modulation, and the share of bands of orders."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ import math
 import numpy as np
 
 from diagnostics.indicators.indicator import BOOK, NO_LINE, indicator
-from diagnostics.indicators.level import UNDEFINED_BELOW
+from diagnostics.indicators.level import UNDEFINED_BELOW, moment_ratio, rms
+from diagnostics.signal.mesh_band import Modulation
+from diagnostics.signal.order_bands import localised_energy
+from diagnostics.signal.spectrum import line_amplitudes
+
+DEEPEST_RAD = 1.0
+
+OUTSIDE = "the record carries less than half of the band, or the band is below 1e-9 of the average"
 
 
 @indicator(
@@ -188,3 +195,97 @@ def sideband_asymmetry_db(sideband_lines: np.ndarray, teeth: int, harmonic: int,
     """
     lower, upper = (relative_amplitude(sideband_lines, teeth, harmonic, sign * order) for sign in (-1, 1))
     return 20.0 * math.log10(upper / lower) if lower > 0.0 and upper > 0.0 else math.nan
+
+
+@indicator(
+    "amplitude_modulation_{shaft}_h{demodulated_harmonic}",
+    "AM depth",
+    signal="average within six sidebands of h z, demodulated",
+    formula="order 1 of the amplitude over its mean",
+    known="1 + m cos θ: m",
+    undefined="the mesh harmonic is zero or the sideband is unresolved",
+    source="McFadden 1986",
+)
+def amplitude_modulation(modulation: Modulation, order: int = 1) -> float:
+    """Return m of A (1 + m cos(k angle + ...)).
+
+    Parameters
+    ----------
+    modulation : Modulation
+        Amplitude and phase of a mesh harmonic over one revolution.
+    order : int
+        Shaft order k of the modulation.
+
+    Notes
+    -----
+    1 + m cos: m for m <= 1. NaN where the harmonic is zero. Source: McFadden 1986.
+    """
+    lines = line_amplitudes(modulation.amplitude)
+    return float(lines[order] / lines[0]) if lines[0] > 0.0 else math.nan
+
+
+@indicator(
+    "phase_modulation_{shaft}_h{demodulated_harmonic}",
+    "PM depth",
+    signal="average within six sidebands of h z, demodulated",
+    formula="order 1 of the phase",
+    unit="rad",
+    known="β sin θ: β",
+    undefined="the depth exceeds 1 rad (a mesh line weaker than its sidebands), or the sideband is unresolved",
+    source="McFadden 1986",
+)
+def phase_modulation_rad(modulation: Modulation, order: int = 1) -> float:
+    """Return beta of cos(h z angle + beta sin(k angle + ...)) [rad]; NaN where the phase swings beyond 1 rad.
+
+    Parameters
+    ----------
+    modulation, order
+        As of `amplitude_modulation`.
+
+    Notes
+    -----
+    Undefined beyond 1 rad: such depths come from a mesh line weaker than its sidebands, whose phase then winds. Source:
+    McFadden 1986; the limit is derived.
+    """
+    if not modulation.amplitude.max() > 0.0:
+        return math.nan
+    depth = float(line_amplitudes(modulation.phase_rad)[order])
+    return depth if depth <= DEEPEST_RAD and np.ptp(modulation.phase_rad) < 2.0 * np.pi else math.nan
+
+
+@indicator(
+    "band_kurtosis_{shaft}_{band}",
+    "Kurtosis in a band of orders",
+    signal="residual, shaft orders of one octave; octaves overlap by half",
+    formula="μ₄/μ₂²",
+    known="Gaussian 3 (less in narrow bands); sine 1.5",
+    undefined=OUTSIDE,
+    source="Antoni 2006 for kurtosis by band; bands in orders derived",
+)
+def band_kurtosis(residual_band: np.ndarray, average: np.ndarray) -> float:
+    """Return mu_4 / mu_2^2 of a band of the residual.
+
+    Parameters
+    ----------
+    residual_band : (n,) complex128
+        Analytic signal of the band, see `diagnostics.signal.order_bands.band_signal`.
+    average : (n,) float64
+        The average itself, which sets the guard against rounding errors.
+    """
+    return moment_ratio(residual_band.real, 4, rms(average))
+
+
+@indicator(
+    "band_localised_energy_{shaft}_{band}",
+    "Localised energy in a band of orders",
+    signal="residual, shaft orders of one octave; octaves overlap by half",
+    formula="largest energy within one tooth pitch over the mean energy of a pitch; energy: squared envelope",
+    known="sine 1; burst within one pitch: z",
+    undefined=OUTSIDE,
+    source="derived",
+)
+def band_localised_energy(residual_band: np.ndarray, average: np.ndarray, teeth: int) -> float:
+    """Return the localised energy of a band of the residual, with the guard of `band_kurtosis`."""
+    if not rms(np.abs(residual_band)) > UNDEFINED_BELOW * rms(average):
+        return math.nan
+    return localised_energy(residual_band, teeth)

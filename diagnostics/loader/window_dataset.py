@@ -18,9 +18,8 @@ from torch.utils.data import Dataset as TorchDataset
 from torch.utils.data import Sampler
 
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks
-from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
-from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
+from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
 from siggen.dataset.reading import Dataset
 
 KEPT_RECORDS = 32

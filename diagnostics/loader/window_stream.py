@@ -23,9 +23,8 @@ from torch.utils.data import DataLoader, IterableDataset, default_collate, get_w
 from torch.utils.data._utils.collate import default_collate_fn_map
 
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks, rank_windows
-from diagnostics.loader.row_group_signals import RowGroupSignals
 from diagnostics.loader.window_index import StreamSettings, window_index
-from diagnostics.loader.window_sample import Sample, Transform, transformed, window_sample
+from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 

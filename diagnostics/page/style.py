@@ -1,24 +1,17 @@
-"""One look for all figures: narrow enough for a phone, one colour per state, light grid.
-
-Labels of logarithmic axes as plain text: figures parse no formulas, so that a dollar sign in a name begins none.
-"""
+"""One look for all figures: narrow enough for a phone, one colour per state, light grid."""
 
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.ticker import LogFormatterMathtext, LogFormatterSciNotation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 WIDTH_IN = 4.8
 """At this width a phone shows 10-point text at the size of the captions, and half a printed page at 7 points."""
@@ -47,26 +40,6 @@ SETTINGS = {
     "legend.frameon": False,
     "lines.linewidth": 0.9,
 }
-
-
-class PowerLabels(LogFormatterSciNotation):
-    """Powers of ten with raised digits, at the places where matplotlib would write a formula."""
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        """Return the label of one tick: 10⁻², 2×10³, or nothing."""
-        formula = super().__call__(x, pos)
-        text = re.sub(r"\^\{(-?\d+)\}", lambda power: power[1].translate(RAISED), formula)
-        return re.sub(r"\\mathdefault|[${}]", "", text.replace(r"\times", "×"))
-
-
-def write_powers(figure: Figure) -> None:
-    """Replace the formulas that logarithmic axes are labelled with by default; labels of one's own stay."""
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            if isinstance(axis.get_major_formatter(), LogFormatterMathtext):
-                axis.set_major_formatter(PowerLabels())
-            if isinstance(axis.get_minor_formatter(), LogFormatterMathtext):
-                axis.set_minor_formatter(PowerLabels(labelOnlyBase=False))
 
 
 def state_colours(states: tuple[str, ...], healthy: set[str]) -> dict[str, str]:
@@ -103,6 +76,8 @@ def styled() -> AbstractContextManager[None]:
 def png_bytes(figure: Figure) -> bytes:
     """Return the figure as PNG with a palette of its own colours."""
     from PIL import Image
+
+    from diagnostics.page.power_labels import write_powers
 
     write_powers(figure)
     drawn, stream = io.BytesIO(), io.BytesIO()

@@ -14,8 +14,8 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
+from diagnostics.training.circular_files import CircularFacts
 from diagnostics.training.circular_network import CircularNetwork, circular_probability
-from diagnostics.training.circular_training import CircularFacts
 from diagnostics.training.cnn import WideKernelNetwork
 from diagnostics.training.cnn_files import NetworkFile
 

@@ -39,8 +39,8 @@ from diagnostics.training.classifier_file import (
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
+    from diagnostics.training.circular_files import CircularFacts
     from diagnostics.training.circular_network import CircularNetwork
-    from diagnostics.training.circular_training import CircularFacts
     from diagnostics.training.cnn import WideKernelNetwork
     from diagnostics.training.cnn_files import NetworkFile
 
@@ -265,6 +265,6 @@ def _network(folder: Path) -> tuple[WideKernelNetwork, NetworkFile]:
 
 
 def _circular(folder: Path) -> tuple[CircularNetwork, CircularFacts]:
-    from diagnostics.training.circular_training import load_circular
+    from diagnostics.training.circular_files import load_circular
 
     return load_circular(folder / CIRCULAR_FILE)

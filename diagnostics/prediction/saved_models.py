@@ -227,7 +227,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
         except (RuntimeError, ImportError) as error:
             notes.append(f"ONNX export failed: {error}")
     if training.circular:
-        from diagnostics.training.circular_training import export_circular_onnx, save_circular
+        from diagnostics.training.circular_files import export_circular_onnx, save_circular
 
         save_circular(training.circular, folder / "circular.safetensors")
         try:

@@ -5,12 +5,15 @@ Which columns of a recording are its time or count its samples, and the rate tha
 A recorder writes the time of every sample beside the signals, rounded to some digits. Its mean step is the rate, known
 to the rounding of the first and last time; a whole number of hertz within that is taken, since recorders have such
 rates. A column that counts up by one states no rate. Source: derived.
+
+What makes a channel of a recording unusable, and the way out of it.
 """
 
 from __future__ import annotations
 
 import logging
 import re
+import shlex
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
@@ -21,8 +24,15 @@ import numpy as np
 from diagnostics.recordings.file_columns import READERS
 from diagnostics.recordings.reading_process import columns_read_apart
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.signal_problem import LARGEST
+from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
 from siggen.errors import UsageError
+
+LARGEST = 1e12
+"""No recorder gives such a number, in whatever unit; from the damaged file that does, the squares would overflow."""
+
+
+PULSE_SHARE = 0.5
+"""A vibration that stands at its ends for more than half the time is none; pulses do so nearly always."""
 
 OFF_A_STEP = 0.25
 """How far a time may lie off equal steps, in steps: 1/25600 s written with five digits behind the point is off by
@@ -33,6 +43,32 @@ MILLI, MICRO = re.compile(r"(^|[^a-z])m(illi)?s(ec)?($|[^a-z])"), re.compile(r"(
 
 TIMES_ALIKE = 1e-3
 """Rates of two time columns of one file that are the same, rounded differently; an angle that rises evenly is not."""
+
+
+def signal_problem(signal: np.ndarray, column: str) -> str:
+    """Return why a channel (n,) of a column cannot be used, or nothing: not finite, too large, constant, clipped."""
+    broken = int(np.count_nonzero(~np.isfinite(signal)))
+    if broken:
+        return f"{broken} of {signal.size} samples are not finite; cut the recording to where it is whole"
+    if signal.size == 0 or signal.min() == signal.max():
+        return f"constant over all {signal.size} samples; check sensor and cable, or name another column"
+    largest = float(np.abs(signal).max())
+    if largest > LARGEST:
+        return (
+            f"received values up to {largest:.3g}, allowed: up to {LARGEST:g}; the file is damaged, or its unit wrong"
+        )
+    share = clipped_share(signal)
+    if share > PULSE_SHARE:
+        return (
+            f"{share:.2%} of the samples stand at {signal.min():g} or {signal.max():g}, as pulses do; if these are "
+            f"those of the tacho, say so: --tacho {shlex.quote(column)}; else name the channels: --channel NAME=COLUMN"
+        )
+    if share > LARGEST_CLIPPED_SHARE:
+        return (
+            f"{share:.2%} of the samples stand clipped at {signal.min():g} or {signal.max():g}, up to "
+            f"{LARGEST_CLIPPED_SHARE:.1%} is allowed; record again with a wider range"
+        )
+    return ""
 
 
 def clocks(values: Mapping[str, np.ndarray], units: Mapping[str, str], leave: str) -> dict[str, float | None]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from diagnostics.recordings.array_files import read_mat, read_numpy, read_wav
-from diagnostics.recordings.csv_file import read_csv
-from diagnostics.recordings.parquet_file import read_parquet
+from diagnostics.recordings.plain_files import read_csv, read_mat, read_numpy, read_parquet, read_wav
 from diagnostics.recordings.recorded_columns import Columns
 from diagnostics.recordings.recorder_files import read_hdf5, read_tdms, read_universal
 from siggen.errors import UsageError

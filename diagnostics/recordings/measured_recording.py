@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.recordings.channel_factor import ASSUMED, channel_factor
-from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.columns import read_columns, signal_problem
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
-from diagnostics.recordings.signal_problem import signal_problem
 from siggen.errors import UsageError
 
 HYSTERESIS = 0.2

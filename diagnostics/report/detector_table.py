@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import math
 
-from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, paragraph, table
-from diagnostics.page.tables import interval_cell
+from diagnostics.page.tables import interval_cell, linked_cell
 from diagnostics.page.wording import capitalised, joined, percent, percent_limits, rounded, signed, signed_limits
 from diagnostics.report.indicator_figures import in_a_sentence
 from diagnostics.statistics.detector import Detector, FoundSize

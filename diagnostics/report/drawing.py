@@ -15,9 +15,9 @@ import numpy as np
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.page.explorer_link import explorer_link, indicator_links, records_line, state_links
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, SLANTED, new_figure, state_colours, state_ticks
+from diagnostics.page.tables import explorer_link, indicator_links, records_line, state_links
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, example_set

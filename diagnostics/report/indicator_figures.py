@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from diagnostics.indicators.indicator import base_name
-from diagnostics.indicators.indicator_titles import indicator_titles
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.registry import BY_NAME
+from diagnostics.indicators.registry import BY_NAME, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.html import Cell
 from diagnostics.page.style import fault_colours, new_figure, state_ticks

@@ -16,10 +16,9 @@ from diagnostics.indicators.classifier_table import write_table
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.page import html
-from diagnostics.page.explorer_link import indicator_links, records_line
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import png_bytes, styled
-from diagnostics.page.tables import set_table
+from diagnostics.page.tables import indicator_links, records_line, set_table
 from diagnostics.page.wording import joined, percent
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
 from diagnostics.report import indicator_figures, indicator_tables

@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from diagnostics.indicators.indicator import base_name
 from diagnostics.indicators.registry import ALL, BY_NAME
-from diagnostics.page.explorer_link import linked_cell
 from diagnostics.page.html import Cell, table
-from diagnostics.page.tables import interval_cell
+from diagnostics.page.tables import interval_cell, linked_cell
 from diagnostics.report.indicator_figures import CAUSES, term_cell
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.indicator_result import IndicatorResult

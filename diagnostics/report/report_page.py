@@ -13,9 +13,9 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page import html, tables
-from diagnostics.page.explorer_link import explorer_link, records_line, state_links
 from diagnostics.page.html import Cell, table
 from diagnostics.page.provenance import origin_sentence, provenance
+from diagnostics.page.tables import explorer_link, records_line, state_links
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences

@@ -98,7 +98,7 @@ def with_references(records: AveragedRecords, places: np.ndarray, references: li
     places : (k,) int
         Which of them.
     references : k of (m,) int
-        Places of the healthy records that each refers to, one or more, see `diagnostics.records.healthy_references`.
+        Places of the healthy records that each refers to, one or more, see `diagnostics.training.referenced`.
     """
     healthy = np.stack([records.lines[rows].mean(axis=0) for rows in references])
     return replace(records.chosen(places), healthy=healthy)

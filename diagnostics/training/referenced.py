@@ -4,6 +4,8 @@ Features as logarithms, and minus the mean of healthy records of the same machin
 
 In logarithms a constant gain, and at every mesh line the gain of the transfer path, becomes a summand, which a
 difference to the same machine's healthy state removes as far as speed and load are alike. Source: derived.
+
+Which healthy records of the same gearbox a record is compared with, so that the choice itself tells nothing.
 """
 
 from __future__ import annotations
@@ -17,8 +19,7 @@ import numpy as np
 
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.records.healthy_references import healthy_references
-from diagnostics.records.state_classes import CLASS
+from diagnostics.records.state_classes import CLASS, HEALTHY
 from diagnostics.statistics.comparison import Comparison, comparison
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.statistics.judgement import CIRCULAR, CIRCULAR_REFERENCED, INDICATORS, REFERENCED, Judged, judged
@@ -30,8 +31,39 @@ from diagnostics.training.splits import SpecimenSplit
 if TYPE_CHECKING:
     from diagnostics.training.average_rows import AveragedRecords
 
+PLACE = ("specimen_id", "operating_point_id", "repeat")
+"""Where a damaged record has its healthy twin."""
+
 PAIRS = ((REFERENCED, INDICATORS), (CIRCULAR_REFERENCED, CIRCULAR), (CIRCULAR_REFERENCED, REFERENCED))
 """Differences that are told: what the reference is worth, and which classifier uses it better."""
+
+
+def healthy_references(labels: Mapping[str, np.ndarray]) -> list[np.ndarray]:
+    """Return the rows that every record refers to: its specimen's healthy records but one; empty where there is none.
+
+    A healthy record leaves itself out. A damaged one leaves out the first healthy record at its operating point and
+    repeat, its twin, so that neither number nor nearness of the references tells the states apart. A damaged record
+    without a twin has no reference: its references would stand farther away than those of any healthy record.
+
+    Parameters
+    ----------
+    labels : mapping of str to (records,)
+        Columns `specimen_id`, `fault`, `operating_point_id`, `repeat`, `state_id`, `record_id`.
+    """
+    healthy = labels["fault"] == HEALTHY
+    order = np.lexsort((labels["record_id"], labels["state_id"]))
+    own: dict[int, list[int]] = {}
+    twin: dict[tuple[int, ...], int] = {}
+    places = list(zip(*(labels[name].tolist() for name in PLACE), strict=True))
+    for row in order[healthy[order]].tolist():
+        own.setdefault(places[row][0], []).append(row)
+        twin.setdefault(places[row], row)
+    found = []
+    for row, place in enumerate(places):
+        left_out = row if healthy[row] else twin.get(place)
+        rows = [] if left_out is None else [other for other in own[place[0]] if other != left_out]
+        found.append(np.array(rows, dtype=np.int64))
+    return found
 
 
 def log_values(values: np.ndarray) -> np.ndarray:

@@ -17,10 +17,9 @@ from diagnostics.base.progress import Stage
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.windows import window_matrix
 from diagnostics.statistics.evaluation import macro_auroc
 from diagnostics.training.baselines import rms_features, state_index, train_classifier
-from diagnostics.training.split_study import SplitScore, rows_of_study, split_study
+from diagnostics.training.split_study import SplitScore, rows_of_study, split_study, window_matrix
 from diagnostics.training.splits import SpecimenSplit
 from siggen.dataset.reading import Dataset
 

@@ -26,12 +26,10 @@ import siggen
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.bank_detections import damaged_states
 from diagnostics.audit.column_attackers import best_column
-from diagnostics.audit.held_out import dealt_folds, held_out_values, judged_rows
-from diagnostics.audit.measured_set import MeasuredSet, measured_set
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.held_out import Attacker, Trial, Verdicts, dealt_folds, held_out_values, judged_rows
+from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
 from diagnostics.audit.residual_lines import band_bank, line_array, residual_lines
 from diagnostics.audit.signal_attackers import over_channels, revolution, signal_attackers
-from diagnostics.audit.trial import Attacker, Trial, Verdicts
 from diagnostics.base.single_thread import single_thread
 
 CHANNELS, EPOCHS, BATCH = (16, 32, 32), 12, 32

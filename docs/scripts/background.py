@@ -12,8 +12,8 @@ import numpy as np
 from scipy.signal import coherence
 
 from diagnostics.indicators.background_levels import background_levels
-from diagnostics.signal.asynchronous_part import asynchronous_part
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, resample_to_angle
+from diagnostics.signal.synchronous_average import asynchronous_part
 from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.record.simulation import simulate

@@ -21,12 +21,11 @@ import numpy as np
 
 import siggen
 from diagnostics.audit.bank_detections import chance_limit
-from diagnostics.audit.measured_set import MeasuredSet, measured_set
-from diagnostics.audit.reference_pairs import reference_records
+from diagnostics.audit.held_out import Attacker
+from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
 from diagnostics.audit.residual_lines import line_array, residual_lines
 from diagnostics.audit.separability_findings import separability_findings
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
-from diagnostics.audit.trial import Attacker
 from diagnostics.base.single_thread import single_thread
 from diagnostics.statistics.scores import clopper_pearson
 

@@ -18,8 +18,7 @@ from diagnostics.audit.detectability import (
     state_auc,
     waveform_change,
 )
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import exchange_blocks, reference_records
+from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.statistics.evaluation import Interval
 
 

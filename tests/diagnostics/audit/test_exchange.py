@@ -8,11 +8,10 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.audit.chance import bank_maxima, permuted
+from diagnostics.audit.bank_detections import bank_maxima, permuted
 from diagnostics.audit.column_attackers import best_column
 from diagnostics.audit.held_out import dealt_folds
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.reference_pairs import exchange_blocks, reference_records
+from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 
 GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 800, 39
 SPREAD = (0.1 * 0.9 * SETS) ** 0.5

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.chance import bank_maxima, exchanged_unit, permuted
+from diagnostics.audit.bank_detections import bank_maxima, exchanged_unit, permuted
 from diagnostics.audit.column_attackers import PENALTIES, all_columns, best_column, products, ridge_scores
-from diagnostics.audit.held_out import dealt_folds, held_out, held_out_values, judged_rows, trials
-from diagnostics.audit.trial import Trial
+from diagnostics.audit.held_out import Trial, dealt_folds, held_out, held_out_values, judged_rows, trials
 
 GEARBOXES, COLUMNS = 16, 60
 

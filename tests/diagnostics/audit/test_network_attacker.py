@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from diagnostics.audit import signal_attackers
+from diagnostics.audit.held_out import Trial
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.trial import Trial
 
 GEARBOXES, STEPS = 16, 1024
 SPECIMEN, DAMAGED = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, False, True], GEARBOXES)

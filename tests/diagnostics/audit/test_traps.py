@@ -10,11 +10,10 @@ from planted_set import Plant, measured
 from planted_traps import FOUND_AS, TRAPS, with_permuted_states
 
 from diagnostics.audit.condition_traps import condition_layers, condition_traps
-from diagnostics.audit.error_draws import chance_bound, likeness
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from diagnostics.audit.simple_thresholds import simple_thresholds
-from diagnostics.audit.state_ties import permuted_states, told_share
+from diagnostics.audit.state_ties import chance_bound, likeness, permuted_states, told_share
 
 
 @pytest.fixture(scope="module")

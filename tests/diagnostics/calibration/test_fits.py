@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from diagnostics.calibration.calibration import path_gains
-from diagnostics.calibration.healthy_blocks import Block, healthy_blocks
-from diagnostics.calibration.jackknife import jackknife
+from diagnostics.calibration.healthy_blocks import Block, healthy_blocks, jackknife
 from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines

@@ -21,8 +21,7 @@ from diagnostics.explore.chosen_records import chosen_records, overlaid_records
 from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
 from diagnostics.explore.explorer import ExplorerOptions, predicted_labels, write_explorer
 from diagnostics.explore.server import page_server
-from diagnostics.indicators.indicator_titles import indicator_definitions, indicator_titles
-from diagnostics.indicators.registry import columns
+from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
 from diagnostics.prediction.saved_models import save_models

@@ -11,7 +11,7 @@ from diagnostics.explore.detail import Detail
 from diagnostics.explore.payload import flank_size, outlines
 from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
 from diagnostics.records.recording import Recording
-from diagnostics.signal.envelope_spectrum import envelope_spectrum
+from diagnostics.signal.spectrum import envelope_spectrum
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.geometry.spur_gear import SpurGear
 from tests.diagnostics.explore.unpacked import steps

@@ -11,8 +11,12 @@ from hypothesis import strategies as st
 from scipy.special import jv
 
 from diagnostics.indicators.cepstrum import cepstral_peak, shaft_log_spectrum
-from diagnostics.indicators.modulation import amplitude_modulation, phase_modulation_rad
-from diagnostics.indicators.sidebands import sideband_asymmetry_db, sideband_power
+from diagnostics.indicators.sidebands import (
+    amplitude_modulation,
+    phase_modulation_rad,
+    sideband_asymmetry_db,
+    sideband_power,
+)
 from diagnostics.signal.mesh_band import Modulation, demodulated
 from diagnostics.signal.spectrum import line_amplitudes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.indicators.noise_levels import NOISE_LEVELS, noise_levels, quiet_gate
+from diagnostics.indicators.background_levels import NOISE_LEVELS, noise_levels, quiet_gate
 
 TURNS, STEPS, FS_HZ, SHAFT_HZ = 48, 720, 25_600.0, 35.0
 NOISE = np.random.default_rng(1).standard_normal((TURNS, STEPS))

@@ -24,7 +24,6 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.prediction.release import REFERENCED, release
 from diagnostics.prediction.saved_models import save_models
-from diagnostics.records.healthy_references import healthy_references
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
 from diagnostics.training import circular_network
@@ -32,7 +31,12 @@ from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
 from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.referenced import healthy_referenced, reference_speed_ratio, referenced_classifiers
+from diagnostics.training.referenced import (
+    healthy_referenced,
+    healthy_references,
+    reference_speed_ratio,
+    referenced_classifiers,
+)
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.training import Training, train_models, training_metrics
 

@@ -12,8 +12,7 @@ import pytest
 
 import diagnostics.prediction.prediction as prediction
 from diagnostics.prediction.prediction import NETWORK, Prediction, Vote, predict_recording
-from diagnostics.prediction.prediction_facts import prediction_facts, prediction_rows
-from diagnostics.prediction.prediction_page import prediction_summary
+from diagnostics.prediction.prediction_page import prediction_facts, prediction_rows, prediction_summary
 from diagnostics.prediction.released_model import ReleasedModel, load_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.recordings.measured_recording import MeasuredRecording

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnostics.recordings.csv_file import read_csv
 from diagnostics.recordings.level_alike import check_levels_alike, level_note
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from diagnostics.recordings.plain_files import read_csv
 from siggen.errors import UsageError
 
 CHANNELS = ("a", "b")

@@ -17,7 +17,7 @@ from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.file_columns import file_columns
 from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
-from diagnostics.recordings.stated_signals import rate_from_increment
+from diagnostics.recordings.recorder_files import rate_from_increment
 from siggen.errors import UsageError
 
 pytestmark = pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # of pyuff, when it writes binary

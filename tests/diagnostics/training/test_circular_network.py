@@ -19,6 +19,7 @@ from diagnostics.training.average_rows import (
     padded_lines,
     with_references,
 )
+from diagnostics.training.circular_files import export_circular_onnx, load_circular, save_circular
 from diagnostics.training.circular_network import (
     CircularNetwork,
     CircularSettings,
@@ -26,12 +27,7 @@ from diagnostics.training.circular_network import (
     circular_probability,
     train_circular,
 )
-from diagnostics.training.circular_training import (
-    TrainedCircularFile,
-    export_circular_onnx,
-    load_circular,
-    save_circular,
-)
+from diagnostics.training.circular_training import TrainedCircularFile
 from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import UsageError
 

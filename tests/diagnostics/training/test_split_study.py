@@ -10,12 +10,20 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.windows import by_channel, window_matrix, windows_of
 from diagnostics.records.recording import recordings
 from diagnostics.statistics.evaluation import Predictions, macro_auroc
 from diagnostics.statistics.scores import scores
 from diagnostics.training.baselines import rms_features, train_classifier
-from diagnostics.training.split_study import crossed, fold_scores, held_out, speed_bands, split_study
+from diagnostics.training.split_study import (
+    by_channel,
+    crossed,
+    fold_scores,
+    held_out,
+    speed_bands,
+    split_study,
+    window_matrix,
+    windows_of,
+)
 from diagnostics.training.splits import specimen_split
 from diagnostics.training.studies import learning_curve
 
