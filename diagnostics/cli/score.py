@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.training_options import Seed
+from diagnostics.cli.set_options import Seed
 
 
 def score(
