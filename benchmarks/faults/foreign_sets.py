@@ -24,6 +24,7 @@ import siggen
 from benchmarks.faults.changed_sets import SECRET, change
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import QUICKSTART, shipped
+from siggen.config import parse, parse_yaml
 from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, SiggenError, VerificationError
 
 COUNT, QUICK_COUNT = 2_000, 40
@@ -59,7 +60,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory(prefix="foreign") as name:
         place = Path(name)
         siggen.generate(shipped(QUICKSTART, *OVERRIDES), place / "whole")
-        yield from outcome_rows(place, place / "whole", readers(), count)
+        yield from outcome_rows(place, place / "whole", readers(place / "whole"), count)
 
 
 def outcome_rows(place: Path, whole: Path, asked: Mapping[str, Reader], count: int, seed: int = 0) -> Iterator[Row]:
@@ -87,15 +88,19 @@ def outcome_rows(place: Path, whole: Path, asked: Mapping[str, Reader], count: i
         yield Row(f"{count} changed sets, {name}", f"{measured}, {longest_text}", others, None, "no other", met)
 
 
-def readers() -> dict[str, Reader]:
-    """Return what reads a set of a stranger, by name; each receives the set and a path for what it writes."""
+def readers(whole: Path) -> dict[str, Reader]:
+    """Return what reads a set of a stranger, by name; each receives the set and a path for what it writes.
+
+    `generate` goes on in the stranger's folder with one's own configuration, that of the unchanged set.
+    """
+    own = parse(parse_yaml((whole / "config.yaml").read_text())).config
     return {
         "open": _open,
         "verify": _verify,
         "publish": _publish,
         "merge": lambda folder, out: _done(siggen.merge([folder], out)),
         "extend": lambda folder, _out: _done(siggen.extend(folder, "+1", engine="serial")),
-        "generate": _resume,
+        "generate": lambda folder, _out: _done(siggen.generate(own, folder, engine="serial")),
         "explore": _explore,
         "report": _report,
     }
@@ -127,11 +132,6 @@ def _publish(folder: Path, out: Path) -> None:
 
     facts = out.with_name("facts.yaml")
     publish(folder, out, facts)
-
-
-def _resume(folder: Path, _out: Path) -> None:
-    """Go on with one's own configuration in the stranger's folder."""
-    siggen.generate(shipped(QUICKSTART, *OVERRIDES), folder, engine="serial")
 
 
 def _explore(folder: Path, out: Path) -> None:

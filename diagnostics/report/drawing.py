@@ -77,8 +77,7 @@ def stiffness_figure(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], colour
 def loss_of_specimens(dataset: Dataset) -> tuple[dict[str, np.ndarray], str]:
     """Return state -> largest loss of each of its specimens, and what this loss is, from the labels of a set.
 
-    Sets of schema version 1 have the loss by potential energy alone. The loss as simulated depends on the torque: of
-    the records of a specimen and state the largest one counts.
+    The loss as simulated depends on the torque: of the records of a specimen and state the largest one counts.
     """
     named = set(dataset.labels().column_names)
     name = next(name for name in LOSSES if name in named)

@@ -60,8 +60,6 @@ def verify(
         for maker in found.made_by:
             same = "as this one" if maker == found.here else f"this is {found.here}"
             typer.echo(f"made by {maker}; {same}")
-        if not found.has_checksums:
-            typer.echo("its shards have no checksums: only this command sees a changed bit of a signal, no reader does")
         for line in problem_lines(found.mismatches):
             typer.echo(line, err=True)
         typer.echo("differs from its manifest" if found.mismatches else "as its manifest promises")

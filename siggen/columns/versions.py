@@ -8,11 +8,8 @@ from __future__ import annotations
 SCHEMA_VERSION = "2"
 """Version of the columns and of the files around them that is written."""
 
-READ_VERSIONS = ("1", SCHEMA_VERSION)
-"""Versions that are read. Sets of version 1 have no label `mesh_stiffness_loss_as_simulated`."""
+READ_VERSIONS = (SCHEMA_VERSION,)
+"""Versions that are read; nothing older was ever released."""
 
 SIMULATION_VERSION = 3
 """Raised, at most once per release, when a configuration of an earlier release comes to give a record other numbers."""
-
-FIRST_SIMULATION_VERSION = 1
-"""Of sets whose manifest names none."""

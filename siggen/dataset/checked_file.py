@@ -106,8 +106,8 @@ class CheckedFile(io.RawIOBase):
 
 
 @contextmanager
-def parquet_file(storage: Storage, name: str, crc32_per_64_kib: str | None) -> Iterator[pq.ParquetFile]:
-    """Open a Parquet object of a set; with checksums, no byte of it is decoded unchecked.
+def parquet_file(storage: Storage, name: str, crc32_per_64_kib: str) -> Iterator[pq.ParquetFile]:
+    """Open a Parquet object of a set; no byte of it is decoded unchecked.
 
     Raises
     ------
@@ -116,10 +116,11 @@ def parquet_file(storage: Storage, name: str, crc32_per_64_kib: str | None) -> I
         says how to go on.
     """
     try:
-        with storage.open(name) as file:
-            source = file if crc32_per_64_kib is None else CheckedFile(file, crc32_per_64_kib)
-            with pq.ParquetFile(source, page_checksum_verification=True) as table:
-                yield table
+        with (
+            storage.open(name) as file,
+            pq.ParquetFile(CheckedFile(file, crc32_per_64_kib), page_checksum_verification=True) as table,
+        ):
+            yield table
     except (OSError, pa.ArrowException) as error:
         raise DatasetError(
             f"{storage.location}/{name} cannot be read ({error}); `siggen verify {storage.location}` finds all "

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, SkipValidation
 
 from siggen.columns.record import Channel, RecordFailure
-from siggen.columns.versions import FIRST_SIMULATION_VERSION
 from siggen.dataset.id_ranges import Range
 from siggen.dataset.object_name import object_name
 
@@ -89,13 +88,13 @@ class ListedQuantity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SidecarTable:
-    """A file that a sidecar commits; `crc32_per_64_kib` is None in sets from before there were checksums."""
+    """A file that a sidecar commits."""
 
     name: ObjectName
     bytes: Count
     sha256: Sha256
     rows: Count
-    crc32_per_64_kib: Blocks | None = None
+    crc32_per_64_kib: Blocks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,8 +111,8 @@ class SidecarFacts:
     rows_per_state: dict[Name, Count]
     failures: tuple[RecordFailure, ...]
     environment: Environment
+    simulation_version: Count
     internals: SidecarTable | None = None
-    simulation_version: Count = FIRST_SIMULATION_VERSION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,13 +123,8 @@ class HashedFiles:
     files: dict[ObjectName, PromisedFile]
     identity: Sha256
     rows: Count
-    simulation_version: Count = FIRST_SIMULATION_VERSION
+    simulation_version: Count
     content: Annotated[dict[str, Any], SkipValidation] = field(default_factory=dict)
-
-    @property
-    def has_checksums(self) -> bool:
-        """Whether files have checksums of their blocks; tables and shards were given them together."""
-        return any(facts.crc32_per_64_kib is not None for facts in self.files.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -125,7 +125,7 @@ def read_manifest(storage: Storage) -> Inventory:
         raise DatasetError(f"{storage.location}: {error}; `siggen verify` names every damaged file") from error
     if not isinstance(facts, Inventory):
         raise DatasetError(
-            f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed are "
+            f"{storage.location}: received schema version {facts.schema_version[:20]}; allowed is "
             f"{' and '.join(READ_VERSIONS)}. The set was written by another version of siggen: read it with a "
             "newer one (pip install --upgrade siggen); `siggen verify` checks its files all the same"
         )

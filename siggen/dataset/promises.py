@@ -7,7 +7,7 @@ import hashlib
 from siggen.dataset.gate import sidecar_facts
 from siggen.dataset.inventory import Inventory, PromisedFile
 from siggen.dataset.object_name import sidecar_name
-from siggen.dataset.storage import Storage, sha256
+from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
 
 
@@ -23,10 +23,8 @@ class Promises:
     def __init__(self, storage: Storage, inventory: Inventory) -> None:
         self._storage = storage
         self._files = inventory.files
-        self._has_checksums = inventory.has_checksums
         self._owners = {name: one.shard for one in inventory.shards for name in (one.file, one.internals) if name}
         self._of_shard: dict[str, dict[str, str]] = {}
-        self._hashed: set[str] = set()
 
     def check_sizes(self) -> None:
         """Compare the size of every file that is there; a missing one is named when it is read.
@@ -54,26 +52,20 @@ class Promises:
             raise self._broken(name, "SHA-256 differs")
         return content
 
-    def crc32(self, name: str) -> str | None:
-        """Return the checksums of a file's blocks, or None where the set has none.
-
-        A table of a set without checksums is hashed whole instead, once.
+    def crc32(self, name: str) -> str:
+        """Return the checksums of a file's blocks.
 
         Raises
         ------
         DatasetError
-            If the sidecar or the table is missing, or not what the manifest promises.
+            If its sidecar is missing or not what the manifest promises, or nothing promises the blocks.
         """
         promised = self._promised(name)
         if promised.crc32_per_64_kib is not None:
             return promised.crc32_per_64_kib
-        if self._has_checksums and name in self._owners:
-            return self._of_its_shard(name)
-        if name not in self._owners and name not in self._hashed:
-            if sha256(self._storage, name) != promised.sha256:
-                raise self._broken(name, "SHA-256 differs")
-            self._hashed.add(name)
-        return None
+        if name not in self._owners:
+            raise self._broken(name, "it has no checksums")
+        return self._of_its_shard(name)
 
     def _promised(self, name: str) -> PromisedFile:
         if name not in self._files:
@@ -89,7 +81,7 @@ class Promises:
             except VerificationError as error:
                 raise self._broken(sidecar, str(error)) from error
             tables = (facts.data, facts.internals) if facts.internals else (facts.data,)
-            self._of_shard[shard] = {table.name: table.crc32_per_64_kib or "" for table in tables}
+            self._of_shard[shard] = {table.name: table.crc32_per_64_kib for table in tables}
         if name not in self._of_shard[shard]:
             raise self._broken(name, "the sidecar of its shard does not name it")
         return self._of_shard[shard][name]

@@ -57,9 +57,6 @@ class Dataset:
     fs_hz, duration_s : float
     internal_columns : tuple of Column
         Quantities that no sensor sees, in sets that store some (`internals` in the configuration).
-    has_checksums : bool
-        Whether every byte of signals and internal quantities is checked when it is read. Sets made before there were
-        checksums have none: there only `siggen verify` sees a changed bit. Labels and damage are checked in all sets.
 
     Raises
     ------
@@ -87,11 +84,6 @@ class Dataset:
         rows = ", ".join(f"{split}: {self.inventory.splits[split].rows}" for split in self.splits)
         channels = counted(len(self.channels), "channel")
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
-
-    @property
-    def has_checksums(self) -> bool:
-        """Whether signals and internal quantities are checked when they are read; see above."""
-        return self.inventory.has_checksums
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         """Return ids, labels and operating conditions (no signals) of one split, or of all splits in order.

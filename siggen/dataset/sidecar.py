@@ -107,8 +107,8 @@ def read_sidecar(storage: Storage, shard: str) -> Sidecar:
 
 
 def file_facts(table: SidecarTable) -> FileFacts:
-    """Return what a sidecar promises of a file; no checksums of blocks where it has none."""
-    return FileFacts(table.name, table.bytes, table.sha256, table.crc32_per_64_kib or "", table.rows)
+    """Return what a sidecar promises of a file."""
+    return FileFacts(table.name, table.bytes, table.sha256, table.crc32_per_64_kib, table.rows)
 
 
 def promised_shard(storage: Storage, shard: str, identity: str, specimens: Sequence[Range]) -> Sidecar | str:

@@ -174,7 +174,7 @@ def _difference(config: Config, owner: StoredShard, record_id: int, result: Chun
 
 
 def _row(storage: Storage, facts: FileFacts, record_id: int) -> Any:
-    with parquet_file(storage, facts.name, facts.crc32_per_64_kib or None) as file:
+    with parquet_file(storage, facts.name, facts.crc32_per_64_kib) as file:
         return row_of(file, record_id)
 
 

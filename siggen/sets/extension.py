@@ -68,7 +68,7 @@ def extend(
         there = manifest.specimens
         wanted = _wanted(specimens, there)
         _check_begun(storage, there, wanted)
-        if not manifest.has_checksums or manifest.simulation_version != SIMULATION_VERSION:
+        if manifest.simulation_version != SIMULATION_VERSION:
             raise _of_earlier_version(storage, wanted)
         config = _config(storage, wanted)
         if config.identity != manifest.identity:

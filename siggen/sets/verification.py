@@ -72,8 +72,6 @@ class Verification:
         The versions that made the shards, each with its fingerprint.
     here
         The version that compared.
-    has_checksums
-        Whether a reader of signals checks every byte as well; sets made before there were checksums have none.
     """
 
     path: str
@@ -82,7 +80,6 @@ class Verification:
     records: tuple[int, ...]
     comparison: str
     mismatches: tuple[Mismatch, ...]
-    has_checksums: bool = True
     made_by: tuple[str, ...] = ()
     here: str = ""
 
@@ -123,7 +120,7 @@ def verify(
         *_strangers(storage, manifest.files),
         *_run(storage),
     ]
-    if not mismatches and isinstance(manifest, Inventory) and manifest.has_checksums:
+    if not mismatches and isinstance(manifest, Inventory):
         mismatches += _sidecar_mismatches(storage, manifest)
     records: tuple[int, ...] = ()
     comparison = "none asked for"
@@ -135,10 +132,10 @@ def verify(
         records, comparison, different = _simulate_again(storage, sample, engine, workers)
         mismatches += different
     total = sum(facts.bytes for facts in manifest.files.values())
-    count, checked = len(manifest.files) + 2, manifest.has_checksums
+    count = len(manifest.files) + 2
     environments = manifest.environments if isinstance(manifest, Inventory) else ()
     versions = tuple(dict.fromkeys(version_text(one) for one in environments)), version_text(environment())
-    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), checked, *versions)
+    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), *versions)
 
 
 def why_not_again(manifest: HashedFiles, sample: int) -> str:

@@ -38,13 +38,6 @@ def test_json_names_what_differs_and_the_exit_code_is_4(folder: Path) -> None:
     assert [mismatch["what"] for mismatch in answer["mismatches"]] == ["README.md"]
 
 
-def test_a_set_without_checksums_is_said_to_have_none(folder: Path) -> None:
-    first = Path(__file__).parents[1] / "sets" / "schema_1"
-    told = "its shards have no checksums: only this command sees a changed bit of a signal"
-    assert told in CliRunner().invoke(app, ["verify", str(first), "--sample", "0"]).stdout
-    assert told not in CliRunner().invoke(app, ["verify", str(folder), "--sample", "0"]).stdout
-
-
 def test_a_folder_that_is_no_set_is_a_usage_error(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["verify", str(tmp_path)])
     assert isinstance(result.exception, DatasetError)

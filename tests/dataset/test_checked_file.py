@@ -22,7 +22,6 @@ from siggen.errors import DatasetError
 from tests.dataset.fake_set import fake_config, write_fake_set
 
 CONTENT = Random(1).randbytes(3 * BLOCK_BYTES + 1000)
-FIRST = Path(__file__).parents[1] / "sets" / "schema_1"
 
 
 def test_checksums_are_those_of_the_whole_file_and_of_its_blocks() -> None:
@@ -103,15 +102,3 @@ def test_a_file_of_another_size_is_refused_when_the_set_is_opened(folder: Path, 
         file.write(b"x")
     with pytest.raises(DatasetError, match=r"test-00000\.parquet is not the file .* bytes instead of"):
         open_set(tmp_path / "set")
-
-
-def test_sets_from_before_the_checksums_say_that_they_have_none(folder: Path, tmp_path: Path) -> None:
-    assert open_set(folder).has_checksums
-    assert not open_set(FIRST).has_checksums
-    shutil.copytree(FIRST, tmp_path / "set")
-    table = tmp_path / "set/metadata/train.parquet"
-    broken = bytearray(table.read_bytes())
-    broken[len(broken) // 2] ^= 1
-    table.write_bytes(broken)
-    with pytest.raises(DatasetError, match=r"metadata/train\.parquet is not the file .*SHA-256 differs"):
-        open_set(tmp_path / "set").labels()

@@ -1,4 +1,4 @@
-"""Sets of earlier versions stay readable; `schema_1` was generated when there was no second version yet."""
+"""Sets of earlier simulations stay readable."""
 
 from __future__ import annotations
 
@@ -14,18 +14,13 @@ import siggen
 from siggen.cli.app import app
 from siggen.columns.record import signal_matrix
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.manifest import read_manifest
 from siggen.dataset.seal import sealed, unsealed
-from siggen.dataset.sidecar import committed, read_sidecar
-from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.sets.extension import extend
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import file_bytes, verify_fake_set, write_fake_set
 
-FIRST = Path(__file__).parent / "schema_1"
 NEW_LABEL = "mesh_stiffness_loss_as_simulated"
-
 
 SECOND = Path(__file__).parent / "schema_2"
 """Two gearboxes in two states, generated as one and extended by one when there was nothing after version 2."""
@@ -37,26 +32,9 @@ def say(folder: Path, **facts: object) -> None:
     manifest.write_bytes(sealed({**unsealed("manifest.json", manifest.read_bytes()), **facts}))
 
 
-def test_a_set_of_version_1_opens_and_its_records_are_read() -> None:
-    dataset = siggen.open(FIRST)
-    assert dataset.manifest["schema_version"] == "1"
-    assert dataset.inventory.simulation_version == 1
-    labels = dataset.labels()
-    assert labels["state"].to_pylist() == ["healthy", "severe"]
-    assert NEW_LABEL not in labels.column_names
-    (batch,) = dataset.records()
-    signals = signal_matrix(batch.column("accel_lid_vertical_m_s2"))
-    assert signals.shape == (2, 1600)
-    # A spall through the face, where the healthy gearbox hums: read, not made up.
-    assert signals[1].std() > 2.0 * signals[0].std()
-    # 1.5 mm of arc near the pitch point: l²/(8 R_e) with R_e of 6.7 mm and the edges' rounding of 0.1 mm.
-    assert dataset.record(1)["sink_depth_um"] == pytest.approx(1e3 * 1.5**2 / (8.0 * 6.78), rel=0.01)
-    assert dataset.damage().num_rows == 1
-
-
 def test_an_extended_set_of_version_2_opens_and_every_byte_of_it_is_checked() -> None:
     dataset = siggen.open(SECOND)
-    assert (dataset.manifest["schema_version"], dataset.has_checksums) == ("2", True)
+    assert (dataset.manifest["schema_version"], dataset.inventory.simulation_version) == ("2", 1)
     assert [shard["specimens"] for shard in dataset.manifest["shards"]] == [[[0, 0]], [[1, 1]]]
     assert dataset.labels()["record_id"].to_pylist() == [0, 1, 2, 3]
     signals = np.concatenate([signal_matrix(batch.column("accel_lid_vertical_m_s2")) for batch in dataset.records()])
@@ -67,12 +45,11 @@ def test_an_extended_set_of_version_2_opens_and_every_byte_of_it_is_checked() ->
     assert forces.shape == (4, 1600)
     assert (forces.mean(axis=1) > 0.0).all()
     found = verify(SECOND, 0)
-    assert (found.mismatches, found.has_checksums) == ((), True)
+    assert found.mismatches == ()
 
 
 def test_its_hashes_are_verified_and_a_flipped_byte_shows(tmp_path: Path) -> None:
-    assert verify(FIRST).mismatches == ()
-    folder = Path(shutil.copytree(FIRST, tmp_path / "set"))
+    folder = Path(shutil.copytree(SECOND, tmp_path / "set"))
     data = folder / "data" / "train-00000.parquet"
     content = bytearray(data.read_bytes())
     content[len(content) // 2] ^= 1
@@ -80,9 +57,8 @@ def test_its_hashes_are_verified_and_a_flipped_byte_shows(tmp_path: Path) -> Non
     assert [m.what for m in verify(folder).mismatches] == ["data/train-00000.parquet"]
 
 
-@pytest.mark.parametrize("made", [FIRST, SECOND])
-def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(made: Path, tmp_path: Path) -> None:
-    folder = Path(shutil.copytree(made, tmp_path / "set"))
+def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(SECOND, tmp_path / "set"))
     before = file_bytes(folder)
     with pytest.raises(DatasetError, match="read and verified, not extended"):
         extend(folder, "+1", 0)
@@ -91,17 +67,10 @@ def test_a_set_of_another_simulation_is_neither_resumed_nor_extended(made: Path,
     assert file_bytes(folder) == before
 
 
-def test_its_shards_are_not_mixed_with_those_of_this_version() -> None:
-    storage = LocalFolder(FIRST)
-    with pytest.raises(DatasetError, match="not a sidecar of siggen"):
-        read_sidecar(storage, "train-00000")
-    assert isinstance(committed(storage, "train-00000", read_manifest(storage).identity, ((0, 0),)), str)
-
-
 def test_a_newer_unknown_schema_is_refused_in_words_and_verified_by_its_hashes(tmp_path: Path) -> None:
     write_fake_set(tmp_path)
     say(tmp_path, schema_version="99")
-    with pytest.raises(DatasetError, match="received schema version 99; allowed are 1 and 2"):
+    with pytest.raises(DatasetError, match="received schema version 99; allowed is 2"):
         siggen.open(tmp_path)
     found = verify_fake_set(tmp_path, 3)
     assert found.mismatches == ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -24,8 +23,6 @@ from tests.dataset.fake_set import (
     verify_fake_set,
     write_fake_set,
 )
-
-FIRST = Path(__file__).parent / "schema_1"
 
 
 def extend_fake_set(path: Path, specimens: int | str, simulation: Any = simulate, group: int = 30_000) -> Generation:
@@ -113,14 +110,6 @@ def test_a_damaged_set_is_not_extended(tmp_path: Path) -> None:
     shard.write_bytes(content)
     with pytest.raises(DatasetError, match=r"1 of its \d shards are missing, damaged .*train-00000"):
         extend_fake_set(tmp_path / "set", "+6")
-
-
-def test_a_set_from_before_the_checksums_is_not_extended_and_not_touched(tmp_path: Path) -> None:
-    shutil.copytree(FIRST, tmp_path / "set")
-    before = file_bytes(tmp_path / "set")
-    with pytest.raises(DatasetError, match="read and verified, not extended"):
-        extend(tmp_path / "set", "+1", 0)
-    assert file_bytes(tmp_path / "set") == before
 
 
 @pytest.mark.parametrize("wrong", ["", "+0", "7", "-3", "many", "+1e3", 3, "+" + "9" * 40, "+99999999"])

@@ -39,7 +39,7 @@ def resealed(folder: Path, change: Callable[[dict], object]) -> None:
 
 
 def test_no_reader_ends_raw_writes_elsewhere_or_shows_what_lies_beside_the_set(tmp_path: Path, folder: Path) -> None:
-    asked = {name: reader for name, reader in readers().items() if name in QUICK_READERS}
+    asked = {name: reader for name, reader in readers(folder).items() if name in QUICK_READERS}
     with fake_physics(), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
         rows = list(outcome_rows(tmp_path / "place", folder, asked, CHANGES))
     assert len(rows) == len(QUICK_READERS)
