@@ -28,7 +28,11 @@ class RecordingOptions:
     fs: Rate = None
     speed_range: Annotated[
         str | None,
-        typer.Option("--speed-range", metavar="LOW,HIGH", help="Range of pinion speed [Hz] to search without a tacho."),
+        typer.Option(
+            "--speed-range",
+            metavar="LOW,HIGH",
+            help="Range of pinion speed [Hz] to search without a tacho; 1 s a record, in a wide range 4 to 6 s.",
+        ),
     ] = None
     channel: Annotated[
         list[str] | None,

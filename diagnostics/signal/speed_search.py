@@ -47,6 +47,10 @@ LOBE_CELLS = 2.0
 SLIPPED = 0.008
 """Relative error of the speed that a slip of a few teeth leaves."""
 
+STRETCHED = 1.1
+"""A followed line is a mesh line of the pinion unless its lines are sharper by this over a stretched angle: its phase
+is exact to a hundredth of a pitch, while cells of the spectrum tell the speed to half a pitch over the recording."""
+
 SCALE = 20.0
 """A likelihood ratio e^L counts as (1 + L / SCALE)^SCALE: as it is while it is small; where thousands of lines speak,
 which are neither independent nor exponential, by the share of them that a rival has too."""
@@ -152,7 +156,7 @@ def _sharpest(tried: Sequence[Tried]) -> list[Tried]:
     """
     best = max(tried, key=_evidence)
     near = [one for one in tried if abs(one.speed_hz / best.speed_hz - 1.0) < SLIPPED]
-    curve = max(near, key=lambda one: one.curve.lines.sharpness(one.speed_hz)).curve
+    curve = max(near, key=_sharpness).curve
     return [one for one in tried if one.curve is curve or one not in near]
 
 
@@ -170,8 +174,8 @@ def pulses_of(channels: Mapping[str, np.ndarray], fs_hz: float, found: SpeedFoun
         curves.append(found.curve)
     near = (1.0 - SAME_SPEED) * found.speed_hz, (1.0 + SAME_SPEED) * found.speed_hz
     tried = [one for curve in curves for one in _tried(curve, near)]
-    tried += [Tried(curve.lines.speed_hz, 0.0, curve) for curve in curves if near[0] < curve.lines.speed_hz < near[1]]
-    best = max(tried, key=lambda one: one.curve.lines.sharpness(one.speed_hz))
+    own = [Tried(curve.lines.speed_hz, 0.0, curve) for curve in curves if near[0] < curve.lines.speed_hz < near[1]]
+    best = max([*tried, *own], key=lambda one: (STRETCHED if one in own else 1.0) * _sharpness(one))
     return best.curve.channel, _turned(best.curve.pulses_s, best.speed_hz / best.curve.lines.speed_hz)
 
 
@@ -275,6 +279,10 @@ def _distinct(tried: Sequence[Tried], apart: float = SAME_SPEED) -> list[Tried]:
         if all(abs(one.speed_hz / known.speed_hz - 1.0) > apart for known in distinct):
             distinct.append(one)
     return distinct
+
+
+def _sharpness(one: Tried) -> float:
+    return one.curve.lines.sharpness(one.speed_hz)
 
 
 def _evidence(one: Tried) -> float:

@@ -92,28 +92,37 @@ def test_number_of_workers_changes_nothing(small: Any, table: IndicatorTable) ->
     assert again.matrix.names == table.matrix.names
 
 
-def test_angle_from_the_mesh_lines_gives_nearly_the_same_average(small: Any, table: IndicatorTable) -> None:
-    found = indicator_table(small, settings=IndicatorSettings(speed_range_hz=(29.0, 31.0)))
-    name = "average_rms_pinion__bearing_vertical"
-    # a hundredth of a tooth pitch of angle error at mesh harmonic 3 costs 2 % of its amplitude
-    np.testing.assert_allclose(column(found, name), column(table, name), rtol=0.02)
+WITHOUT_TACHO = IndicatorSettings(speed_range_hz=(25.0, 36.0))
 
 
-def test_angle_comes_from_the_channel_whose_mesh_lines_are_clearest(small: Any) -> None:
-    record = next(recordings(small))
+def test_angle_from_the_lines_gives_nearly_the_same_average_or_the_record_is_refused(small: Any) -> None:
+    judged = set()
+    for record in recordings(small):
+        lines, tacho = record_result(record, WITHOUT_TACHO), record_result(record)
+        judged |= set() if lines.problems else {record.labels["record_id"]}
+        for channel, one in lines.channels.items() if not lines.problems else ():
+            name = "average_rms_pinion"
+            # a hundredth of a tooth pitch of angle error at mesh harmonic 3 costs 2 % of its amplitude
+            assert one.values[name] == pytest.approx(tacho.channels[channel].values[name], rel=0.02)
+    # healthy records of these toys hold three mesh lines and nothing of the shafts, which is not certain
+    assert {2, 5, 8} <= judged
+
+
+def test_angle_comes_from_the_channel_whose_lines_are_clearest(small: Any) -> None:
+    record = next(one for one in recordings(small) if one.labels["state"] == "severe")
     noise = np.random.default_rng(1).standard_normal(12_800)
-    settings = IndicatorSettings(speed_range_hz=(29.0, 31.0))
     clear = record.channels["bearing_vertical"]
-    both = record_result(replace(record, channels={"a": noise, "b": clear}), settings)
-    alone = record_result(replace(record, channels={"b": clear}), settings)
+    both = record_result(replace(record, channels={"a": noise, "b": clear}), WITHOUT_TACHO)
+    alone = record_result(replace(record, channels={"b": clear}), WITHOUT_TACHO)
     assert not both.problems
-    assert both.channels["b"].values["fm4_pinion"] == alone.channels["b"].values["fm4_pinion"]
+    value = alone.channels["b"].values["fm4_pinion"]
+    assert both.channels["b"].values["fm4_pinion"] == pytest.approx(value, rel=0.01)
 
 
-def test_record_without_a_mesh_line_is_a_problem_of_that_record(small: Any) -> None:
+def test_record_without_lines_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
-    found = record_result(replace(record, channels={"a": noise}), IndicatorSettings(speed_range_hz=(29.0, 31.0)))
+    found = record_result(replace(record, channels={"a": noise}), WITHOUT_TACHO)
     assert str(found.problems[0]).startswith("record 0: no lines of these shafts stand above the noise")
 
 

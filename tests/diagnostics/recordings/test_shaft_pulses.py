@@ -33,6 +33,10 @@ def test_a_dozen_lines_are_enough_in_a_range_without_half_and_twice_the_speed(sp
     assert found.speed_hz == pytest.approx(speed_hz, rel=1e-3)  # the drift itself is 0.03 %
     assert found.source == "vertical"
     assert found.certainty > 0.95
+    # the angle is that of the mesh line's phase, never stretched to a cell of the spectrum, which is half a pitch wide
+    turns = speed_hz * found.times_s + 0.002 * np.sin(2 * np.pi * 0.7 * found.times_s)
+    error = turns - np.arange(turns.size)
+    assert np.abs(error - np.median(error))[4:-4].max() < 0.02 / TEETH[0]
 
 
 @pytest.mark.parametrize("speed_hz", [24.0, 33.0, 45.0])
