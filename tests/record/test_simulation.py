@@ -106,7 +106,7 @@ def test_impossible_damage_is_a_failure_with_a_reason_and_leaves_the_other_recor
 
 
 def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reason() -> None:
-    law = ["dynamics.mesh.law=pairs", "operating_points.torque_nm=2.0e+4"]
+    law = ["dynamics.mesh.law=pairs", *(f"operating_points.{i}.torque_nm=2.0e+4" for i in range(2))]
     results = list(simulate_specimen(load_config("configs/linear_pits.yaml", [*SMALL, *law]), [0, 2]))
     assert [r.status for r in results if isinstance(r, RecordFailure)] == ["outside_model"] * 2
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))

@@ -176,7 +176,7 @@ def test_last_bits_of_the_matrices_move_neither_the_motion_nor_what_scipy_makes_
         assert 0.0 < largest(own, changed) < 1e-9
         motion, spikes = with_spikes(own, by_scipy(model, own, FINE))
         assert motion < 1e-3
-        assert spikes < 0.01
+        assert spikes < 0.03  # three of 121 samples lie on spikes
 
 
 @pytest.mark.parametrize(
