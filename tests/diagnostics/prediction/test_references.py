@@ -26,7 +26,7 @@ from diagnostics.prediction.release import REFERENCED, release
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
 from diagnostics.statistics.calibration import fitted_temperature
-from diagnostics.training import circular_network
+from diagnostics.training import circular_network, circular_training
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.circular_training import TrainedCircularFile, circular_predictions_of, judge_circular
 from diagnostics.training.classifier_file import load_classifier
@@ -202,7 +202,7 @@ def test_the_circular_network_is_judged_alone_and_beside_a_healthy_record(
 ) -> None:  # fmt: skip
     few = partial(circular_network.CircularSettings, most_epochs=12)
     monkeypatch.setattr(circular_network, "CircularSettings", few)
-    monkeypatch.setattr(circular_network, "PERMUTED_EPOCHS", 2)
+    monkeypatch.setattr(circular_training, "PERMUTED_EPOCHS", 2)
     averages, options = averaged_records(indicators_of_measured), NetworkOptions()
     matrix, split = feature_matrix(features_of_measured), training.split
     trained, alone = judge_circular("circular", averages, matrix, split, 0, options, silent_stage)
