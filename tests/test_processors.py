@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-FILM = "test_scipy_gives_the_motion_with_slices_film_and_damping_by_asperity_share[none]"
+FILM = "test_scipy_gives_the_motion_with_film_and_damping_by_asperity_share[none]"
 FEW = (
     f"tests/views/test_exported_model.py::{FILM}",
     "tests/diagnostics/training/test_cnn.py::test_the_network_learns_within_few_epochs_and_computes_in_float32_alone",
