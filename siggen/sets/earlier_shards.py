@@ -18,7 +18,7 @@ from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.id_ranges import in_ranges
 from siggen.dataset.reading import as_internals, as_record, row_of
 from siggen.dataset.shard import FileFacts
-from siggen.dataset.sidecar import Sidecar, committed, promised_shard
+from siggen.dataset.sidecar import Sidecar, committed, promised_shard, read_sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
@@ -161,7 +161,8 @@ def _results(again: Again, ids: Sequence[int]) -> Iterator[tuple[int, ChunkResul
 
 
 def _difference(config: Config, owner: StoredShard, record_id: int, result: ChunkResult) -> str:
-    storage, sidecar = owner
+    storage = owner.storage
+    sidecar = read_sidecar(storage, owner.sidecar.shard)  # a run keeps no checksums of blocks
     failed = [failure for failure in sidecar.failures if failure.record_id == record_id]
     if failed or result.failures:
         return "" if failed == list(result.failures) else f"{_ended(failed)} then, {_ended(result.failures)} now"
