@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -12,7 +12,6 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
     MIDDLE_HEIGHT,
-    MM,
     READING,
     AnyGear,
     Height,
@@ -20,6 +19,7 @@ from siggen.faults.flank_place import (
     Length,
     drawn_height_m,
     heights_m,
+    length_m,
 )
 from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, pit_place_problems
@@ -28,7 +28,6 @@ from siggen.gears.damage.layouts import clustered_centres
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import at
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 
@@ -82,15 +81,10 @@ class ClusteredPits(PitSize, Fault):
             growth.rng(f"{self.gear}.{tooth}.centres"),
             count,
             drawn_height_m(self.centre_height_mm, self.height_reading, pair, self.gear, uniform("centre_height_mm")),
-            _at(self, "spread_profile_mm", uniform),
+            length_m(self, "spread_profile_mm", uniform),
             0.0,
             pair.face_width_m,
             height_low_m=low,
             height_high_m=high,
         )
         return list(zip(heights.tolist(), faces.tolist(), strict=True))
-
-
-def _at(model: ClusteredPits, key: str, uniform: Callable[[str], float]) -> float:
-    """Return a length of a layout [m], drawn by the uniform of its key."""
-    return MM * at(getattr(model, key), uniform(key))

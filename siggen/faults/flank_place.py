@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
@@ -17,6 +18,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.scaling import Grows
+from siggen.keys.section import Section
 
 GearName: TypeAlias = Literal["pinion", "gear"]
 AnyGear: TypeAlias = Literal["pinion", "gear", "either"]
@@ -86,6 +88,11 @@ def heights_m(pair: GearPair, gear: str, height_mm: Number | str, reading: str) 
 def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, which: str, u: float) -> float:
     """Return the axial height [m] of a height as the configuration states it, drawn by the uniform `u`."""
     return height_m_of(pair, which, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
+
+
+def length_m(section: Section, key: str, uniform: Callable[[str], float]) -> float:
+    """Return a length of a layout [m], drawn by the uniform of its key."""
+    return MM * at(getattr(section, key), uniform(key))
 
 
 def read_m(gear: SpurGear, height_m: float, reading: str) -> float:

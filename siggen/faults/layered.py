@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -13,7 +13,6 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import (
     DAMAGED_GEAR,
     FACE_CENTRE,
-    MM,
     MODULE,
     READING,
     AnyGear,
@@ -24,6 +23,7 @@ from siggen.faults.flank_place import (
     PlaceOnFace,
     drawn_height_m,
     heights_m,
+    length_m,
 )
 from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
@@ -31,7 +31,7 @@ from siggen.gears.damage.layouts import layered_centres
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, Within, at, bounds
+from siggen.keys.number import Number, Within, bounds
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
@@ -92,20 +92,20 @@ class LayeredPits(PitSize, Fault):
         milder = self._milder(growth, tooth)
         uniform, pair = growth.place(self.gear, LayeredPits), growth.pair
         first = drawn_height_m(self.first_height_mm, self.height_reading, pair, self.gear, uniform("first_height_mm"))
-        middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else _at(self, "face_centre_mm", uniform)
+        middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else length_m(self, "face_centre_mm", uniform)
         # An even number of columns is centred between two of them; what grows keeps the lattice that it began on.
         between = (milder[-1] if milder else self).pits_per_layer % 2 == 0
         heights, faces = layered_centres(
             self.layers,
             self.pits_per_layer,
-            _at(self, "spacing_face_mm", uniform),
-            _at(self, "spacing_profile_mm", uniform),
+            length_m(self, "spacing_face_mm", uniform),
+            length_m(self, "spacing_profile_mm", uniform),
             first,
             middle,
             between=between,
         )
         shifts = 2.0 * growth.rng(f"{self.gear}.{tooth}.jitter").random((heights.size, 2)) - 1.0
-        moved = np.stack([heights, faces], axis=1) + _at(self, "jitter_mm", uniform) * shifts
+        moved = np.stack([heights, faces], axis=1) + length_m(self, "jitter_mm", uniform) * shifts
         slots = [(i, j) for i in range(self.layers) for j in range(self.pits_per_layer)]
         taken = {(i, j) for m in milder for i in range(m.layers) for j in range(m.pits_per_layer)}
         return [(float(h), float(w)) for slot, (h, w) in zip(slots, moved, strict=True) if slot not in taken]
@@ -129,8 +129,3 @@ class LayeredPits(PitSize, Fault):
         centre_m = pair.face_width_m / 2 if self.face_centre_mm is None else bounds(self.face_centre_mm)[0] / 1e3
         spacing_m = bounds(self.spacing_face_mm)[1] / 1e3
         return [centre_m + (i - (self.pits_per_layer - 1) / 2) * spacing_m for i in range(self.pits_per_layer)]
-
-
-def _at(model: LayeredPits, key: str, uniform: Callable[[str], float]) -> float:
-    """Return a length of a layout [m], drawn by the uniform of its key."""
-    return MM * at(getattr(model, key), uniform(key))
