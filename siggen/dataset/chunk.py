@@ -16,7 +16,7 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_batch
 from siggen.columns.record import Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
-from siggen.stage_times import collected, stage
+from siggen.record.stage_times import collected, stage
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -27,6 +27,7 @@ from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
 from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
 from siggen.record.quantities import is_asked_for
+from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
@@ -40,7 +41,6 @@ from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
 from siggen.specimen.structure import structure
-from siggen.stage_times import stage
 
 __all__ = [
     "damage_rows",

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, TypeVar
 from siggen.columns.record import RecordFailure
 from siggen.dataset.sidecar import Sidecar
 from siggen.engines.protocol import Engine
+from siggen.record.stage_times import StageTimes
 from siggen.sets.loss_limit import LossLimit
-from siggen.stage_times import StageTimes
 
 if TYPE_CHECKING:
     from siggen.config import Config

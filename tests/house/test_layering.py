@@ -13,7 +13,7 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "errors", "sources", "seeding", "arrays", "compiled", "lanes", "stage_times", "keys",
+    "errors", "sources", "seeding", "arrays", "compiled", "lanes", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "faults", "config", "rig", "planning",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",

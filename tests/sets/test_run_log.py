@@ -17,9 +17,9 @@ from siggen.cli.app import app
 from siggen.cli.run_display import RunDisplay, run_shown
 from siggen.dataset.seal import unsealed
 from siggen.errors import DatasetError, EngineError, UsageError
+from siggen.record.stage_times import StageTimes, collected, stage
 from siggen.sets.run_journal import EVENTS, stamped
 from siggen.sets.run_report import DRIVER, WORKERS, read_run
-from siggen.stage_times import StageTimes, collected, stage
 from tests.dataset.fake_set import simulate_with_a_bug, simulate_with_failures, write_fake_set
 
 ROOT = Path(__file__).parents[2]
