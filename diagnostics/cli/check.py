@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from diagnostics.cli.recording_options import Rate, file_rows
+from siggen.cli.json_output import AsJson, echo_json
 
 
 def check(
@@ -24,6 +25,7 @@ def check(
     fs: Rate = None,
     load: Annotated[float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`.")] = None,
     keep: Annotated[bool, typer.Option(help="Whether to add the verdicts to the machine's history.")] = True,
+    as_json: AsJson = False,
 ) -> None:
     """Say of every recording: unchanged, changed, other load or speed, or cannot tell. No fault is named.
 
@@ -51,11 +53,14 @@ def check(
             advance()
     if keep:
         add_checks(machine, found)
-    for one in found:
-        typer.echo(f"{one.recording}: {one.verdict}: {one.reason}")
+    if as_json:
+        echo_json({"machine": str(machine), "checks": [asdict(one) for one in found]})
+    else:
+        for one in found:
+            typer.echo(f"{one.recording}: {one.verdict}: {one.reason}")
     used = [one.used for one in found if one.score is not None]
     if used:
         typer.echo(rate_sentence(min(used), known.false_alarms), err=True)
-    typer.echo(str(write_machine_page(known, machine, found)))
+    typer.echo(str(write_machine_page(known, machine, found)), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)

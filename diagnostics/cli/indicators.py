@@ -10,6 +10,7 @@ import typer
 
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.set_options import EXPLORER, OwnIndicators, PageOptions, opened
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -17,6 +18,15 @@ if TYPE_CHECKING:
     from diagnostics.indicators.own_indicator import OwnIndicator
     from diagnostics.recordings.measured_recording import RecordingFacts
     from siggen.dataset.reading import Dataset
+
+
+@dataclass(frozen=True, slots=True)
+class ComputingOptions:
+    """What is computed, and where it is told."""
+
+    indicator: OwnIndicators = None
+    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1
+    as_json: AsJson = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +74,7 @@ def indicators(
             show_default=False,
         ),
     ] = None,
-    indicator: OwnIndicators = None,
-    workers: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    computing: ComputingOptions,
     ranking: RankingOptions,
     page: PageOptions,
     teeth: Teeth = None,
@@ -82,13 +91,16 @@ def indicators(
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
     """
     span = recording.speed_range_hz()
+    indicator, workers, as_json = computing.indicator, computing.workers, computing.as_json
     if teeth is not None or file_rows(targets[0])[0][0].is_file():
         of_sets = {"--indicator": indicator, "--state": ranking.state, "--leave-out": ranking.leave_out}
         of_sets["--explore"] = page.explore
         if ignored := [option for option, given in of_sets.items() if given]:
             raise UsageError(f"{', '.join(ignored)}: for sets only; leave them out for recordings")
-        _of_recordings(targets, teeth, recording.facts(), span, out)
+        _of_recordings(targets, teeth, recording.facts(), span, out, as_json)
         return
+    if as_json:
+        raise UsageError("--json: for recordings only; --out table.parquet or .csv has the indicators of a set")
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
     directory = Path(targets[0])
@@ -159,11 +171,12 @@ def _of_recordings(
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     out: Path | None,
+    as_json: bool,
 ) -> None:
     """Write and print the indicators of recordings."""
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
-    from diagnostics.machine.recording_indicators import recording_indicators, write_recordings
+    from diagnostics.machine.recording_indicators import recording_indicators, recording_rows, write_recordings
 
     require_packages("the page of indicators", "matplotlib")
     if teeth is None:
@@ -174,11 +187,14 @@ def _of_recordings(
         for path, row in sources:
             found.append(recording_indicators(path, two_gears(teeth), replace(facts, row=row), speed_range_hz))
             advance()
+    if as_json:
+        echo_json({"recordings": recording_rows(found)})
     for one in found:
         levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
         speed = f"pinion {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
-        typer.echo(f"{one.name}: {speed}; rms {levels}")
+        if not as_json:
+            typer.echo(f"{one.name}: {speed}; rms {levels}")
         for doubt in one.doubts:
             typer.echo(f"doubtful: {doubt}", err=True)
     folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")
-    typer.echo(str(write_recordings(found, folder)))
+    typer.echo(str(write_recordings(found, folder)), err=as_json)

@@ -10,6 +10,7 @@ import typer
 
 from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
 from diagnostics.cli.set_options import OwnIndicators
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
@@ -53,6 +54,7 @@ def predict(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for JSON, plots and page.")
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Find the state that a recording is most like, or say why the models give no answer.
 
@@ -66,7 +68,7 @@ def predict(
     require_packages("prediction", "sklearn", "skops")
     with terminal_stage("reading the models", 1):
         from diagnostics.prediction.prediction import predict_recording
-        from diagnostics.prediction.prediction_page import MEANING, prediction_rows
+        from diagnostics.prediction.prediction_page import MEANING, prediction_facts, prediction_rows
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))
@@ -81,15 +83,18 @@ def predict(
     )
     with terminal_stage("prediction", 1):
         found = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
-    for label, text in prediction_rows(found):
-        typer.echo(f"{label + ':':21} {text}")
-    typer.echo(MEANING)
+    if as_json:
+        echo_json(prediction_facts(found, loaded.facts))
+    else:
+        for label, text in prediction_rows(found):
+            typer.echo(f"{label + ':':21} {text}")
+        typer.echo(MEANING)
     if out:
         from diagnostics.prediction.prediction_page import write_prediction
 
         with terminal_stage("page", 1):
             page = write_prediction(found, loaded.facts, out)
-        typer.echo(str(page))
+        typer.echo(str(page), err=as_json)
 
 
 def _one(said: str) -> tuple[Path, int | None]:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from diagnostics.cli.set_options import Seed
+from siggen.cli.json_output import AsJson, echo_json
 
 
 def score(
@@ -32,6 +33,7 @@ def score(
         Path | None, typer.Option("--out", "-o", metavar="TABLE", help="Write the rows too, .parquet or .csv.")
     ] = None,
     seed: Seed = 0,
+    as_json: AsJson = False,
 ) -> None:
     """Judge the predictions of your own classifier, with limits over gearboxes.
 
@@ -46,7 +48,10 @@ def score(
     if out:
         check_suffix(out)
     found = scored(open_set(directory), predictions, baselines=baselines, split=split, seed=seed)
-    typer.echo(str(found))
+    if as_json:
+        echo_json({"split": split, "scores": found.to_table().to_pylist()})
+    else:
+        typer.echo(str(found))
     if out:
         write_table(found.to_table(), out)
-        typer.echo(str(out))
+        typer.echo(str(out), err=as_json)

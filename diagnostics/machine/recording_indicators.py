@@ -42,7 +42,7 @@ def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path
     import pyarrow as pa
 
     folder.mkdir(parents=True, exist_ok=True)
-    rows = [_row(one, channel) for one in found for channel in one.recording.channels]
+    rows = recording_rows(found)
     columns = list(dict.fromkeys(name for row in rows for name in row))
     siggen.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
     parts = [html.heading("Indicators of recordings", 1), _overview(found)]
@@ -51,6 +51,11 @@ def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path
     page = folder / PAGE
     page.write_text(html.page("Indicators of recordings", parts), encoding="utf-8")
     return page
+
+
+def recording_rows(found: Sequence[RecordingIndicators]) -> list[dict[str, Any]]:
+    """Return one row per recording and channel: speed and every indicator, None where it is undefined."""
+    return [_row(one, channel) for one in found for channel in one.recording.channels]
 
 
 def _row(found: RecordingIndicators, channel: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
@@ -29,6 +30,7 @@ def modes(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as dynamics.model=casing.")
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation.
 
@@ -44,12 +46,15 @@ def modes(
     png = picture.place("modes")
     with working("computing natural modes"):
         found = specimen_modes(load_config(config, overrides or ()), specimen)
-    from rich.console import Console
+    if as_json:
+        echo_json({"mesh_stiffness_n_per_m": found.mesh_stiffness_n_per_m, "modes": found.table.to_pylist()})
+    else:
+        from rich.console import Console
 
-    Console().print(_printed(found))
+        Console().print(_printed(found))
     if out is not None:
         write_table_file(found.table, out)
-        typer.echo(str(out))
+        typer.echo(str(out), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.modes_figure import save_modes_figure

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
@@ -29,6 +30,7 @@ def path(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Replace a value, such as housing.modal_mass_kg=30.")
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print the transfer paths from bearing forces to channels: modes, damping and level.
 
@@ -47,18 +49,33 @@ def path(
     png = picture.place("path")
     with working("computing transfer paths"):
         found = path_curves(load_config(config, overrides or ()), specimen)
-    from rich.console import Console
+    if as_json:
+        echo_json(_facts(found))
+    else:
+        from rich.console import Console
 
-    Console().print(_printed(found))
+        Console().print(_printed(found))
     if out is not None:
         write_table_file(found.table, out)
-        typer.echo(str(out))
+        typer.echo(str(out), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.path_figure import save_path_figure
 
             save_path_figure(found, png)
         picture.drawn(png)
+
+
+def _facts(found: PathCurves) -> dict[str, object]:
+    """Return what is printed, in numbers."""
+    channels = []
+    for channel in found.channels:
+        largest, at_hz = found.peak(channel)
+        facts = {"channel": channel.name, "modes": channel.path_modes, "rms_m_s2_per_n": channel.path_rms_m_s2_per_n}
+        channels.append({**facts, "largest_m_s2_per_n": largest, "largest_at_hz": at_hz})
+    modes = () if found.modes is None else zip(found.modes.frequency_hz, found.modes.damping_ratio, strict=True)
+    housing = [{"frequency_hz": frequency, "damping_ratio": damping} for frequency, damping in modes]
+    return {"gearbox": found.specimen_id, "channels": channels, "housing_modes": housing}
 
 
 def _printed(found: PathCurves) -> Table:

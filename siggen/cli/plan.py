@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def plan(
             metavar="N",
         ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """List the records, shards and size that a configuration would give, what is implausible and what would be lost.
 
@@ -50,7 +51,6 @@ def plan(
 
     Example: siggen plan configs/quickstart.yaml --set specimens=1000 --trial 20
     """
-    import json
     from dataclasses import asdict
 
     from rich.console import Console
@@ -63,7 +63,7 @@ def plan(
     tried = _tried(loaded, trial)
     summary["trial"] = [{**asdict(state), "interval_95": state.interval} for state in tried]
     if as_json:
-        typer.echo(json.dumps(summary, indent=2))
+        echo_json(summary)
         return
     console = Console()
     console.print(_overview(summary))

@@ -7,10 +7,12 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.json_output import AsJson, echo_json
+
 
 def run_report(
     folder: Annotated[Path, typer.Argument(help="Folder or s3://... of a finished set.", metavar="DIR")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print run.json itself.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Print how long the run that finished a set took, and what every stage had of it.
 
@@ -21,9 +23,10 @@ def run_report(
 
     Example: siggen inspect run sets/quickstart
     """
-    import json
-
     from siggen.sets.run_report import read_run, run_text
 
     facts = read_run(folder)
-    typer.echo(json.dumps(facts, indent=1) if as_json else run_text(facts))
+    if as_json:
+        echo_json(facts)
+    else:
+        typer.echo(run_text(facts))

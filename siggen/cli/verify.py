@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
 
@@ -23,7 +24,7 @@ def verify(
             "the error by state. Costs about ten times the records.",
         ),
     ] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Compare every file with its hash in the manifest, and some records with a new simulation.
 
@@ -33,7 +34,6 @@ def verify(
 
     Example: siggen verify sets/quickstart --sample 10 --physics 8
     """
-    import json
     from dataclasses import asdict
 
     from siggen.cli.run_display import run_shown
@@ -51,7 +51,7 @@ def verify(
     ok = not found.mismatches and (precision is None or precision.within)
     if as_json:
         measured = {} if precision is None else {"physics": asdict(precision)}
-        typer.echo(json.dumps({**asdict(found), **measured, "ok": ok}, indent=2))
+        echo_json({**asdict(found), **measured, "ok": ok})
     else:
         typer.echo(f"{found.path}: {counted(found.files, 'file')}, {found.bytes / 1e6:.1f} MB")
         again = f"{counted(len(found.records), 'record')} simulated again, compared "

@@ -30,7 +30,7 @@ PHYSICS_MAY_IMPORT = {"numpy", "scipy", "numba", "siggen", "__future__", "collec
     "functools", "itertools", "math", "typing",
 }  # fmt: skip
 DOOR = {"siggen", "siggen.errors", "siggen.columns.record", "siggen.dataset.reading"}
-SHARED = {"siggen.cli.option_groups"}
+SHARED = {"siggen.cli.option_groups", "siggen.cli.json_output"}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
 KNOWN = {name for paths in TREE.values() for name in paths}

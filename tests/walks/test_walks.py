@@ -14,7 +14,7 @@ from scipy.io import wavfile
 
 import siggen
 from tests.publication.conftest import FACTS
-from tests.walks.walking import FS_HZ, recorded, walk
+from tests.walks.walking import FS_HZ, printed, recorded, walk
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
 SIZE = "--set specimens=6 --set duration_s=0.6 --set 'splits={train: 10, validation: 4, test: 6}'"
@@ -76,6 +76,7 @@ def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path,
     assert by_command.removesuffix("scores.csv\n") == in_python
     rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
     assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
+    assert printed(rig, "siggen-diagnostics score set mine.parquet --baselines models")["scores"] == rows
     reported = json.loads((models / "metrics.json").read_text())["classifiers"]
     for row in rows:
         if row["name"] != "yours":
@@ -143,7 +144,8 @@ def test_from_a_set_to_a_published_folder_that_opens_again(rig: Path) -> None:
 def test_predict_by_classifiers_on_indicators(rig: Path, models: Path) -> None:
     said = walk(rig, f"siggen-diagnostics predict models {RECORDING} --out prediction")
     assert "state" in said
-    assert json.loads((rig / "prediction" / "prediction.json").read_text())
+    written = json.loads((rig / "prediction" / "prediction.json").read_text())
+    assert written == printed(rig, f"siggen-diagnostics predict models {RECORDING}")
 
 
 @pytest.mark.slow  # trains both networks

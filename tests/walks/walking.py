@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +19,17 @@ FS_HZ = 12_800.0
 
 def walk(folder: Path, command: str, code: int = 0) -> str:
     """Run one command in a fresh process, `python FILE` or an installed program; return all that it said."""
+    done = _run(folder, command, code)
+    return done.stdout + done.stderr
+
+
+def printed(folder: Path, command: str, code: int = 0) -> dict[str, Any]:
+    """Return the JSON object that a command prints, read from its standard output alone."""
+    found: dict[str, Any] = json.loads(_run(folder, f"{command} --json", code).stdout)
+    return found
+
+
+def _run(folder: Path, command: str, code: int) -> subprocess.CompletedProcess[str]:
     program, *rest = shlex.split(command)
     python = [sys.executable, "-P"] if program == "python" else [str(PROGRAMS / program)]
     environment = {**CLEAN, "OMP_NUM_THREADS": "1"}
@@ -26,7 +39,7 @@ def walk(folder: Path, command: str, code: int = 0) -> str:
     said = done.stdout + done.stderr
     assert done.returncode == code, f"{command}: exit code {done.returncode}\n{said}"
     assert "Traceback" not in said
-    return said
+    return done
 
 
 def recorded(seed: int, depth: float) -> np.ndarray:
