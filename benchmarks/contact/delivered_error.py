@@ -16,7 +16,7 @@ from benchmarks.contact.record_case import SIGNAL_S, STEPS, RecordCase, record_c
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.excitation import Turning
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import contact_moment, contact_spring, place_contact
+from siggen.dynamics.mesh.contact_spring import contact_state, place_contact
 from siggen.dynamics.mesh.pair_columns import CELL, FLANK, PENETRATION, POSITION, ROW, TILT, WEIGHT
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.kind_row import KindRow, kind_row, pits_of_kind
@@ -143,8 +143,5 @@ def _read(law: layout.PairLaw, pairs: FloatArray, i: int) -> tuple[float, float]
     pairs[i, CELL] = min(point, cells - 1)
     pairs[i, WEIGHT] = point - pairs[i, CELL]
     place_contact(law.numbers, law.places, pairs, i)
-    force, _ = contact_spring(law.scalars, law.numbers, law.places, pairs, i, pairs[i, PENETRATION])
-    if law.places[layout.CONTACT_VALUES] == 4:
-        return force, 0.0
-    moment, _, _ = contact_moment(law.scalars, law.numbers, law.places, pairs, i, pairs[i, PENETRATION])
-    return force, moment
+    found = contact_state(law.scalars, law.numbers, law.places, pairs, i, pairs[i, PENETRATION])
+    return found[0], found[2]

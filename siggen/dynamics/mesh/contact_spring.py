@@ -18,7 +18,7 @@ from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TO
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> None:
-    """Write what `contact_spring` needs of slot i at its angle: first touch, beginning and share of its columns."""
+    """Write what `contact_state` needs of slot i at its angle: first touch, beginning and share of its columns."""
     row, cell, weight, points = int(pairs[i, ROW]), int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
     pairs[i, TOUCH] = between(numbers, index[layout.TOUCH_AT], row * points + cell, weight)
     place = row * (points - 1) + cell
@@ -36,125 +36,25 @@ def _node(approach: float, unit_m: float, nodes: int) -> int:
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_spring(
+def contact_state(
     scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float]:
-    """Return force [N] and stiffness [N/m] of slot i.
+) -> tuple[float, float, float, float, float, float, float]:
+    """Return all that the table says of slot i.
+
+    Force [N] and stiffness [N/m]; moment across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m]; carrying share of
+    the face and share of the load on damage.
 
     Parameters
     ----------
     scalars, numbers, index : of `PairLaw`
     pairs : (slots, COLUMNS)
-        The table of pairs, placed at an angle (`place_contact`).
+        The table of pairs, placed at an angle (`place_contact`), with its tilt.
     i : int
     penetration_m : float
         Approach of this pair beyond its missing material [m].
     """
     approach = penetration_m - pairs[i, TOUCH]
     if not approach > 0.0:  # a motion that diverges is no number in the end: it may not become a place in the table
-        return 0.0, 0.0
-    nodes = index[layout.CONTACT_NODES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    node = _node(approach, unit_m, nodes)
-    span = unit_m * (2.0 * node + 1.0)
-    over = approach - unit_m * (node * node)
-    t = over / span
-    values = index[layout.CONTACT_VALUES]
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share = pairs[i, SHARE]
-    rest = 1.0 - share
-    f_0, f_1 = (
-        numbers[here] * rest + numbers[there] * share,
-        numbers[here + values] * rest + numbers[there + values] * share,
-    )
-    s_0, s_1 = (
-        numbers[here + 1] * rest + numbers[there + 1] * share,
-        numbers[here + values + 1] * rest + numbers[there + values + 1] * share,
-    )
-    if t > 1.0:  # beyond the last node the slope stays
-        force, slope = f_1 + s_1 * (over - span), s_1
-    else:
-        rise = (f_1 - f_0) / span
-        bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-        force, slope = f_0 + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
-    tilt = pairs[i, TILT]
-    if values == 4 or tilt == 0.0:
-        return force, slope
-    _, m_slope, m_bend = _cubic(numbers, here + 4, there + 4, values, share, over, span)
-    _, r_slope, r_bend = _cubic(numbers, here + 6, there + 6, values, share, over, span)
-    force += tilt * (m_slope + 0.5 * tilt * r_slope)
-    slope += tilt * (m_bend + 0.5 * tilt * r_bend)
-    return max(force, 0.0), max(slope, 0.0)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def _cubic(
-    numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, span: float
-) -> tuple[float, float, float]:
-    """Return value, first and second derivative of the cubic whose value and slope stand at `here` of both columns."""
-    rest, t = 1.0 - share, over / span
-    f_0 = numbers[here] * rest + numbers[there] * share
-    s_0 = numbers[here + 1] * rest + numbers[there + 1] * share
-    f_1 = numbers[here + values] * rest + numbers[there + values] * share
-    s_1 = numbers[here + values + 1] * rest + numbers[there + values + 1] * share
-    if t > 1.0:
-        return f_1 + s_1 * (over - span), s_1, 0.0
-    rise = (f_1 - f_0) / span
-    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-    value = f_0 + over * (s_0 + t * (bend + t * twist))
-    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) / span
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def contact_moment(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float]:
-    """Return the moment across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m] of slot i, arguments as above."""
-    nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(0.0, penetration_m - pairs[i, TOUCH])
-    node = _node(approach, unit_m, nodes)
-    span, over = unit_m * (2.0 * node + 1.0), approach - unit_m * (node * node)
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share, tilt = pairs[i, SHARE], pairs[i, TILT]
-    moment, slope, _ = _cubic(numbers, here + 4, there + 4, values, share, over, span)
-    turning, turning_slope, _ = _cubic(numbers, here + 6, there + 6, values, share, over, span)
-    return moment + turning * tilt, slope + turning_slope * tilt, turning
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_shares(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float]:
-    """Return the carrying share of the face and the share of the load on damage of slot i, arguments as above."""
-    nodes = index[layout.CONTACT_NODES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(0.0, penetration_m - pairs[i, TOUCH])
-    node = _node(approach, unit_m, nodes)
-    t = min((approach - unit_m * (node * node)) / (unit_m * (2.0 * node + 1.0)), 1.0)
-    values = index[layout.CONTACT_VALUES]
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share = pairs[i, SHARE]
-    carrying_0 = numbers[here + 2] * (1.0 - t) + numbers[here + values + 2] * t
-    carrying_1 = numbers[there + 2] * (1.0 - t) + numbers[there + values + 2] * t
-    rough_0 = numbers[here + 3] * (1.0 - t) + numbers[here + values + 3] * t
-    rough_1 = numbers[there + 3] * (1.0 - t) + numbers[there + values + 3] * t
-    return carrying_0 + share * (carrying_1 - carrying_0), rough_0 + share * (rough_1 - rough_0)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_state(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float, float, float, float, float]:
-    """Return all that the table says of slot i, which is found once: spring, moment and shares of the functions above.
-
-    Force [N] and stiffness [N/m]; moment [N m], dM/dd [N] and dM/dθ [N m]; carrying share and share on damage.
-    """
-    approach = penetration_m - pairs[i, TOUCH]
-    if not approach > 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0
     nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
     unit_m = scalars[layout.CONTACT_UNIT]
@@ -194,7 +94,7 @@ def _across(numbers: FloatArray, here: int, there: int, share: float) -> float:
 def _hermite(
     numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, per_span: float, beyond: bool
 ) -> tuple[float, float, float]:
-    """Return what `_cubic` returns, without divisions."""
+    """Return value, first and second derivative of the cubic whose value and slope stand at `here` of both columns."""
     f_0, s_0 = _across(numbers, here, there, share), _across(numbers, here + 1, there + 1, share)
     f_1 = _across(numbers, here + values, there + values, share)
     s_1 = _across(numbers, here + values + 1, there + values + 1, share)

@@ -17,7 +17,7 @@ from siggen.dynamics.mesh.contact_spring import place_contact
 from siggen.dynamics.mesh.pair_columns import CELL, FLANK, ROW, TOUCH, WEIGHT, WHOLE
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.pair_springs import spring_of_flank
+from siggen.dynamics.mesh.pair_springs import spring_of
 
 MOST_DEPTHS = 16
 """Approaches at which forces are asked for, half a static approach apart, as deep as a flank sinks."""
@@ -79,5 +79,5 @@ def _forces(
             pairs[0, TOUCH] = 0.0
             if index[layout.CONTACT_NODES] > 0:
                 place_contact(numbers, index, pairs, 0)
-            force[row, k] = spring_of_flank(scalars, numbers, index, pairs, 0, depth_m)[0]
+            force[row, k] = spring_of(scalars, numbers, index, pairs, 0, depth_m)[0]
     return force

@@ -39,7 +39,8 @@ from siggen.dynamics.mesh.lane_table import (
     of_pairs,
     place_lanes,
 )
-from siggen.dynamics.mesh.node_forces import (
+from siggen.dynamics.mesh.node_forces import LEAST_CARRYING, STRAIGHT
+from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_ARM,
     NODE_FRICTION,
@@ -53,9 +54,7 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_TILT,
     NODE_TILT_RATE,
     NODE_TURN,
-    STRAIGHT,
 )
-from siggen.dynamics.mesh.pair_forces import LEAST_CARRYING
 from siggen.dynamics.mesh.pair_places import engage_pair
 from siggen.lanes import (
     LANES,

@@ -2,7 +2,7 @@
 
 Two pairs on one gear body are solved by Newton's method from the node before, so nodes follow one another. All that the
 table says of one pair is read at once: eight numbers stand side by side. Operations are those of `contact_spring` and
-`pair_tangents`, in their order.
+`pair_springs`, in their order.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from siggen.dynamics.mesh.lane_table import (
     TURNING,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_tangents import MOST_STEPS, SMOOTH_CHANGE
+from siggen.dynamics.mesh.pair_springs import MOST_STEPS, SMOOTH_CHANGE
 from siggen.lanes import LANES, Lanes, extract, load, shuffle, splat
 
 _slopes = shuffle(1, 0, 3, 2, 5, 4, 7, 6)

@@ -1,8 +1,8 @@
-"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled.
+"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled: springs, dampers, film, friction.
 
-The law is that of `pair_forces`: the same places, springs, moments, dampers, film and friction. Only the asperity share
-that a damper answers to is found once per pair, at the middle of the step and the mean force over it: its error is of
-second order.
+Equations: `pair_law`. A state by itself is a step of one node (`pair_forces`). The asperity share that a damper answers
+to is found once per pair, at the middle of the step and the mean force over it: its error is of second order, none at
+one node.
 """
 
 from __future__ import annotations
@@ -11,17 +11,39 @@ from math import sqrt, tanh
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
+from siggen.dynamics.friction.asperity_table import cell_value, contact_cell
+from siggen.dynamics.friction.friction import friction_mixed
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_columns import (
+    ALONE,
+    ASPERITY_SHARE,
     CARRYING,
+    COEFFICIENT,
     CROSS,
     DAMPING,
     FLANK,
+    FRICTION,
     MOMENT,
+    MOST_APART,
+    NODE_APPROACH,
+    NODE_ARM,
+    NODE_FRICTION,
+    NODE_MOMENT,
+    NODE_NORMAL,
+    NODE_RATE,
+    NODE_ROWS,
+    NODE_SLIDING_0,
+    NODE_SLIDING_1,
+    NODE_SLOPE,
+    NODE_SLOPE_RATE,
+    NODE_TILT,
+    NODE_TILT_RATE,
+    NODE_TURN,
     NORMAL,
     PENETRATION,
     POSITION,
     ROUGH,
+    SLIDING,
     STIFFNESS,
     TILT,
     TOUCH,
@@ -29,19 +51,50 @@ from siggen.dynamics.mesh.pair_columns import (
     WHOLE,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_forces import LEAST_CARRYING, film_force, lubricated
-from siggen.dynamics.mesh.pair_tangents import write_springs
+from siggen.dynamics.mesh.pair_springs import coupling_of, write_springs
 
-(
-    NODE_APPROACH, NODE_RATE, NODE_SLIDING_0, NODE_SLIDING_1, NODE_TILT, NODE_TILT_RATE, NODE_NORMAL, NODE_SLOPE,
-    NODE_SLOPE_RATE, NODE_FRICTION, NODE_ARM, NODE_MOMENT, NODE_TURN,
-) = range(13)  # fmt: skip
-"""Rows of the values at the nodes: approach [m], its rate, both parts of the sliding speed [m/s, 1/s], tilt [rad] and
-its rate, which the caller writes; ΣN [N], its tangents to approach [N/m] and rate [N s/m], ΣF [N], Σ s F, Σμ and
-Σ ζ F [N m]."""
-NODE_ROWS = 13
 STRAIGHT = 10.0
 """tanh is 1 within 4e-9 beyond."""
+LEAST_CARRYING = 1e-3
+"""Of the face, less than a slice: what a force is divided by where a motion that diverges leaves the table."""
+
+
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+def film_force(scalars: FloatArray, position_m: float, gap_m: float, rate_m_s: float) -> float:
+    """Return the force of the film between flanks of a pair in the path of contact; none where they part."""
+    place = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M]
+    if rate_m_s <= 0.0 or place < 0.0 or place > scalars[layout.CONTACT_RATIO]:
+        return 0.0
+    curvature_m = position_m * (scalars[layout.LINE_M] - position_m) / scalars[layout.LINE_M]
+    force_n: float = (
+        scalars[layout.FILM] * (0.5 * curvature_m / max(gap_m, scalars[layout.FILM_FLOOR_M])) ** 1.5 * rate_m_s
+    )
+    return force_n
+
+
+@njit(cache=True, _nrt=False, inline="always", error_model="numpy")
+def lubricated(
+    scalars: FloatArray,
+    numbers: FloatArray,
+    index: IntArray,
+    position_m: float,
+    load_n: float,
+    rough: float,
+) -> tuple[float, float]:
+    """Return asperity share and friction coefficient at a force per carrying share; rough lands count by theirs."""
+    loads, positions = index[layout.LUBRICATED_LOADS], index[layout.LUBRICATED_POSITIONS]
+    along, up, a, b = contact_cell(
+        positions, loads, scalars[layout.LUBRICATED_LINE], scalars[layout.LUBRICATED_START],
+        scalars[layout.LUBRICATED_PER_M], scalars[layout.LUBRICATED_FLOOR], scalars[layout.LUBRICATED_PER_LOG],
+        position_m, load_n,
+    )  # fmt: skip
+    corner = along * loads + up
+    share = min(cell_value(numbers, index[layout.RATIO_AT] + corner, loads, a, b), 1.0)
+    if rough > 0.0 and index[layout.ROUGHNESSES] > 1:
+        raised = cell_value(numbers, index[layout.RATIO_AT] + positions * loads + corner, loads, a, b)
+        share = share * (1.0 - rough) + min(raised, 1.0) * rough
+    fluid = cell_value(numbers, index[layout.FLUID_AT] + corner, loads, a, b)
+    return share, friction_mixed(share, scalars[layout.BOUNDARY], fluid)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -55,6 +108,7 @@ def write_node_forces(
     pitches_1: float,
     pairs: FloatArray,
     node: FloatArray,
+    settled: float,
 ) -> int:
     """Write the forces at the nodes of a step, and return which slots touch, negative where that changes within it.
 
@@ -68,6 +122,8 @@ def write_node_forces(
     pairs : (k slots, COLUMNS)
         Tables of pairs of all nodes, one behind the other (`pair_table`); what they hold is the first guess.
     node : (NODE_ROWS, k or more)
+    settled : float
+        Share of their force to which pairs on one gear body are settled (`write_springs`).
     """
     count = nodes.size
     slots, tilts = pairs.shape[0] // count, index[layout.CONTACT_VALUES] > 4
@@ -77,7 +133,9 @@ def write_node_forces(
         for i in range(slots if tilts else 0):
             pairs[base + i, TILT] = node[NODE_TILT, q]
         pitches = pitches_0 + (pitches_1 - pitches_0) * nodes[q]
-        found = write_springs(scalars, numbers, index, node[NODE_APPROACH, q], pitches, pairs, base, before, slots)
+        found = write_springs(
+            scalars, numbers, index, node[NODE_APPROACH, q], pitches, pairs, base, before, slots, settled
+        )
         changed = changed or (q > 0 and found != touching)
         touching = found
         for row in range(NODE_NORMAL, NODE_ROWS):
@@ -114,19 +172,28 @@ def _load(
 ) -> None:
     """Add springs, dampers and films of all pairs at a node; NORMAL becomes the whole force."""
     rate, total = node[NODE_RATE, q], 0.0
+    if scalars[layout.FILM] > 0.0 and index[layout.APART] > 0:
+        _widen(scalars, index, pairs, q * slots, slots)
     for i in range(q * slots, (q + 1) * slots):
         total += pairs[i, STIFFNESS]
+        pairs[i, SLIDING] = 0.0
+        if pairs[i, WHOLE] > 0.0:
+            pairs[i, SLIDING] = node[NODE_SLIDING_0, q] + pairs[i, POSITION] * node[NODE_SLIDING_1, q]
+        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = 0.0, 0.0, 0.0
     shared = 1.0 / sqrt(total) if total > 0.0 else 0.0
     for i in range(q * slots, (q + 1) * slots):
         flank = pairs[i, FLANK]
+        root = pairs[i, DAMPING] if index[layout.SHARE_DAMPS] > 0 else scalars[layout.DAMPING_ROOT]
+        pairs[i, DAMPING] = 0.0
         if flank == 0.0:
             if scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
                 film = film_force(scalars, pairs[i, POSITION], pairs[i, TOUCH] - pairs[i, PENETRATION], rate)
+                pairs[i, NORMAL] = film
                 node[NODE_NORMAL, q] += film
                 node[NODE_SLOPE_RATE, q] += film / rate if film > 0.0 else 0.0
             continue
-        root = pairs[i, DAMPING] if index[layout.SHARE_DAMPS] > 0 else scalars[layout.DAMPING_ROOT]
         damping = root * shared * pairs[i, STIFFNESS]
+        pairs[i, DAMPING] = damping
         force = pairs[i, NORMAL] + damping * rate
         if tilts and flank > 0.0:
             tilt_rate, cross = root * shared * node[NODE_TILT_RATE, q], pairs[i, CROSS]
@@ -140,6 +207,20 @@ def _load(
             node[NODE_NORMAL, q] += force
             node[NODE_SLOPE, q] += pairs[i, YIELD]
             node[NODE_SLOPE_RATE, q] += damping
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def _widen(scalars: FloatArray, index: IntArray, pairs: FloatArray, base: int, slots: int) -> None:
+    """Write how far pairs that do not touch are apart under the forces of the others, which deflect their gear body."""
+    apart = min(index[layout.APART], MOST_APART)
+    for i in range(base, base + slots):
+        if pairs[i, FLANK] != 0.0 or pairs[i, WHOLE] == 0.0:
+            continue
+        depth = pairs[i, ALONE]
+        for j in range(base, base + slots):
+            if j != i and pairs[j, FLANK] != 0.0:
+                depth -= coupling_of(scalars, pairs, apart, i, j) * pairs[j, NORMAL]
+        pairs[i, PENETRATION] = depth
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -176,13 +257,14 @@ def _rub(
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:
             continue
         load = force / max(pairs[i, CARRYING], LEAST_CARRYING)
-        _, coefficient = lubricated(scalars, numbers, index, here, load, pairs[i, ROUGH])
-        speed = (node[NODE_SLIDING_0, q] + here * node[NODE_SLIDING_1, q]) / scalars[layout.SLIP_SPEED]
+        pairs[i, ASPERITY_SHARE], coefficient = lubricated(scalars, numbers, index, here, load, pairs[i, ROUGH])
+        speed = pairs[i, SLIDING] / scalars[layout.SLIP_SPEED]
         friction = coefficient * force
         if abs(speed) < STRAIGHT:
             friction *= tanh(speed)
         elif speed < 0.0:
             friction = -friction
+        pairs[i, COEFFICIENT], pairs[i, FRICTION] = coefficient, friction
         node[NODE_FRICTION, q] += friction
         node[NODE_ARM, q] += here * friction
         if tilts:

@@ -1,8 +1,7 @@
 """Where the tooth pairs in reach are at an angle, compiled: the table of pairs and all of it that no state changes.
 
-Derived: pair n of the global count is pitches - n base pitches behind its entry. Integrators ask for several states at
-one angle, so what belongs to an angle stays in the table until another one is asked for, and what belongs to a pair
-until another one takes its slot.
+Derived: pair n of the global count is pitches - n base pitches behind its entry. What belongs to a pair stays in the
+table until another one takes its slot.
 """
 
 from __future__ import annotations
@@ -17,15 +16,13 @@ from siggen.dynamics.mesh.pair_columns import (
     CELL,
     COLUMNS,
     COUPLED,
-    FLANK,
     GAP,
     MISSED_1_AT,
     MISSED_2_AT,
     MOST_APART,
+    NODE_ROWS,
     OFFSET,
     PAIR,
-    PENETRATION,
-    PLACED,
     POSITION,
     ROUGH,
     ROW,
@@ -39,9 +36,8 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 
 
 def pair_table(law: PairLaw) -> FloatArray:
-    """Return a table (slots, COLUMNS and space for a solution) for `pair_forces`, in which no angle is kept yet."""
-    pairs = np.zeros((law.slots, COLUMNS + solution_columns(law.slots)))
-    pairs[0, PLACED] = np.nan
+    """Return a table of no pair yet: (slots, COLUMNS, space for a solution and, in row 0, for a node)."""
+    pairs = np.zeros((law.slots, COLUMNS + solution_columns(law.slots) + NODE_ROWS))
     pairs[:, PAIR] = -np.inf
     return pairs
 
@@ -52,22 +48,6 @@ def _cell(place: float, points: int) -> tuple[int, float]:
     place = min(max(place, 0.0), points - 1.0)
     cell = min(int(place), points - 2)
     return cell, place - cell
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def place_pairs(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
-    """Write what depends on the angle alone."""
-    slots = pairs.shape[0]
-    for i in range(slots):
-        pairs[i, WHOLE] = 0.0
-    pairs[0, PLACED] = pitches
-    pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
-    while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
-        i = pair % slots
-        if pairs[i, PAIR] != pair:
-            engage_pair(numbers, index, pairs, i, pair)
-        place_pair(scalars, numbers, index, pairs, i, pitches - pair)
-        pair -= 1
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -102,16 +82,3 @@ def engage_pair(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int,
     pairs[i, MISSED_1_AT] = index[layout.MISSING_1_AT] + index[index[layout.KIND_1_AT] + tooth_1] * count
     pairs[i, MISSED_2_AT] = index[layout.MISSING_2_AT] + index[index[layout.KIND_2_AT] + tooth_2] * count
     pairs[i, OFFSET] = numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def find_flanks(scalars: FloatArray, approach_m: float, pairs: FloatArray) -> None:
-    """Write the penetration of every pair by itself, and -1 for those that are beyond the backlash."""
-    for i in range(pairs.shape[0]):
-        if pairs[i, WHOLE] == 0.0:
-            continue
-        pairs[i, FLANK] = 0.0
-        pairs[i, PENETRATION] = approach_m - pairs[i, GAP]
-        if pairs[i, PENETRATION] <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[layout.BACKLASH_M]:
-            pairs[i, FLANK] = -1.0
-            pairs[i, PENETRATION] = approach_m - pairs[i, OFFSET] + scalars[layout.BACKLASH_M]

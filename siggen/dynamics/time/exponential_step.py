@@ -21,7 +21,8 @@ from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
 from siggen.dynamics.mesh.lane_table import lane_table
-from siggen.dynamics.mesh.node_forces import (
+from siggen.dynamics.mesh.node_forces import write_node_forces
+from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_FRICTION,
     NODE_NORMAL,
@@ -33,10 +34,11 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_SLOPE_RATE,
     NODE_TILT,
     NODE_TILT_RATE,
-    write_node_forces,
+    PAIR,
+    ROW,
 )
-from siggen.dynamics.mesh.pair_columns import PAIR, ROW
 from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_springs import SMOOTH_CHANGE as SMOOTH_SHARE
 from siggen.dynamics.time.exponential_products import add_response, free_motion, write_middle
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
 from siggen.lanes import LANES, aligned, extract, load, scalar_at, select, shuffle, splat, store
@@ -174,7 +176,16 @@ def _attempt(
         touching = write_lane_forces(law.scalars, law.numbers, law.places, pitches_0, pitches_1, pairs, table, node)
         if touching == NOT_HERE:
             touching = write_node_forces(
-                law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
+                law.scalars,
+                law.numbers,
+                law.places,
+                scheme.nodes,
+                scheme.weights,
+                pitches_0,
+                pitches_1,
+                pairs,
+                node,
+                SMOOTH_SHARE,
             )
         change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
