@@ -1,26 +1,19 @@
-"""Columns of the table of tooth pairs in reach, rows of a node, and how tables are read, compiled."""
+"""Columns of the table of tooth pairs in reach, and rows of the values at the nodes of a step."""
 
 from __future__ import annotations
 
-import numpy as np
-
-from siggen.arrays import FloatArray
-from siggen.compiled import njit
-
 (
     NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,
-    WHOLE, GAP, OFFSET, CELL, WEIGHT, ROW, ROUGH, TOUCH, CURVES, SHARE, TILT, MOMENT, CROSS, TURNING, PAIR, STIFF_AT,
-    MISSED_1_AT, MISSED_2_AT, YIELD, ALONE,
-    COUPLED,
-) = range(32)  # fmt: skip
+    WHOLE, ROUGH, TOUCH, CURVES, SHARE, TILT, MOMENT, CROSS, TURNING, YIELD, ALONE, PAIR, ROW,
+    STIFFNESS_AT, TOUCH_AT, COLUMNS_AT, MISSED_1_AT, MISSED_2_AT, OFFSET, COUPLED,
+) = range(31)  # fmt: skip
 """Columns of the table of pairs: forces [N]; penetration p [m]; stiffness f', 0 where a pair does not touch [N/m];
 sliding speed [m/s]; position s [m]; +1, -1, 0 for the drive flank, the back flank and no contact; of pairs that touch
 share of the face that carries, asperity share, friction coefficient, damping [N s/m]. Then stiffness of the whole face,
-0 for an empty slot, missing material, place of the teeth, cell of the tables and weight of its upper end, row, share of
-the load on damage; first touch [m], beginning of the curves and share of the upper column (`contact_spring`); tilt
-[rad], moment across the face [N m], its derivatives to approach [N] and tilt [N m]. What is kept per engagement: the
-pair's global number, and where its stiffness and its missing material begin. Stiffness to an approach of all pairs
-[N/m] and penetration of a pair by itself [m] (`pair_springs`); from COUPLED on the coupling to older pairs."""
+0 for an empty slot; share of the load on damage; first touch [m], beginning of the curves and share of the upper column
+(`contact_spring`); tilt [rad], moment across the face [N m], its derivatives to approach [N] and tilt [N m]; stiffness
+to an approach of all pairs [N/m] and penetration of a pair by itself [m]; the pair's global number, and what is kept
+while it is engaged (`pair_places.Engaged`); from COUPLED on the coupling to older pairs."""
 MOST_APART = 3
 """Pairs further apart than this do not couple: no gear has more in contact."""
 COLUMNS = COUPLED + MOST_APART
@@ -38,11 +31,3 @@ NODE_ROWS = 13
 def solution_columns(slots: int) -> int:
     """Return the columns behind the table in which coupled pairs are solved (`pair_springs`)."""
     return 3 + 2 * slots
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
-    """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
-    here = np.uint64(first + cell)  # never negative, which the compiler cannot know of a signed one
-    value: float = numbers[here] * (1.0 - weight) + numbers[here + np.uint64(1)] * weight
-    return value

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh.node_forces import write_node_forces
 from siggen.dynamics.mesh.pair_columns import (
@@ -20,19 +20,19 @@ from siggen.dynamics.mesh.pair_columns import (
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.pair_springs import EXACT_CHANGE
+from siggen.dynamics.mesh.two_springs import EXACT_CHANGE
 
 _PLACE, _WEIGHT = np.zeros(1), np.ones(1)
 
 
 @njit(cache=True, _nrt=False)
-def write_forces(scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: float, pairs: FloatArray) -> None:
+def write_forces(law: PairLaw, pitches: float, pairs: FloatArray) -> None:
     """Write the forces of all pairs into the table, and their sums into the node (NODE_ROWS, 1) that holds the state.
 
     It stands behind the first row of the table, where nothing need be allocated.
     """
     node = pairs[:1, pairs.shape[1] - NODE_ROWS :].T
-    write_node_forces(scalars, numbers, index, _PLACE, _WEIGHT, pitches, pitches, pairs, node, EXACT_CHANGE)
+    write_node_forces(law, _PLACE, _WEIGHT, pitches, pitches, pairs, node, EXACT_CHANGE)
 
 
 @njit(cache=True, _nrt=False)
@@ -52,7 +52,7 @@ def pair_forces(
     node = pairs[:1, pairs.shape[1] - NODE_ROWS :].T
     node[NODE_APPROACH, 0], node[NODE_RATE, 0] = approach_m, rate_m_s
     node[NODE_SLIDING_0, 0], node[NODE_SLIDING_1, 0] = sliding_0_m_s, sliding_1_per_s
-    write_forces(law.scalars, law.numbers, law.places, pitches, pairs)
+    write_forces(law, pitches, pairs)
 
 
 @njit(cache=True, _nrt=False)

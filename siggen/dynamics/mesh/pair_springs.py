@@ -1,28 +1,28 @@
-"""Elastic forces of all tooth pairs with their tangents, compiled: the spring of each, and how pairs share the load.
+"""Elastic forces of all tooth pairs at an angle, compiled: any number of slots, one pair after the other.
 
-With coupling the penetrations solve p_n = d_n - Σ c_nm f_m(p_m) (derived): f is monotone, so Newton's method ends after
-a few steps with the solution; it exists and is unique while the coupling of a pair stays below its own compliance,
-since then the energy is strictly convex. Two drive flanks that carry are solved in closed form, from the forces and
-tangents of a state near by; the tangent of ΣN to the approach follows from the same system: (I + diag(k) c) y = k. More
-pairs, or back flanks, are solved as one system, without what others take from a tangent.
+How two pairs on one gear body share the load says `two_springs`. More of them, or back flanks, are solved as one system
+(derived: Newton's method on all forces), without what others take from a tangent.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import contact_state
+from siggen.dynamics.mesh.contact_spring import PairPlace, Spring, flat_spring, pair_spring
 from siggen.dynamics.mesh.pair_columns import (
     ALONE,
     CARRYING,
     COLUMNS,
+    COLUMNS_AT,
     COUPLED,
     CROSS,
+    CURVES,
     FLANK,
-    GAP,
+    MISSED_1_AT,
+    MISSED_2_AT,
     MOMENT,
     MOST_APART,
     NORMAL,
@@ -31,18 +31,21 @@ from siggen.dynamics.mesh.pair_columns import (
     PENETRATION,
     POSITION,
     ROUGH,
+    ROW,
+    SHARE,
     STIFFNESS,
+    STIFFNESS_AT,
+    TILT,
+    TOUCH,
+    TOUCH_AT,
     TURNING,
     WHOLE,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_places import engage_pair, place_pair
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_places import Engaged, between, engaged, placed, placed_contact
+from siggen.dynamics.mesh.two_springs import EXACT_CHANGE, NO_SPRING, Before, two_springs
 
-SMOOTH_CHANGE = 0.02
-"""Of the larger force: Newton's error is the curvature times the square of this over ten, below 1e-6 of the force."""
-EXACT_CHANGE = 1e-5
-"""The same where a force stands for itself: less than 1e-9 of it is left."""
-MOST_STEPS = 8
 FORCE, SLOPE, RIGHT, MATRIX = range(4)
 """Columns of the solution of many pairs: force, slope, right side; the matrix, and behind it the coupling."""
 MOST_SHARES = 50
@@ -51,17 +54,9 @@ MOST_SHARES = 50
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def write_springs(
-    scalars: FloatArray,
-    numbers: FloatArray,
-    index: IntArray,
-    approach_m: float,
-    pitches: float,
-    pairs: FloatArray,
-    base: int,
-    before: int,
-    slots: int,
+    law: PairLaw, approach_m: float, pitches: float, pairs: FloatArray, base: int, before: int, slots: int,
     settled: float,
-) -> int:
+) -> int:  # fmt: skip
     """Write elastic force, its own stiffness, its stiffness to the approach, carrying share and flank of every slot.
 
     The slots are the rows of `pairs` from `base` on; those from `before` on hold a state near by, for a first guess.
@@ -72,140 +67,135 @@ def write_springs(
     for i in range(base, base + slots):
         pairs[i, WHOLE], pairs[i, POSITION], pairs[i, PENETRATION] = 0.0, 0.0, 0.0
     first, second, near, back = -1, -1, 0, False
-    pair = int(np.floor(pitches + scalars[layout.REACH_BEFORE]))
-    while pitches - pair < scalars[layout.CONTACT_RATIO] + scalars[layout.REACH_AFTER]:
+    pair = int(np.floor(pitches + law.scalars[layout.REACH_BEFORE]))
+    while pitches - pair < law.scalars[layout.CONTACT_RATIO] + law.scalars[layout.REACH_AFTER]:
         i = base + pair % slots
-        if pairs[i, PAIR] != pair:
-            engage_pair(numbers, index, pairs, i, pair)
-        place_pair(scalars, numbers, index, pairs, i, pitches - pair)
+        gap = _place_pair(law, pairs, i, pair, pitches - pair)
         pair -= 1
-        depth, flank = approach_m - pairs[i, GAP], 0.0
-        if depth <= 0.0 and approach_m - pairs[i, OFFSET] < -scalars[layout.BACKLASH_M]:
-            depth, flank, back = approach_m - pairs[i, OFFSET] + scalars[layout.BACKLASH_M], -1.0, True
+        depth, flank = approach_m - gap, 0.0
+        if depth <= 0.0 and approach_m - pairs[i, OFFSET] < -law.scalars[layout.BACKLASH_M]:
+            depth, flank, back = approach_m - pairs[i, OFFSET] + law.scalars[layout.BACKLASH_M], -1.0, True
         pairs[i, PENETRATION], pairs[i, ALONE], pairs[i, FLANK] = depth, depth, flank
         if depth > 0.0 or flank < 0.0:
             near += 1
             first, second = (i, second) if first < 0 else (first, i)
-    if index[layout.APART] == 0 or near < 2:
-        return _write_alone(scalars, numbers, index, pairs, base, slots)
-    if near > 2 or back:
-        return _write_many(scalars, numbers, index, pairs, base, before, slots)
+    if law.places[layout.APART] == 0 or near < 2:
+        return _write_alone(law, pairs, base, slots)
+    if near > 2 or back or not _write_two(law, pairs, first, second, before - base, settled):
+        return _write_many(law, pairs, base, before, slots)
     for i in range(base, base + slots):
         if i not in (first, second):
-            _write(pairs, i, 0.0, 0.0)
-            pairs[i, YIELD], pairs[i, MOMENT] = 0.0, 0.0
+            _write(pairs, i, NO_SPRING)
     digit_1, digit_2 = 3 ** (first - base), 3 ** (second - base)
-    if not _write_two(scalars, numbers, index, pairs, first, second, before - base, settled):
-        return _write_many(scalars, numbers, index, pairs, base, before, slots)
     return (digit_1 if pairs[first, FLANK] > 0.0 else 0) + (digit_2 if pairs[second, FLANK] > 0.0 else 0)
 
 
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _place_pair(law: PairLaw, pairs: FloatArray, i: int, pair: int, place: float) -> float:
+    """Write what depends on the angle alone, `place` pitches behind the entry of a pair; return its missing material.
+
+    That counts with the place of its teeth [m].
+    """
+    if pairs[i, PAIR] != pair:
+        engage(law, pairs, i, pair)
+    kept = Engaged(
+        pairs[i, ROW], pairs[i, STIFFNESS_AT], pairs[i, TOUCH_AT], pairs[i, COLUMNS_AT], pairs[i, MISSED_1_AT],
+        pairs[i, MISSED_2_AT], pairs[i, OFFSET],
+    )  # fmt: skip
+    position, cell, weight, gap = placed(law, kept, place)
+    missing: float = gap
+    pairs[i, POSITION], pairs[i, WHOLE] = position, between(law, int(kept.stiffness) + cell, weight)
+    if law.places[layout.CONTACT_NODES] > 0:
+        pairs[i, TOUCH], pairs[i, CURVES], pairs[i, SHARE] = placed_contact(law, kept.touch, kept.columns, cell, weight)
+    for a in range(min(law.places[layout.APART], MOST_APART)):
+        first = law.places[layout.COUPLING_AT] + a * law.places[layout.POINTS]
+        pairs[i, COUPLED + a] = between(law, first + cell, weight)
+    return missing
+
+
 @njit(cache=True, _nrt=False, error_model="numpy")
-def _write_many(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, before: int, slots: int
-) -> int:
+def engage(law: PairLaw, pairs: FloatArray, i: int, pair: int) -> None:
+    """Write what stays during the engagement of a pair."""
+    pairs[i, PAIR] = pair
+    (
+        pairs[i, ROW], pairs[i, STIFFNESS_AT], pairs[i, TOUCH_AT], pairs[i, COLUMNS_AT], pairs[i, MISSED_1_AT],
+        pairs[i, MISSED_2_AT], pairs[i, OFFSET],
+    ) = engaged(law, pair)  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def _write_many(law: PairLaw, pairs: FloatArray, base: int, before: int, slots: int) -> int:
     """Write the springs of more than two pairs, or with a back flank, without what others take from a tangent."""
     for i in range(slots):
         pairs[base + i, NORMAL] = pairs[before + i, NORMAL]
-    _share(scalars, numbers, index, pairs[base : base + slots])
-    return _write_alone(scalars, numbers, index, pairs, base, slots)
+    _share(law, pairs[base : base + slots])
+    return _write_alone(law, pairs, base, slots)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
-def _write_alone(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, base: int, slots: int
-) -> int:
+def _write_alone(law: PairLaw, pairs: FloatArray, base: int, slots: int) -> int:
     """Write the springs at the penetrations in the table."""
     touching, digit = 0, 1
     for i in range(base, base + slots):
-        elastic, tangent = 0.0, 0.0
+        spring = NO_SPRING
         if pairs[i, WHOLE] > 0.0:
-            elastic, tangent = spring_of(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
-        _write(pairs, i, elastic, tangent)
-        pairs[i, YIELD] = pairs[i, STIFFNESS]
-        if elastic != 0.0:
-            touching += digit if elastic > 0.0 else 2 * digit
+            spring = _spring(law, pairs, i, pairs[i, PENETRATION])
+        _write(pairs, i, spring)
+        if spring.force != 0.0:
+            touching += digit if spring.force > 0.0 else 2 * digit
         digit *= 3
     return touching
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def spring_of(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float]:
-    """Return force and stiffness of slot i; write its moment, its carrying share and its share on damage.
-
-    The back flank has no damage and pushes the other way, as stiff as the whole face; so does a law without a contact.
-    """
-    if index[layout.CONTACT_NODES] > 0 and pairs[i, FLANK] >= 0.0:
-        (
-            force, slope, pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING], pairs[i, CARRYING], pairs[i, ROUGH],
-        ) = contact_state(scalars, numbers, index, pairs, i, penetration_m)  # fmt: skip
-        return force, slope
-    pairs[i, MOMENT], pairs[i, CROSS], pairs[i, TURNING] = 0.0, 0.0, 0.0
-    pairs[i, CARRYING], pairs[i, ROUGH] = 1.0, 0.0
-    side = -1.0 if pairs[i, FLANK] < 0.0 else 1.0
-    if side * penetration_m <= 0.0:
-        return 0.0, 0.0
-    return pairs[i, WHOLE] * penetration_m, pairs[i, WHOLE]
+def _place(pairs: FloatArray, i: int) -> PairPlace:
+    return PairPlace(pairs[i, ALONE], pairs[i, TOUCH], pairs[i, CURVES], pairs[i, SHARE], pairs[i, WHOLE])
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _write(pairs: FloatArray, i: int, elastic: float, tangent: float) -> None:
-    pairs[i, NORMAL] = elastic
-    pairs[i, STIFFNESS] = tangent if elastic != 0.0 else 0.0
-    pairs[i, FLANK] = 1.0 if elastic > 0.0 else (-1.0 if elastic < 0.0 else 0.0)
+def _spring(law: PairLaw, pairs: FloatArray, i: int, penetration_m: float) -> Spring:
+    """Return the spring of the flank of slot i; the back flank has no damage."""
+    if pairs[i, FLANK] < 0.0:
+        return flat_spring(pairs[i, WHOLE], penetration_m, -1.0)
+    return pair_spring(law, _place(pairs, i), pairs[i, TILT], penetration_m)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _write_two(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, j: int, back: int,
-    settled: float,
-) -> bool:  # fmt: skip
-    """Write the springs of two drive flanks on one gear body; return whether that is settled, or near enough."""
-    # Row i is that of the pair that entered later, the older one is j.
+def _write(pairs: FloatArray, i: int, spring: Spring) -> None:
+    touches = spring.force != 0.0
+    pairs[i, NORMAL], pairs[i, STIFFNESS] = spring.force, spring.stiffness if touches else 0.0
+    pairs[i, YIELD], pairs[i, MOMENT] = spring.yielding if touches else 0.0, spring.moment
+    pairs[i, CROSS], pairs[i, TURNING] = spring.cross, spring.turning
+    pairs[i, CARRYING], pairs[i, ROUGH] = spring.carrying, spring.rough
+    pairs[i, FLANK] = 1.0 if spring.force > 0.0 else (-1.0 if touches else 0.0)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _write_two(law: PairLaw, pairs: FloatArray, i: int, j: int, back: int, settled: float) -> bool:
+    """Write the springs of two drive flanks on one gear body, i entered later; return whether that is settled."""
     away = int(pairs[i, PAIR] - pairs[j, PAIR])
-    c = pairs[i, COUPLED + away - 1] if away <= min(index[layout.APART], MOST_APART) else 0.0
-    alone_i, alone_j = pairs[i, PENETRATION], pairs[j, PENETRATION]
-    f_i, k_i, d_i = _state_before(pairs, i, i + back)
-    f_j, k_j, d_j = _state_before(pairs, j, j + back)
-    inverse = 1.0 / (1.0 - k_i * k_j * c * c)
-    f_i, f_j = f_i + k_i * (d_i - c * k_j * d_j) * inverse, f_j + k_j * (d_j - c * k_i * d_i) * inverse
-    p_i, p_j = alone_i, alone_j
-    near = settled >= SMOOTH_CHANGE
-    for _ in range(MOST_STEPS):
-        p_i, p_j = alone_i - c * f_j, alone_j - c * f_i
-        g_i, k_i = spring_of(scalars, numbers, index, pairs, i, p_i)
-        g_j, k_j = spring_of(scalars, numbers, index, pairs, j, p_j)
-        inverse = 1.0 / (1.0 - k_i * k_j * c * c)
-        d_i = (g_i - f_i - k_i * c * (g_j - f_j)) * inverse
-        d_j = (g_j - f_j - k_j * c * (g_i - f_i)) * inverse
-        f_i, f_j = f_i + d_i, f_j + d_j
-        if max(abs(d_i), abs(d_j)) <= settled * max(abs(f_i), abs(f_j)):
-            near = True
-            break
-    pairs[i, PENETRATION], pairs[j, PENETRATION] = alone_i - c * f_j, alone_j - c * f_i
-    pairs[i, MOMENT] += pairs[i, CROSS] * (pairs[i, PENETRATION] - p_i)
-    pairs[j, MOMENT] += pairs[j, CROSS] * (pairs[j, PENETRATION] - p_j)
-    _write(pairs, i, max(f_i, 0.0), k_i)
-    _write(pairs, j, max(f_j, 0.0), k_j)
-    pairs[i, YIELD] = k_i * (1.0 - c * k_j) * inverse
-    pairs[j, YIELD] = k_j * (1.0 - c * k_i) * inverse
+    c = pairs[i, COUPLED + away - 1] if away <= min(law.places[layout.APART], MOST_APART) else 0.0
+    before = _before(pairs, i, i + back), _before(pairs, j, j + back)
+    spring_i, spring_j, near = two_springs(law, c, pairs[i, TILT], settled, _place(pairs, i), _place(pairs, j), before)
+    if near:
+        pairs[i, PENETRATION], pairs[j, PENETRATION] = spring_i.penetration, spring_j.penetration
+        _write(pairs, i, spring_i)
+        _write(pairs, j, spring_j)
     return near
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _state_before(pairs: FloatArray, i: int, before: int) -> tuple[float, float, float]:
-    """Return force, stiffness and change of the penetration by itself since a state near by; zeros of another pair."""
+def _before(pairs: FloatArray, i: int, before: int) -> Before:
+    """Return the spring in a state near by; zeros of another pair."""
     if pairs[before, PAIR] != pairs[i, PAIR]:
-        return 0.0, 0.0, 0.0
-    return pairs[before, NORMAL], pairs[before, STIFFNESS], pairs[i, ALONE] - pairs[before, ALONE]
+        return Before(0.0, 0.0, 0.0)
+    return Before(pairs[before, NORMAL], pairs[before, STIFFNESS], pairs[i, ALONE] - pairs[before, ALONE])
 
 
 @njit(cache=True, _nrt=False)
-def coupling_of(scalars: FloatArray, pairs: FloatArray, apart: int, i: int, j: int) -> float:
+def coupling_of(law: PairLaw, pairs: FloatArray, apart: int, i: int, j: int) -> float:
     """Return c of two slots [m/N]."""
-    away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / scalars[layout.PITCH_M]))
+    away = int(np.round((pairs[i, POSITION] - pairs[j, POSITION]) / law.scalars[layout.PITCH_M]))
     if away == 0 or abs(away) > apart:
         return 0.0
     # The pair that entered later has the smaller s.
@@ -230,22 +220,23 @@ def _solve(work: FloatArray) -> None:
 
 
 @njit(cache=True, _nrt=False)
-def _share(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray) -> None:
+def _share(law: PairLaw, pairs: FloatArray) -> None:
     """Replace the penetration of every pair by itself with that under the forces of the others."""
-    slots, apart = pairs.shape[0], min(index[layout.APART], MOST_APART)
+    slots, apart = pairs.shape[0], min(law.places[layout.APART], MOST_APART)
     coupling = MATRIX + slots
     work = pairs[:, COLUMNS:]  # of the table itself: code that allocates nothing need not count references
     for i in range(slots):
         for column in range(coupling + slots):
             work[i, column] = 0.0
-    _prepare(scalars, pairs, work, apart)
+    _prepare(law, pairs, work, apart)
     for step in range(MOST_SHARES):
         settled = True
         for i in range(slots):
             found, tangent = 0.0, 0.0
             if pairs[i, WHOLE] > 0.0:
                 pairs[i, PENETRATION] = _under_others(pairs, work, coupling, i)
-                found, tangent = spring_of(scalars, numbers, index, pairs, i, pairs[i, PENETRATION])
+                spring = _spring(law, pairs, i, pairs[i, PENETRATION])
+                found, tangent = spring.force, spring.stiffness
             settled = settled and tangent == work[i, SLOPE]
             work[i, SLOPE], work[i, RIGHT] = tangent, found - work[i, FORCE]
             if step > MOST_SHARES // 2:
@@ -261,7 +252,7 @@ def _share(scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: Flo
 
 
 @njit(cache=True, _nrt=False, inline="always")
-def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: int) -> None:
+def _prepare(law: PairLaw, pairs: FloatArray, work: FloatArray, apart: int) -> None:
     """Write first guesses and couplings."""
     slots = pairs.shape[0]
     for i in range(slots):
@@ -271,7 +262,7 @@ def _prepare(scalars: FloatArray, pairs: FloatArray, work: FloatArray, apart: in
         work[i, FORCE] = pairs[i, NORMAL]  # of the evaluation before, a near guess
         for j in range(slots):
             if i != j and pairs[j, WHOLE] > 0.0:
-                work[i, MATRIX + slots + j] = coupling_of(scalars, pairs, apart, i, j)
+                work[i, MATRIX + slots + j] = coupling_of(law, pairs, apart, i, j)
 
 
 @njit(cache=True, _nrt=False, inline="always")

@@ -38,7 +38,7 @@ from siggen.dynamics.mesh.pair_columns import (
     ROW,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_springs import SMOOTH_CHANGE as SMOOTH_SHARE
+from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE as SMOOTH_SHARE
 from siggen.dynamics.time.exponential_products import add_response, free_motion, write_middle
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
 from siggen.lanes import LANES, aligned, extract, load, scalar_at, select, shuffle, splat, store
@@ -173,19 +173,10 @@ def _attempt(
             tilt = load(seen, first + 2 * LANES)
             store(node, NODE_TILT * LANES, tilt + linear[TILT])
             store(node, NODE_TILT_RATE * LANES, _rates(tilt))
-        touching = write_lane_forces(law.scalars, law.numbers, law.places, pitches_0, pitches_1, pairs, table, node)
+        touching = write_lane_forces(law, pitches_0, pitches_1, pairs, table, node)
         if touching == NOT_HERE:
             touching = write_node_forces(
-                law.scalars,
-                law.numbers,
-                law.places,
-                scheme.nodes,
-                scheme.weights,
-                pitches_0,
-                pitches_1,
-                pairs,
-                node,
-                SMOOTH_SHARE,
+                law, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node, SMOOTH_SHARE
             )
         change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)

@@ -269,7 +269,7 @@ def _load_pairs(
             tilt += rows[2 * n + 6, i] * state[i]
             tilt_rate += rows[2 * n + 6, i] * state[n + i]
         node[NODE_TILT, 0], node[NODE_TILT_RATE, 0] = tilt, tilt_rate
-    write_forces(law.scalars, law.numbers, law.places, pitches, pairs)
+    write_forces(law, pitches, pairs)
     return node[NODE_NORMAL, 0], node[NODE_FRICTION, 0], node[NODE_ARM, 0], node[NODE_MOMENT, 0], node[NODE_TURN, 0]
 
 

@@ -27,7 +27,7 @@ from siggen.dynamics.mesh.pair_columns import (
 )
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.pair_springs import SMOOTH_CHANGE
+from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE
 from siggen.dynamics.time.exponential_scheme import NODES
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
@@ -93,11 +93,11 @@ def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, cou
         step = 0.015 * 0.5 ** rng.integers(0, 4)
         expected = drawn_node(rng)
         node = expected.copy()
-        said = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected, SMOOTH_CHANGE)
-        found = write_lane_forces(*chosen, pitches, pitches + step, pairs, table, node)
+        said = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected, SMOOTH_CHANGE)
+        found = write_lane_forces(chosen, pitches, pitches + step, pairs, table, node)
         taken += found != NOT_HERE
         if found == NOT_HERE:
-            found = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node, SMOOTH_CHANGE)
+            found = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node, SMOOTH_CHANGE)
         assert found == said
         alike.add(said)
         rows = slice(NODE_NORMAL, NODE_ROWS)

@@ -32,7 +32,7 @@ from siggen.dynamics.mesh.pair_columns import (
 from siggen.dynamics.mesh.pair_forces import write_forces
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.pair_springs import EXACT_CHANGE, SMOOTH_CHANGE
+from siggen.dynamics.mesh.two_springs import EXACT_CHANGE, SMOOTH_CHANGE
 from tests.dynamics.mesh.test_lane_forces import spalled
 
 SCRIPT = Path(__file__).resolve().parents[3] / "docs" / "scripts" / "exported_law.py"
@@ -72,7 +72,7 @@ def independently(script: Any, law: PairLaw, state: tuple[float, ...], pitches: 
 def compiled(law: PairLaw, state: tuple[float, ...], pitches: float, pairs: np.ndarray) -> np.ndarray:
     node = pairs[:1, -NODE_ROWS:].T
     node[list(STATE), 0] = state
-    write_forces(law.scalars, law.numbers, law.places, pitches, pairs)
+    write_forces(law, pitches, pairs)
     return np.array(node[list(SUMS), 0])
 
 
@@ -112,7 +112,7 @@ def test_forces_at_the_nodes_of_a_step_are_those_of_their_states(script: Any, na
         states = np.array(state)[:, None] + 0.1 * np.array(drawn(rng)[1])[:, None] * (nodes - 0.5)
         node = np.zeros((NODE_ROWS, 3))
         node[list(STATE)] = states
-        write_node_forces(*law, nodes, np.full(3, 1.0 / 3.0), first, first + 0.01, pairs, node, SMOOTH_CHANGE)
+        write_node_forces(law, nodes, np.full(3, 1.0 / 3.0), first, first + 0.01, pairs, node, SMOOTH_CHANGE)
         for q in range(3):
             expected = independently(script, law, tuple(states[:, q].tolist()), first + 0.01 * nodes[q])
             # One Newton step from a near state: below 1e-6 of the force where it was near, see SMOOTH_CHANGE.
@@ -129,7 +129,7 @@ def test_tangents_of_the_sum_are_its_derivatives() -> None:
         def sums(change: float, rate: float, state: list[float] = state, pitches: float = pitches) -> np.ndarray:
             node[list(STATE), 0] = [state[0] + change, rate, *state[2:]]
             one = np.ones(1)
-            write_node_forces(*law, 0.0 * one, one, pitches, pitches, pairs, node, EXACT_CHANGE)
+            write_node_forces(law, 0.0 * one, one, pitches, pitches, pairs, node, EXACT_CHANGE)
             return node[:, 0].copy()
 
         here, step = sums(0.0, 0.0), 1e-11
