@@ -59,9 +59,7 @@ def spall(
         for side, skew, wave in zip((-1.0, 1.0), skews, waves, strict=True)
     )
     depths = depth_m * (1.0 + rough * np.sin(1e4 * face[:-1]))
-    return grown_spall(
-        "pinion", 0, face, lambda low, high: (low, high), (arcs[0], arcs[1]), depths, 1e-4, floor, milder
-    )
+    return grown_spall("pinion", 0, face, (arcs[0], arcs[1]), depths, 1e-4, floor, milder)
 
 
 def edges_at(one: IrregularSpall, face_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
