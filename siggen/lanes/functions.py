@@ -240,6 +240,15 @@ def _function(name: str) -> Any:
 square_root, magnitude = _function("sqrt"), _function("fabs")
 
 
+def _as_bits(builder: Any, chosen: Any) -> Any:
+    return builder.zext(builder.bitcast(chosen, ir.IntType(chosen.type.count)), INT64)
+
+
+def _lane_of(builder: Any, vector: Any, lane: Any) -> Any:
+    """Return where a lane of a vector in memory lies."""
+    return builder.gep(builder.bitcast(vector, DOUBLE.as_pointer()), [lane], inbounds=True)
+
+
 def _called(function: Any) -> Any:
     """Return a function of doubles that is called for every lane by itself, and only where chosen; 0 elsewhere."""
 
@@ -247,16 +256,27 @@ def _called(function: Any) -> Any:
     def where_chosen(call: _Call) -> Any:
         builder, (value, chosen) = call.builder, call.args
         of_scalar = call.context.get_function(function, signature(types.float64, types.float64))
-        found = cgutils.alloca_once_value(builder, ir.Constant(value.type, None))
         if not isinstance(value.type, ir.VectorType):
+            found = cgutils.alloca_once_value(builder, DOUBLE(0.0))
             with builder.if_then(chosen):
                 builder.store(of_scalar(builder, (value,)), found)
             return builder.load(found)
-        with builder.if_then(_any(builder, chosen)):
-            for lane in (INT32(lane) for lane in range(value.type.count)):
-                with builder.if_then(builder.extract_element(chosen, lane)):
-                    result = of_scalar(builder, (builder.extract_element(value, lane),))
-                    builder.store(builder.insert_element(builder.load(found), result, lane), found)
+        # In memory, lane after lane: vectors would be put aside around every call.
+        given = cgutils.alloca_once_value(builder, value)
+        found = cgutils.alloca_once_value(builder, ir.Constant(value.type, None))
+        left = cgutils.alloca_once_value(builder, _as_bits(builder, chosen))
+        again, body, behind = (builder.append_basic_block(name) for name in ("again", "lane", "behind"))
+        builder.branch(again)
+        builder.position_at_end(again)
+        mask = builder.load(left)
+        builder.cbranch(builder.icmp_unsigned("!=", mask, INT64(0)), body, behind)
+        builder.position_at_end(body)
+        lane = builder.cttz(mask, ir.IntType(1)(1))
+        one = builder.load(_lane_of(builder, given, lane))
+        builder.store(of_scalar(builder, (one,)), _lane_of(builder, found, lane))
+        builder.store(builder.and_(mask, builder.sub(mask, INT64(1))), left)
+        builder.branch(again)
+        builder.position_at_end(behind)
         return builder.load(found)
 
     return where_chosen
@@ -277,24 +297,19 @@ def as_doubles(call: _Call) -> Any:
     return call.builder.sitofp(call.args[0], getattr(call.signature.return_type, "vector", DOUBLE))
 
 
-def _any(builder: Any, chosen: Any) -> Any:
-    """Return whether one of the lanes is chosen."""
-    together = ir.IntType(chosen.type.count)
-    return builder.icmp_unsigned("!=", builder.bitcast(chosen, together), together(0))
-
-
 @_lowered("chosen", types.boolean)
 def any_of(call: _Call) -> Any:
     """Return whether one lane is chosen, or the scalar."""
-    chosen = call.args[0]
-    return _any(call.builder, chosen) if isinstance(chosen.type, ir.VectorType) else chosen
+    builder, chosen = call.builder, call.args[0]
+    if not isinstance(chosen.type, ir.VectorType):
+        return chosen
+    return builder.icmp_unsigned("!=", _as_bits(builder, chosen), INT64(0))
 
 
 @_lowered("chosen", types.int64)
 def bits(call: _Call) -> Any:
     """Return truths as an integer, the first lane in the lowest place."""
-    chosen = call.args[0]
-    return call.builder.zext(call.builder.bitcast(chosen, ir.IntType(chosen.type.count)), INT64)
+    return _as_bits(call.builder, call.args[0])
 
 
 def aligned(values: FloatArray) -> FloatArray:

@@ -109,14 +109,20 @@ class SqueezeFilm:
     floor_m: float
 
 
+class MeshConstants(NamedTuple):
+    """Length T of the line of action, mass that the mesh feels, and total normal backlash."""
+
+    line_of_action_m: float
+    equivalent_mass_kg: float
+    backlash_m: float
+
+
 def pair_law(
     tables: MeshTables,
     missing: MissingMaterial,
+    mesh: MeshConstants,
     *,
-    line_of_action_m: float,
     damping_ratio: float | DampingLaw,
-    equivalent_mesh_mass_kg: float,
-    backlash_m: float,
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
     contact: ContactTable | None = None,
@@ -129,7 +135,7 @@ def pair_law(
     tables : MeshTables
         Stiffness of single pairs; with a contact, of pairs whose whole face is in contact.
     missing : MissingMaterial
-    line_of_action_m, equivalent_mesh_mass_kg, backlash_m : float
+    mesh : MeshConstants
     damping_ratio : float or DampingLaw
         ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
     friction, film : FrictionLaw, SqueezeFilm or None
@@ -144,7 +150,7 @@ def pair_law(
     ValueError
         If a number is negative or not finite, or tables do not fit together.
     """
-    _check(tables, missing, damping_ratio, backlash_m, film)
+    _check(tables, missing, damping_ratio, mesh.backlash_m, film)
     packed = PackedTables(HEAD)
     scalars = np.zeros(SCALARS)
     pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
@@ -153,8 +159,8 @@ def pair_law(
     scalars[MISSING_PER_PITCH] = (missing_points - 1) * pitch / (missing.end_m - missing.start_m)
     scalars[REACH_BEFORE] = max(0.0, (tables.start_m - missing.start_m) / pitch)
     scalars[REACH_AFTER] = max(0.0, (missing.end_m - tables.end_m) / pitch)
-    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, line_of_action_m
-    scalars[BACKLASH_M] = backlash_m
+    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, mesh.line_of_action_m
+    scalars[BACKLASH_M] = mesh.backlash_m
     scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
     scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
     _pack_teeth(packed, tables, missing)
@@ -164,7 +170,7 @@ def pair_law(
         _pack_coupling(packed, coupling_m_per_n, points)
     if friction is not None:
         _pack_friction(packed, scalars, friction)
-    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(equivalent_mesh_mass_kg)))
+    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(mesh.equivalent_mass_kg)))
     scalars.setflags(write=False)
     return PairLaw(scalars, packed.numbers, packed.index)
 

@@ -67,6 +67,14 @@ class PairEquations(NamedTuple):
     static_tilt: float
 
 
+class MeanState(NamedTuple):
+    """Motor torque, pinion speed and mesh stiffness that a motion deviates from."""
+
+    torque_nm: float
+    speed_hz: float
+    stiffness_n_per_m: float
+
+
 class PairMotion:
     """Steps with the classical Runge-Kutta method; works with any structure.
 
@@ -81,9 +89,7 @@ class PairMotion:
         structure: Structure,
         law: PairLaw,
         *,
-        torque_nm: float,
-        speed_hz: float,
-        reference_stiffness_n_per_m: float,
+        mean: MeanState,
         step_s: float,
         contact: PairContact | None = None,
         input_vectors: FloatArray | None = None,
@@ -93,10 +99,10 @@ class PairMotion:
         self.law = law
         self.contact = contact
         self.equations = equations_about(
-            structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
+            structure, mean.torque_nm, mean.stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
         )
-        self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
-        damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
+        self.pair_equations = _pair_equations(structure, self.equations, mean.speed_hz)
+        damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
         self.transient_s = transient_s(structure, self.equations, damping)
         self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
@@ -318,9 +324,7 @@ def _advance(
         external_push(equations.external_input, inputs[i + 1], pushes[1])
         if speed_input >= 0:
             model = (_at_speed(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
-        runge_kutta_step(
-            pair_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
-        )
+        runge_kutta_step(pair_rate, model, step_s, (pitches[i], pitches[i + 1]), pushes, start, end, scratch)
 
 
 @njit(cache=True)
