@@ -11,7 +11,7 @@ roughness from 0.1 to 5 µm.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,9 +22,6 @@ from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
 from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh
 from siggen.lanes import Choice, Lanes, Whole, as_doubles, gather_pairs, larger, logarithm, smaller, truncated
-
-FluidFriction = Callable[[Values, Values], Values]
-"""Friction coefficient of the lubricated part at positions [m] and forces [N]."""
 
 
 class AsperityTable(NamedTuple):
@@ -48,7 +45,7 @@ class AsperityTable(NamedTuple):
 def asperity_table(
     mesh: LubricatedMesh,
     roughness_m: Sequence[float],
-    fluid_friction: float | FluidFriction,
+    fluid_friction: float,
     range_m: tuple[float, float],
     largest_force_n: float,
     model: str = "masjedi_khonsari",
@@ -61,8 +58,8 @@ def asperity_table(
     mesh : LubricatedMesh
     roughness_m : sequence of float
         Composite rms roughness σ of each layer [m], for example the healthy flank, then pitted ones.
-    fluid_friction : float or callable
-        Friction coefficient of the lubricated part: a constant, or a function of position [m] and force [N].
+    fluid_friction : float
+        Friction coefficient of the lubricated part.
     range_m : (first, last)
         Positions s of the grid [m], inside the line of action; beyond them the end values hold.
     largest_force_n : float
@@ -85,8 +82,7 @@ def asperity_table(
         allowed = f"allowed are finite forces above {lowest.min():.3g} N"
         raise ValueError(f"largest_force_n: received {largest_force_n}; {allowed}")
     force = lowest[:, None] * np.exp(span * np.arange(points[1]) / (points[1] - 1))
-    fluid = np.full(points, np.nan)
-    fluid[:] = fluid_friction(position[:, None], force) if callable(fluid_friction) else fluid_friction
+    fluid = np.full(points, fluid_friction)
     ratio = np.stack([ratios_at(mesh, sigma, position[:, None], force, model) for sigma in roughness_m])
     for array in (ratio, fluid):
         array.setflags(write=False)
