@@ -6,6 +6,8 @@ more and are left out in the end.
 
 from __future__ import annotations
 
+from itertools import count
+
 import numpy as np
 
 from siggen.arrays import FloatArray
@@ -15,13 +17,30 @@ from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import Engaged, between, engaged, placed, placed_contact
 from siggen.lanes import LANES, Lanes, aligned, load, shuffle, store
 
-(
-    APPLIES, NODES_AT, PAIR, TOUCH_AT, COLUMNS_AT, MISSED_1_AT, MISSED_2_AT, OFFSET, DEPTH, TOUCH, CURVES, SHARE,
-    COUPLING, NORMAL, STIFFNESS, YIELD, MOMENT, CROSS, TURNING, CARRYING, ROUGH, POSITION,
-) = range(22)  # fmt: skip
-"""Rows of the table: whether lanes can be used at all, and the nodes on [0, 1]. What stays during an engagement: number
-of the pair, and what `Engaged` has of it. Then what `pair_columns` says of the same names."""
-ROWS = 22
+_row = count()
+APPLIES = next(_row)  # whether lanes can be used at all
+NODES_AT = next(_row)  # on [0, 1]
+PAIR = next(_row)  # number of the pair; this and the next five stay while it is engaged (`pair_places.Engaged`)
+TOUCH_AT = next(_row)
+COLUMNS_AT = next(_row)
+MISSED_1_AT = next(_row)
+MISSED_2_AT = next(_row)
+OFFSET = next(_row)
+DEPTH = next(_row)  # penetration by itself [m]
+TOUCH = next(_row)  # the rest is what `pair_columns` says of the same names
+CURVES = next(_row)
+SHARE = next(_row)
+COUPLING = next(_row)
+NORMAL = next(_row)
+STIFFNESS = next(_row)
+YIELD = next(_row)
+MOMENT = next(_row)
+CROSS = next(_row)
+TURNING = next(_row)
+CARRYING = next(_row)
+ROUGH = next(_row)
+POSITION = next(_row)
+ROWS = next(_row)
 SLOTS = 2
 BOTH = 0b111111
 """All lanes of both slots; of one slot every second of them."""

@@ -2,30 +2,59 @@
 
 from __future__ import annotations
 
-(
-    NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,
-    WHOLE, ROUGH, TOUCH, CURVES, SHARE, TILT, MOMENT, CROSS, TURNING, YIELD, ALONE, PAIR, ROW,
-    STIFFNESS_AT, TOUCH_AT, COLUMNS_AT, MISSED_1_AT, MISSED_2_AT, OFFSET, COUPLED,
-) = range(31)  # fmt: skip
-"""Columns of the table of pairs: forces [N]; penetration p [m]; stiffness f', 0 where a pair does not touch [N/m];
-sliding speed [m/s]; position s [m]; +1, -1, 0 for the drive flank, the back flank and no contact; of pairs that touch
-share of the face that carries, asperity share, friction coefficient, damping [N s/m]. Then stiffness of the whole face,
-0 for an empty slot; share of the load on damage; first touch [m], beginning of the curves and share of the upper column
-(`contact_spring`); tilt [rad], moment across the face [N m], its derivatives to approach [N] and tilt [N m]; stiffness
-to an approach of all pairs [N/m] and penetration of a pair by itself [m]; the pair's global number, and what is kept
-while it is engaged (`pair_places.Engaged`); from COUPLED on the coupling to older pairs."""
+from itertools import count
+
+_column = count()
+NORMAL = next(_column)  # force [N]
+FRICTION = next(_column)  # [N]
+PENETRATION = next(_column)  # p [m]
+STIFFNESS = next(_column)  # f', 0 where a pair does not touch [N/m]
+SLIDING = next(_column)  # speed [m/s]
+POSITION = next(_column)  # s [m]
+FLANK = next(_column)  # +1, -1, 0: drive flank, back flank, no contact
+CARRYING = next(_column)  # share of the face; this and the next three of pairs that touch
+ASPERITY_SHARE = next(_column)
+COEFFICIENT = next(_column)  # of friction
+DAMPING = next(_column)  # [N s/m]
+WHOLE = next(_column)  # stiffness of the whole face, 0 for an empty slot [N/m]
+ROUGH = next(_column)  # share of the load on damage
+TOUCH = next(_column)  # first touch [m]
+CURVES = next(_column)  # where its curves begin (`contact_spring`)
+SHARE = next(_column)  # of the upper column
+TILT = next(_column)  # [rad]
+MOMENT = next(_column)  # across the face [N m]
+CROSS = next(_column)  # its derivative to the approach [N]
+TURNING = next(_column)  # and to the tilt [N m]
+YIELD = next(_column)  # stiffness to an approach of all pairs [N/m]
+ALONE = next(_column)  # penetration of a pair by itself [m]
+PAIR = next(_column)  # global number
+ROW = next(_column)  # what is kept while it is engaged (`pair_places.Engaged`)
+STIFFNESS_AT = next(_column)
+TOUCH_AT = next(_column)
+COLUMNS_AT = next(_column)
+MISSED_1_AT = next(_column)
+MISSED_2_AT = next(_column)
+OFFSET = next(_column)
+COUPLED = next(_column)  # from here on the coupling to older pairs [m/N]
 MOST_APART = 3
 """Pairs further apart than this do not couple: no gear has more in contact."""
 COLUMNS = COUPLED + MOST_APART
 
-(
-    NODE_APPROACH, NODE_RATE, NODE_SLIDING_0, NODE_SLIDING_1, NODE_TILT, NODE_TILT_RATE, NODE_NORMAL, NODE_SLOPE,
-    NODE_SLOPE_RATE, NODE_FRICTION, NODE_ARM, NODE_MOMENT, NODE_TURN,
-) = range(13)  # fmt: skip
-"""Rows of the values at the nodes: approach [m], its rate, both parts of the sliding speed [m/s, 1/s], tilt [rad] and
-its rate, which the caller writes; ΣN [N], its tangents to approach [N/m] and rate [N s/m], ΣF [N], Σ s F, Σμ and
-Σ ζ F [N m]."""
-NODE_ROWS = 13
+_row = count()
+NODE_APPROACH = next(_row)  # [m]; this and the next five the caller writes
+NODE_RATE = next(_row)  # of the approach [m/s]
+NODE_SLIDING_0 = next(_row)  # sliding speed at s: the first [m/s] plus s times the second [1/s]
+NODE_SLIDING_1 = next(_row)
+NODE_TILT = next(_row)  # [rad]
+NODE_TILT_RATE = next(_row)  # [rad/s]
+NODE_NORMAL = next(_row)  # ΣN [N]
+NODE_SLOPE = next(_row)  # its tangent to the approach [N/m]
+NODE_SLOPE_RATE = next(_row)  # and to the rate [N s/m]
+NODE_FRICTION = next(_row)  # ΣF [N]
+NODE_ARM = next(_row)  # Σ s F [N m]
+NODE_MOMENT = next(_row)  # Σμ [N m]
+NODE_TURN = next(_row)  # Σ ζ F [N m]
+NODE_ROWS = next(_row)
 
 
 def solution_columns(slots: int) -> int:
