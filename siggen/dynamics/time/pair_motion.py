@@ -15,23 +15,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
-from siggen.dynamics.mesh.pair_columns import (
-    FLANK,
-    MOMENT,
-    NODE_APPROACH,
-    NODE_ARM,
-    NODE_FRICTION,
-    NODE_MOMENT,
-    NODE_NORMAL,
-    NODE_RATE,
-    NODE_ROWS,
-    NODE_SLIDING_0,
-    NODE_SLIDING_1,
-    NODE_TILT,
-    NODE_TILT_RATE,
-    NODE_TURN,
-    TILT,
-)
+from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -200,7 +184,7 @@ class PairMotion:
             (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
         ]
         if self.tilts:
-            approach += [pairs[:, 0, TILT], pairs[:, :, MOMENT].sum(axis=1)]
+            approach += [pairs[:, 0, columns.TILT], pairs[:, :, columns.MOMENT].sum(axis=1)]
         moved = states[:, :n] + self.equations.static_deflection
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
@@ -258,7 +242,7 @@ def _load_pairs(
     equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
 ) -> tuple[float, float, float, float, float]:
     """Write the table of pairs of a state; return ΣN, ΣF, Σ s F, Σμ and Σ ζ F."""
-    rows, node = equations.rows, pairs[:1, pairs.shape[1] - NODE_ROWS :].T
+    rows, node = equations.rows, pairs[:1, pairs.shape[1] - columns.NODE_ROWS :].T
     n = rows.shape[1]
     approach, approach_rate = equations.static_approach, 0.0
     sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
@@ -267,16 +251,22 @@ def _load_pairs(
         approach_rate += rows[2 * n, i] * state[n + i]
         sliding_0 += rows[2 * n + 1, i] * state[n + i]
         sliding_1 += rows[2 * n + 2, i] * state[n + i]
-    node[NODE_APPROACH, 0], node[NODE_RATE, 0] = approach, approach_rate
-    node[NODE_SLIDING_0, 0], node[NODE_SLIDING_1, 0] = sliding_0, sliding_1
+    node[columns.NODE_APPROACH, 0], node[columns.NODE_RATE, 0] = approach, approach_rate
+    node[columns.NODE_SLIDING_0, 0], node[columns.NODE_SLIDING_1, 0] = sliding_0, sliding_1
     if rows.shape[0] > 2 * n + 6:
         tilt, tilt_rate = equations.static_tilt, 0.0
         for i in range(n):
             tilt += rows[2 * n + 6, i] * state[i]
             tilt_rate += rows[2 * n + 6, i] * state[n + i]
-        node[NODE_TILT, 0], node[NODE_TILT_RATE, 0] = tilt, tilt_rate
+        node[columns.NODE_TILT, 0], node[columns.NODE_TILT_RATE, 0] = tilt, tilt_rate
     write_forces(law, pitches, pairs)
-    return node[NODE_NORMAL, 0], node[NODE_FRICTION, 0], node[NODE_ARM, 0], node[NODE_MOMENT, 0], node[NODE_TURN, 0]
+    return (
+        node[columns.NODE_NORMAL, 0],
+        node[columns.NODE_FRICTION, 0],
+        node[columns.NODE_ARM, 0],
+        node[columns.NODE_MOMENT, 0],
+        node[columns.NODE_TURN, 0],
+    )
 
 
 # Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
@@ -336,7 +326,7 @@ def _steps_apart(
         _load_pairs(equations, law, pairs, states[i], pitches[i])
         touching = False
         for j in range(pairs.shape[0]):
-            touching = touching or pairs[j, FLANK] != 0.0
+            touching = touching or pairs[j, columns.FLANK] != 0.0
         if not touching:
             count += 1
     return count
