@@ -14,10 +14,11 @@ from benchmarks.shipped import PAPER_A, PAPER_B, shipped
 from benchmarks.solve_ivp import RELATIVE_TOLERANCE, Method, solve_ivp_integrators
 from benchmarks.timing import Candidate, medians
 from siggen.config import Config
+from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness, mesh_law
 from siggen.dynamics.time.equations import equations_of_motion, no_inputs
-from siggen.dynamics.time.linear_motion import INTEGRATORS
-from siggen.dynamics.time.response import simulate_response
+from siggen.dynamics.time.linear_motion import INTEGRATORS, LinearMotion
+from siggen.dynamics.time.response import SampleGrid, response_of
 from siggen.dynamics.time.transient import transient_s
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord, planned_record
@@ -48,19 +49,18 @@ class _Case:
     def acceleration_m_s2(self, integrator: str, steps: int, duration_s: float) -> np.ndarray:
         """Return the acceleration of the pinion bearing (n,)."""
         dynamics = self.specimen.dynamics
-        response = simulate_response(
+        grid = SampleGrid(self.config.fs_hz, round(duration_s * self.config.fs_hz), steps)
+        motion = LinearMotion(
             self.state.mesh.structure,
             self.state.mesh.tables,
             torque_nm=self.point.torque_nm,
-            speed_hz=self.point.speed_hz,
-            start_angle_rad=start_angle_rad(self.config, self.state.pair, self.planned),
             mesh_damping_ratio=constant(dynamics.mesh_damping_ratio),
             backlash_m=1e-6 * constant(dynamics.backlash_um),
-            fs_hz=self.config.fs_hz,
-            samples=round(duration_s * self.config.fs_hz),
-            steps_per_sample=steps,
+            step_s=1.0 / (grid.fs_hz * steps),
             integrator=integrator,
         )
+        drive = Drive(self.point.speed_hz, start_angle_rad(self.config, self.state.pair, self.planned))
+        response = response_of(motion, drive, grid)
         return response.acceleration_m_s2[CHANNEL]
 
     def transient_s(self) -> float:

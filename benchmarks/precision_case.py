@@ -13,7 +13,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Config, by_reference
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
@@ -57,10 +57,11 @@ class Case:
     def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:
         """Return the response to SIGNAL_S, behind the transient or what is discarded if that is longer."""
         return response_of(
-            self.motion(integrator, steps), self.driven.rotation, fs_hz=self.config.fs_hz,
-            samples=round(SIGNAL_S * self.config.fs_hz), bearing_forces=False,
-            steps_per_sample=state_grid(integrator, steps).per_sample,
-            excitation=self.driven.excitation, settle_s=settle_s,
+            self.motion(integrator, steps), self.driven.rotation,
+            SampleGrid(
+                self.config.fs_hz, round(SIGNAL_S * self.config.fs_hz), state_grid(integrator, steps).per_sample
+            ),
+            wanted=Wanted(bearing_forces=False), excitation=self.driven.excitation, settle_s=settle_s,
         )  # fmt: skip
 
     def driven_steps(self, motion: Motion, per_sample: int, duration_s: float) -> tuple[FloatArray, FloatArray]:

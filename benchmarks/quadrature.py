@@ -18,7 +18,14 @@ from scipy.integrate import IntegrationWarning, quad
 from siggen.arrays import FloatArray
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.tooth_damage import Damage, pits_of
-from siggen.gears.damage.union import active_pits, add_intervals, depth_moments, lengths_covered, stretch_room
+from siggen.gears.damage.union import (
+    active_pits,
+    add_intervals,
+    depth_moments,
+    interval_room,
+    lengths_covered,
+    stretch_room,
+)
 from siggen.gears.geometry import involute, trochoid
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -140,10 +147,9 @@ def _section(
     room = pits.shape[0]
     if room == 0:
         return x, area, inertia
-    left, right, moments = np.empty(room), np.empty(room), np.empty(3)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active, moments = interval_room(room), np.empty(room, np.int64), np.empty(3)
     count = active_pits(x, pits, active)
-    filled = add_intervals(x, pits, active, count, width, left, right, owner, 0)
-    depth_moments(x, pits, left, right, owner, filled, stretch_room(room), moments)
+    filled = add_intervals(x, pits, active, count, width, intervals, 0)
+    depth_moments(x, pits, intervals, filled, stretch_room(room), moments)
     area_loss, inertia_loss = section_losses(h, width, moments)
     return x, area - area_loss, inertia - inertia_loss

@@ -23,7 +23,7 @@ import numba
 from siggen.sources import sources_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-WITH_COMPILED_CODE = ("*.py", "dynamics/**/*.py", "gears/**/*.py", "record/**/*.py", "sensing/**/*.py")
+WITH_COMPILED_CODE = ("*.py", "lanes/*.py", "dynamics/**/*.py", "gears/**/*.py", "record/**/*.py", "sensing/**/*.py")
 """Files that compiled code may come from, constants included."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import log, sqrt, tanh
 
 import numpy as np
 import pytest
@@ -12,15 +12,18 @@ from siggen.compiled import njit
 from siggen.lanes import (
     LANES,
     aligned,
+    any_of,
     as_doubles,
     bits,
     extract,
     gather,
     gather_pairs,
+    hyperbolic_tangent,
     insert,
     larger,
     load,
     load_like,
+    logarithm,
     magnitude,
     scalar_at,
     select,
@@ -81,6 +84,44 @@ def _one_by_one(a, b, table, results):
         results[12 * n + i] = chosen
 
 
+@njit(_nrt=False, error_model="numpy", forceinline=True)
+def _law(x, y, table):
+    """Return what comes of two values, which are numbers or lanes of them."""
+    place = smaller(larger(truncated(larger(smaller(x, 50.0), 0.0)), 1), 40) + 2
+    low, high = gather_pairs(table, place)
+    found = low - gather(table, place + 3) * as_doubles(place)
+    found = found + logarithm(larger(x, 1e-300), x > 0.0) * hyperbolic_tangent(y, (y < 3.0) & (x == x))
+    if any_of(magnitude(x) < 2.0):
+        found = select(magnitude(x) < 2.0, square_root(magnitude(y)) + high, found)
+    return found, select(x != y, 1.0, 0.0)
+
+
+@njit(_nrt=False, error_model="numpy")
+def _law_in_lanes(a, b, table, results):
+    for first in range(0, a.size, LANES):
+        found, apart = _law(load(a, first), load(b, first), table)
+        store(results, first, found)
+        store(results, a.size + first, apart)
+
+
+@njit(_nrt=False, error_model="numpy")
+def _law_of_scalars(a, b, table, results):
+    for i in range(a.size):
+        results[i], results[a.size + i] = _law(a[i], b[i], table)
+
+
+@njit(_nrt=False, error_model="numpy")
+def _law_by_hand(a, b, table, results):
+    for i in range(a.size):
+        x, y = a[i], b[i]
+        place = min(max(int(max(min(x, 50.0), 0.0)), 1), 40) + 2
+        found = table[place] - table[place + 3] * place
+        turned = tanh(y) if y < 3.0 and x == x else 0.0
+        found += (log(max(x, 1e-300)) if x > 0.0 else 0.0) * turned
+        results[i] = sqrt(abs(y)) + table[place + 1] if abs(x) < 2.0 else found
+        results[a.size + i] = 1.0 if x != y else 0.0
+
+
 @njit(_nrt=False, error_model="numpy")
 def _weighted(table, weights, results):
     """Write weighted sums of the rows of a table over its 16 columns, in two registers."""
@@ -113,6 +154,19 @@ def test_every_operation_has_the_bytes_of_scalars(seed: int) -> None:
         nan = np.isnan(expected[row])
         assert np.array_equal(nan, np.isnan(found[row])), row
         assert found[row][~nan].tobytes() == expected[row][~nan].tobytes(), row
+
+
+def test_a_law_for_one_value_has_the_bytes_of_lanes() -> None:
+    a, b = (np.where(np.isfinite(values), values, 1.0) for values in _pair(5))
+    a[: a.size // 4] = 3.0 + np.abs(a[: a.size // 4])  # where no lane takes the branch
+    table = np.random.default_rng(6).normal(size=64)
+    lanes, scalars, expected = np.zeros((3, 2, a.size))
+    _law_in_lanes(a, b, table, lanes.reshape(-1))
+    _law_of_scalars(a, b, table, scalars.reshape(-1))
+    _law_by_hand(a, b, table, expected.reshape(-1))
+    assert lanes.tobytes() == expected.tobytes()
+    assert scalars.tobytes() == expected.tobytes()
+    assert 50 < (np.abs(a) < 2.0).reshape(-1, LANES).any(axis=1).sum() * LANES < a.size
 
 
 def test_sums_over_rows_are_those_of_the_written_order() -> None:

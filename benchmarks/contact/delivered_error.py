@@ -14,10 +14,12 @@ import numpy as np
 
 from benchmarks.contact.record_case import SIGNAL_S, STEPS, RecordCase, record_case
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.dynamics.drive.excitation import Turning
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import contact_moment, contact_spring, place_contact
-from siggen.dynamics.mesh.pair_columns import CELL, FLANK, PENETRATION, POSITION, ROW, TILT, WEIGHT
+from siggen.dynamics.mesh.contact_spring import PairPlace, Spring, pair_spring
+from siggen.dynamics.mesh.pair_columns import FLANK, PENETRATION, POSITION, ROW, TILT
+from siggen.dynamics.mesh.pair_places import placed_contact, row_places
 from siggen.gears.contact.force_curve import force_curve
 from siggen.gears.contact.kind_row import KindRow, kind_row, pits_of_kind
 from siggen.gears.contact.newton_matrix import solver_room
@@ -139,12 +141,14 @@ def _point(law: layout.PairLaw, pair: FloatArray) -> int:
 
 def _read(law: layout.PairLaw, pairs: FloatArray, i: int) -> tuple[float, float]:
     """Return elastic force and moment of the table at that point."""
-    point, cells = _point(law, pairs[i]), int(law.places[layout.POINTS]) - 1
-    pairs[i, CELL] = min(point, cells - 1)
-    pairs[i, WEIGHT] = point - pairs[i, CELL]
-    place_contact(law.numbers, law.places, pairs, i)
-    force, _ = contact_spring(law.scalars, law.numbers, law.places, pairs, i, pairs[i, PENETRATION])
-    if law.places[layout.CONTACT_VALUES] == 4:
-        return force, 0.0
-    moment, _, _ = contact_moment(law.scalars, law.numbers, law.places, pairs, i, pairs[i, PENETRATION])
-    return force, moment
+    found = _spring(law, int(pairs[i, ROW]), _point(law, pairs[i]), pairs[i, TILT], pairs[i, PENETRATION])
+    return found.force, found.moment
+
+
+@njit(error_model="numpy")
+def _spring(law: layout.PairLaw, row: int, point: int, tilt: float, penetration_m: float) -> Spring:
+    """Return the spring of a row of the tables at a point."""
+    cell = min(point, law.places[layout.POINTS] - 2)
+    _, touch_at, columns_at = row_places(law, row)
+    touch, curves, share = placed_contact(law, touch_at, columns_at, cell, float(point - cell))
+    return pair_spring(law, PairPlace(penetration_m, touch, curves, share, 0.0), tilt, penetration_m)

@@ -11,7 +11,7 @@ from siggen.arrays import FloatArray
 from siggen.config import Config, by_reference
 from siggen.dynamics.drive.excitation import Excitation, Source
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
@@ -66,9 +66,9 @@ class RecordCase:
         """Return the delivered response to SIGNAL_S."""
         driven = self.with_sources(more)
         return response_of(
-            self.motion(more=more), driven.rotation, fs_hz=self.config.fs_hz,
-            samples=round(SIGNAL_S * self.config.fs_hz), steps_per_sample=STEPS, bearing_forces=False,
-            excitation=driven.excitation,
+            self.motion(more=more), driven.rotation,
+            SampleGrid(self.config.fs_hz, round(SIGNAL_S * self.config.fs_hz), STEPS),
+            wanted=Wanted(bearing_forces=False), excitation=driven.excitation,
         )  # fmt: skip
 
     def course(self, motion: PairMotion, steps: int, first_s: float, last_s: float) -> tuple[FloatArray, ...]:

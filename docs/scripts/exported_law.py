@@ -122,7 +122,7 @@ class PairLaw:
             if spring.force == 0.0:
                 sums.normal += self.film(pair, state.rate)
             else:
-                self.add(sums, pair, spring, state, 1.0 / math.sqrt(total))
+                self.add(sums, pair, spring, state, 1.0 / math.sqrt(total) if total > 0.0 else 0.0)
         self.before = {pair.number: spring.force for pair, spring in zip(pairs, springs, strict=True)}
         return sums
 

@@ -182,19 +182,16 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
     milder = _milder(growth, model.gear, tooth)
     face = stations_across(width, middle - 0.5 * across, middle + 0.5 * across, milder)
     along = read_m(gear, _middle_height_m(pair, size), size.height_reading)
-    arcs = tuple(
+    arcs = [
         along + side * (0.5 * length) + _bend_m(size, growth, name, edge, face, middle)
         for side, edge in zip((-1.0, 1.0), _edges(model.gear), strict=True)
-    )
+    ]
+    edges = [axial_heights_m(gear, arc, size.height_reading) for arc in arcs]
     return grown_spall(
         model.gear,
         tooth,
         face,
-        lambda low, high: (
-            axial_heights_m(gear, low, size.height_reading),
-            axial_heights_m(gear, high, size.height_reading),
-        ),
-        (arcs[0], arcs[1]),
+        (edges[0], edges[1]),
         _depth_m(size, length, across) * _rough(size, growth, name, face, width),
         MM * constant(size.edge_radius_mm),
         size.floor,

@@ -13,7 +13,7 @@ from siggen.checks.quantity_names import acceleration_name
 from siggen.columns.record import Record, RecordFailure
 from siggen.config import Config
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, collected_response, response_stream
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
 from siggen.gears.damage.tooth_damage import Damage
@@ -183,12 +183,8 @@ def _stream(
         stream = response_stream(
             motion,
             driven.rotation,
-            fs_hz=config.fs_hz,
-            samples=config.samples,
-            steps_per_sample=steps,
-            internals=internals,
-            bearing_forces=internals or needs_forces(config),
-            motions=motions,
+            SampleGrid(config.fs_hz, config.samples, steps),
+            wanted=Wanted(internals, internals or needs_forces(config), motions),
             excitation=driven.excitation,
             settle_s=_settle_s(config, motion),
             history_s=history_s(config),

@@ -13,13 +13,13 @@ from siggen.dynamics.friction.contact_kinematics import effective_modulus
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.mesh.pair_internals import PairContact
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
@@ -91,9 +91,7 @@ def specimen_motion(
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
         _law(dynamics, mesh, point),
-        torque_nm=point.torque_nm,
-        speed_hz=point.speed_hz,
-        reference_stiffness_n_per_m=mean_mesh_stiffness(mesh.tables),
+        mean=MeanState(point.torque_nm, point.speed_hz, mean_mesh_stiffness(mesh.tables)),
         step_s=step_s,
         input_vectors=vectors,
         speed_input=-1 if driven is None else driven.speed_input,
@@ -116,10 +114,10 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
     return pair_law(
         mesh.tables,
         mesh.missing,
-        line_of_action_m=mesh.pair.line_of_action_m,
+        MeshConstants(
+            mesh.pair.line_of_action_m, mesh.structure.equivalent_mesh_mass_kg, 1e-6 * constant(dynamics.backlash_um)
+        ),
         damping_ratio=_damping_ratio(dynamics),
-        equivalent_mesh_mass_kg=mesh.structure.equivalent_mesh_mass_kg,
-        backlash_m=1e-6 * constant(dynamics.backlash_um),
         friction=specimen_friction(dynamics.friction, mesh.pair, point, rough_pits=solves_across_the_face(dynamics)),
         film=film if section.squeeze_film == "on" else None,
         contact=mesh.contact,

@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics
-from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.static_stiffness import largest_secant_loss, secant_stiffness_n_per_m
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
@@ -88,10 +88,8 @@ def _law(pair: GearPair, teeth: ToothTables, missing: MissingMaterial, contact: 
     return pair_law(
         teeth.tables,
         missing,
-        line_of_action_m=pair.line_of_action_m,
+        MeshConstants(pair.line_of_action_m, 1.0, pair.base_pitch_m),
         damping_ratio=0.0,
-        equivalent_mesh_mass_kg=1.0,
-        backlash_m=pair.base_pitch_m,
         contact=contact,
         coupling_m_per_n=teeth.coupling_m_per_n,
     )

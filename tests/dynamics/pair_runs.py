@@ -10,10 +10,10 @@ import numpy as np
 from siggen.dynamics.friction.friction import FrictionLaw
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, SqueezeFilm, pair_law
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.tooth_damage import Damage
@@ -84,10 +84,8 @@ def law(
     return pair_law(
         tables() if over is None else over,
         missing_material(gear_pair(), RELIEF) if missing is None else missing,
-        line_of_action_m=gear_pair().line_of_action_m,
+        MeshConstants(gear_pair().line_of_action_m, mass, backlash_m),
         damping_ratio=damping_ratio,
-        equivalent_mesh_mass_kg=mass,
-        backlash_m=backlash_m,
         friction=friction,
         film=film,
         contact=contact,
@@ -117,9 +115,7 @@ def motion(
     stiffness: float | None = None,
 ) -> PairMotion:
     mean = mean_mesh_stiffness(tables()) if stiffness is None else stiffness
-    return PairMotion(
-        structure, chosen, torque_nm=torque_nm, speed_hz=speed_hz, reference_stiffness_n_per_m=mean, step_s=step_s
-    )
+    return PairMotion(structure, chosen, mean=MeanState(torque_nm, speed_hz, mean), step_s=step_s)
 
 
 def settled(run: PairMotion, speed_hz: float, step_s: float, steps: int, settle_s: float = 0.4):

@@ -13,8 +13,7 @@ CODE = sorted([*(ROOT / "siggen").rglob("*.py"), *(ROOT / "diagnostics").rglob("
 ALL = sorted([*CODE, *(ROOT / "tests").rglob("*.py"), *(ROOT / "benchmarks").rglob("*.py")])
 FORBIDDEN_NAMES = {"utils", "util", "helpers", "common", "misc"}
 GENERATORS = ("default_rng(", "RandomState(", "SeedSequence(", "np.random.seed", "np.random.normal", "Philox(")
-MOST_PARAMETERS = {"siggen/dynamics": 13, "siggen/gears": 14}
-"""Compiled kernels and laws of motion; everywhere else a function has at most 8."""
+MOST_PARAMETERS = 8
 TREES = {path: ast.parse(path.read_text()) for path in CODE}
 
 
@@ -53,11 +52,10 @@ def test_functions_are_short() -> None:
 
 def test_functions_have_few_parameters() -> None:
     def found(path: Path) -> Iterator[str]:
-        room = str(Path(*path.relative_to(ROOT).parts[:2]))
         for node in ast.walk(TREES[path]):
             if isinstance(node, ast.FunctionDef):
                 named = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-                if (count := sum(one.arg != "self" for one in named)) > MOST_PARAMETERS.get(room, 8):
+                if (count := sum(one.arg != "self" for one in named)) > MOST_PARAMETERS:
                     yield f"{node.name} has {count} parameters"
 
     assert not (listed := offenders(CODE, found)), listed

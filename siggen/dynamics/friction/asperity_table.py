@@ -11,7 +11,7 @@ roughness from 0.1 to 5 µm.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,9 +21,7 @@ from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_share import RATIO_MODELS
 from siggen.dynamics.friction.contact_kinematics import Values, relative_radius
 from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh
-
-FluidFriction = Callable[[Values, Values], Values]
-"""Friction coefficient of the lubricated part at positions [m] and forces [N]."""
+from siggen.lanes import Choice, Lanes, Whole, as_doubles, gather_pairs, larger, logarithm, smaller, truncated
 
 
 class AsperityTable(NamedTuple):
@@ -47,7 +45,7 @@ class AsperityTable(NamedTuple):
 def asperity_table(
     mesh: LubricatedMesh,
     roughness_m: Sequence[float],
-    fluid_friction: float | FluidFriction,
+    fluid_friction: float,
     range_m: tuple[float, float],
     largest_force_n: float,
     model: str = "masjedi_khonsari",
@@ -60,8 +58,8 @@ def asperity_table(
     mesh : LubricatedMesh
     roughness_m : sequence of float
         Composite rms roughness σ of each layer [m], for example the healthy flank, then pitted ones.
-    fluid_friction : float or callable
-        Friction coefficient of the lubricated part: a constant, or a function of position [m] and force [N].
+    fluid_friction : float
+        Friction coefficient of the lubricated part.
     range_m : (first, last)
         Positions s of the grid [m], inside the line of action; beyond them the end values hold.
     largest_force_n : float
@@ -84,8 +82,7 @@ def asperity_table(
         allowed = f"allowed are finite forces above {lowest.min():.3g} N"
         raise ValueError(f"largest_force_n: received {largest_force_n}; {allowed}")
     force = lowest[:, None] * np.exp(span * np.arange(points[1]) / (points[1] - 1))
-    fluid = np.full(points, np.nan)
-    fluid[:] = fluid_friction(position[:, None], force) if callable(fluid_friction) else fluid_friction
+    fluid = np.full(points, fluid_friction)
     ratio = np.stack([ratios_at(mesh, sigma, position[:, None], force, model) for sigma in roughness_m])
     for array in (ratio, fluid):
         array.setflags(write=False)
@@ -105,50 +102,54 @@ def ratios_at(mesh: LubricatedMesh, roughness_m: float, position_m: Values, forc
     return np.asarray(RATIO_MODELS[model](mesh.groups(position_m, force_n, roughness_m)), dtype=np.float64)
 
 
-@njit(cache=True)
+class LoadGrid(NamedTuple):
+    """The grid of an `AsperityTable`: its numbers of positions and loads, and the fields of these names."""
+
+    positions: int
+    loads: int
+    line_m: float
+    start_m: float
+    per_m: float
+    floor_n_per_m: float
+    per_log: float
+
+
+@njit(cache=True, error_model="numpy")
 def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: float) -> tuple[float, float]:
     """Return the asperity share La, 0 to 1, and the friction coefficient of the lubricated part; clamped to the table.
 
     Both in one call, since finding the cell costs more than the values.
     """
     positions, loads = table.fluid.shape
-    i, j, a, b = contact_cell(
-        positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log, position_m,
-        force_n,
+    grid = LoadGrid(
+        positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log
     )  # fmt: skip
-    ratio = cell_value(table.ratio[layer].reshape(-1), i * loads + j, loads, a, b)
-    return min(ratio, 1.0), cell_value(table.fluid.reshape(-1), i * loads + j, loads, a, b)
+    corner, a, b = contact_cell(grid, position_m, force_n, True)
+    ratio = cell_value(table.ratio[layer].reshape(-1), corner, loads, a, b)
+    return min(ratio, 1.0), cell_value(table.fluid.reshape(-1), corner, loads, a, b)
 
 
-@njit(cache=True)
-def contact_cell(
-    positions: int,
-    loads: int,
-    line_m: float,
-    start_m: float,
-    per_m: float,
-    floor_n_per_m: float,
-    per_log: float,
-    position_m: float,
-    force_n: float,
-) -> tuple[int, int, float, float]:
-    """Return the cell of a position and a force in a table, and the weights of its upper ends, clamped to the table."""
-    along = min(max((position_m - start_m) * per_m, 0.0), positions - 1.0)
-    held = start_m + along / per_m
-    load = force_n * line_m / (floor_n_per_m * held * (line_m - held))
-    up = min(np.log(max(load, 1.0)) * per_log, loads - 1.0)
-    i, j = min(int(along), positions - 2), min(int(up), loads - 2)
-    return i, j, along - i, up - j
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def contact_cell(grid: LoadGrid, position_m: Lanes, force_n: Lanes, chosen: Choice) -> tuple[Whole, Lanes, Lanes]:
+    """Return the cell of a position and a force in a table in row order, and the weights of its upper ends.
+
+    Clamped to the table; numbers or lanes, of use where chosen.
+    """
+    along = smaller(larger((position_m - grid.start_m) * grid.per_m, 0.0), grid.positions - 1.0)
+    held = grid.start_m + along / grid.per_m
+    load = force_n * grid.line_m / (grid.floor_n_per_m * held * (grid.line_m - held))
+    up = smaller(logarithm(larger(load, 1.0), chosen) * grid.per_log, grid.loads - 1.0)
+    i, j = smaller(truncated(along), grid.positions - 2), smaller(truncated(up), grid.loads - 2)
+    return i * grid.loads + j, along - as_doubles(i), up - as_doubles(j)
 
 
-@njit(cache=True)
-def cell_value(values: FloatArray, first: int, loads: int, a: float, b: float) -> float:
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def cell_value(values: FloatArray, first: Whole, loads: int, a: Lanes, b: Lanes) -> Lanes:
     """Return the value in a cell of a table in row order whose lower corner is `first`, bilinear in the weights."""
-    here, there, one = np.uint64(first), np.uint64(first + loads), np.uint64(1)  # never negative, as compilers may know
-    low = values[here] * (1.0 - a) + values[there] * a
-    high = values[here + one] * (1.0 - a) + values[there + one] * a
-    value: float = low * (1.0 - b) + high * b
-    return value
+    low_0, high_0 = gather_pairs(values, first)
+    low_1, high_1 = gather_pairs(values, first + loads)
+    low = low_0 * (1.0 - a) + low_1 * a
+    return low * (1.0 - b) + (high_0 * (1.0 - a) + high_1 * a) * b
 
 
 @njit(cache=True)

@@ -15,6 +15,7 @@ import numpy as np
 
 from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
+from siggen.lanes import Lanes, smaller
 
 BOUNDARY_FRICTION = 0.11
 FLUID_FRICTION = 0.02
@@ -64,16 +65,16 @@ def constant_friction(coefficient: float, slip_speed_m_s: float = SLIP_SPEED_M_S
     return composite_friction(table, coefficient, slip_speed_m_s)
 
 
-@njit(cache=True)
-def friction_mixed(share: float, boundary: float, fluid: float) -> float:
-    """Return μ = La μ_b + (1 - La) min(μ_EHL, μ_b); numbers or arrays that broadcast."""
-    bounded = np.minimum(fluid, boundary)
-    coefficient: float = bounded + share * (boundary - bounded)
-    return coefficient
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def friction_mixed(share: Lanes, boundary: float, fluid: Lanes) -> Lanes:
+    """Return μ = La μ_b + (1 - La) min(μ_EHL, μ_b); numbers or lanes."""
+    bounded = smaller(fluid, boundary)
+    return bounded + share * (boundary - bounded)
 
 
 @njit(cache=True)
 def friction_coefficient(law: FrictionLaw, layer: int, position_m: float, force_n: float) -> float:
     """Return the friction coefficient of a contact on the flank roughness `layer` of the table."""
     share, fluid = mixed_contact(law.table, layer, position_m, force_n)
-    return friction_mixed(share, law.boundary, fluid)
+    coefficient: float = friction_mixed(share, law.boundary, fluid)
+    return coefficient

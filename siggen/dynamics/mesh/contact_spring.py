@@ -1,206 +1,111 @@
-"""Force of one pair from the table of the contact across the face, compiled: the narrow function of the time loop.
+"""Spring of one pair from the table of the contact across the face, compiled: the narrow function of the time loop.
 
 Equations: `siggen.gears.contact.contact_table`. A monotone cubic in the approach at the two columns beside the
-position, linear between them; an expansion in the tilt. Numbers of one node stand side by side.
+position, linear between them; an expansion in the tilt. Numbers of one node stand side by side: all that the table says
+of a pair is read at once, eight of them.
 """
 
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
-import numpy as np
-
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.pair_columns import CELL, CURVES, ROW, SHARE, TILT, TOUCH, WEIGHT, between
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.lanes import LANES, Lanes, extract, load, shuffle, splat
+
+_slopes = shuffle(1, 0, 3, 2, 5, 4, 7, 6)
+_next_node = shuffle(4, 5, 6, 7, 4, 5, 6, 7)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def place_contact(numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int) -> None:
-    """Write what `contact_spring` needs of slot i at its angle: first touch, beginning and share of its columns."""
-    row, cell, weight, points = int(pairs[i, ROW]), int(pairs[i, CELL]), pairs[i, WEIGHT], index[layout.POINTS]
-    pairs[i, TOUCH] = between(numbers, index[layout.TOUCH_AT], row * points + cell, weight)
-    place = row * (points - 1) + cell
-    column = numbers[index[layout.COLUMN_AT] + place] + numbers[index[layout.GAIN_AT] + place] * weight
-    whole = min(int(column), index[layout.CONTACT_COLUMNS] - 2)
-    pairs[i, CURVES] = index[layout.CURVES_AT] + whole * index[layout.CONTACT_NODES] * index[layout.CONTACT_VALUES]
-    pairs[i, SHARE] = column - whole
+class PairPlace(NamedTuple):
+    """Where a pair is, for its spring: penetration by itself, its first touch, where its columns begin, their share.
 
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _node(approach: float, unit_m: float, nodes: int) -> int:
-    """Return the node before an approach, the last but one from there on, however far."""
-    root = sqrt(approach / unit_m)
-    return int(root) if root < nodes - 1.0 else nodes - 2
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_spring(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float]:
-    """Return force [N] and stiffness [N/m] of slot i.
-
-    Parameters
-    ----------
-    scalars, numbers, index : of `PairLaw`
-    pairs : (slots, COLUMNS)
-        The table of pairs, placed at an angle (`place_contact`).
-    i : int
-    penetration_m : float
-        Approach of this pair beyond its missing material [m].
+    `whole`: stiffness of the whole face, all that a law without a table of the contact knows [N/m].
     """
-    approach = penetration_m - pairs[i, TOUCH]
+
+    depth: float
+    touch: float
+    curves: float
+    share: float
+    whole: float
+
+
+class Spring(NamedTuple):
+    """What a pair answers with at a penetration; fields are numbers, or lanes of them.
+
+    Force [N], stiffness [N/m] and that to the approach of all pairs, 0 where nothing touches; penetration [m]; moment
+    across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m]; carrying share of the face and share of the load on
+    damage.
+    """
+
+    force: float
+    stiffness: float
+    yielding: float
+    penetration: float
+    moment: float
+    cross: float
+    turning: float
+    carrying: float
+    rough: float
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def flat_spring(stiffness: float, penetration_m: float, side: float) -> Spring:
+    """Return the spring of a face that touches as a whole; `side` is -1 for the back flank, which pushes back."""
+    if not side * penetration_m > 0.0:
+        return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
+    force = stiffness * penetration_m
+    return Spring(force, stiffness, stiffness, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def pair_spring(law: PairLaw, pair: PairPlace, tilt: float, penetration_m: float) -> Spring:
+    """Return the spring of the drive flank of a pair at a tilt [rad] and at an approach beyond missing material [m]."""
+    nodes, values = law.places[layout.CONTACT_NODES], law.places[layout.CONTACT_VALUES]
+    if nodes == 0:
+        return flat_spring(pair.whole, penetration_m, 1.0)
+    approach = penetration_m - pair.touch
     if not approach > 0.0:  # a motion that diverges is no number in the end: it may not become a place in the table
-        return 0.0, 0.0
-    nodes = index[layout.CONTACT_NODES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    node = _node(approach, unit_m, nodes)
-    span = unit_m * (2.0 * node + 1.0)
-    over = approach - unit_m * (node * node)
-    t = over / span
-    values = index[layout.CONTACT_VALUES]
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share = pairs[i, SHARE]
-    rest = 1.0 - share
-    f_0, f_1 = (
-        numbers[here] * rest + numbers[there] * share,
-        numbers[here + values] * rest + numbers[there + values] * share,
-    )
-    s_0, s_1 = (
-        numbers[here + 1] * rest + numbers[there + 1] * share,
-        numbers[here + values + 1] * rest + numbers[there + values + 1] * share,
-    )
-    if t > 1.0:  # beyond the last node the slope stays
-        force, slope = f_1 + s_1 * (over - span), s_1
-    else:
-        rise = (f_1 - f_0) / span
-        bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-        force, slope = f_0 + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
-    tilt = pairs[i, TILT]
-    if values == 4 or tilt == 0.0:
-        return force, slope
-    _, m_slope, m_bend = _cubic(numbers, here + 4, there + 4, values, share, over, span)
-    _, r_slope, r_bend = _cubic(numbers, here + 6, there + 6, values, share, over, span)
-    force += tilt * (m_slope + 0.5 * tilt * r_slope)
-    slope += tilt * (m_bend + 0.5 * tilt * r_bend)
-    return max(force, 0.0), max(slope, 0.0)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def _cubic(
-    numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, span: float
-) -> tuple[float, float, float]:
-    """Return value, first and second derivative of the cubic whose value and slope stand at `here` of both columns."""
-    rest, t = 1.0 - share, over / span
-    f_0 = numbers[here] * rest + numbers[there] * share
-    s_0 = numbers[here + 1] * rest + numbers[there + 1] * share
-    f_1 = numbers[here + values] * rest + numbers[there + values] * share
-    s_1 = numbers[here + values + 1] * rest + numbers[there + values + 1] * share
-    if t > 1.0:
-        return f_1 + s_1 * (over - span), s_1, 0.0
-    rise = (f_1 - f_0) / span
-    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-    value = f_0 + over * (s_0 + t * (bend + t * twist))
-    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) / span
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def contact_moment(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float]:
-    """Return the moment across the face [N m], dM/dd = dF/dθ [N] and dM/dθ [N m] of slot i, arguments as above."""
-    nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(0.0, penetration_m - pairs[i, TOUCH])
-    node = _node(approach, unit_m, nodes)
-    span, over = unit_m * (2.0 * node + 1.0), approach - unit_m * (node * node)
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share, tilt = pairs[i, SHARE], pairs[i, TILT]
-    moment, slope, _ = _cubic(numbers, here + 4, there + 4, values, share, over, span)
-    turning, turning_slope, _ = _cubic(numbers, here + 6, there + 6, values, share, over, span)
-    return moment + turning * tilt, slope + turning_slope * tilt, turning
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_shares(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float]:
-    """Return the carrying share of the face and the share of the load on damage of slot i, arguments as above."""
-    nodes = index[layout.CONTACT_NODES]
-    unit_m = scalars[layout.CONTACT_REACH] / ((nodes - 1.0) * (nodes - 1.0))
-    approach = max(0.0, penetration_m - pairs[i, TOUCH])
-    node = _node(approach, unit_m, nodes)
-    t = min((approach - unit_m * (node * node)) / (unit_m * (2.0 * node + 1.0)), 1.0)
-    values = index[layout.CONTACT_VALUES]
-    here = int(pairs[i, CURVES]) + node * values
-    there = here + nodes * values
-    share = pairs[i, SHARE]
-    carrying_0 = numbers[here + 2] * (1.0 - t) + numbers[here + values + 2] * t
-    carrying_1 = numbers[there + 2] * (1.0 - t) + numbers[there + values + 2] * t
-    rough_0 = numbers[here + 3] * (1.0 - t) + numbers[here + values + 3] * t
-    rough_1 = numbers[there + 3] * (1.0 - t) + numbers[there + values + 3] * t
-    return carrying_0 + share * (carrying_1 - carrying_0), rough_0 + share * (rough_1 - rough_0)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_state(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, i: int, penetration_m: float
-) -> tuple[float, float, float, float, float, float, float]:
-    """Return all that the table says of slot i, which is found once: spring, moment and shares of the functions above.
-
-    Force [N] and stiffness [N/m]; moment [N m], dM/dd [N] and dM/dθ [N m]; carrying share and share on damage.
-    """
-    approach = penetration_m - pairs[i, TOUCH]
-    if not approach > 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0
-    nodes, values = index[layout.CONTACT_NODES], index[layout.CONTACT_VALUES]
-    unit_m = scalars[layout.CONTACT_UNIT]
-    node = _node(approach, unit_m, nodes)
+        return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
+    unit_m = law.scalars[layout.CONTACT_UNIT]
+    root = sqrt(approach / unit_m)
+    node = int(root) if root < nodes - 1.0 else nodes - 2  # the last but one from there on, however far
     span = unit_m * (2.0 * node + 1.0)
     over = approach - unit_m * (node * node)
     per_span = 1.0 / span
     t = over * per_span
-    here = int(pairs[i, CURVES]) + node * values
-    there, share = here + nodes * values, pairs[i, SHARE]
-    beyond, held = t > 1.0, min(t, 1.0)
-    force, slope, _ = _hermite(numbers, here, there, values, share, over, per_span, beyond)
-    low = _across(numbers, here + 2, there + 2, share)
-    carrying = low + held * (_across(numbers, here + values + 2, there + values + 2, share) - low)
-    low = _across(numbers, here + 3, there + 3, share)
-    rough = low + held * (_across(numbers, here + values + 3, there + values + 3, share) - low)
+    here = int(pair.curves) + node * values
+    there = here + nodes * values
+    low = _across(law.numbers, here, there, pair.share)
+    high = _next_node(low)  # behind four values that of the next node follows in the same register
+    if values > 4:
+        high = _across(law.numbers, here + LANES, there + LANES, pair.share)
+    # Cubics of force, moment and what turns it in lanes 0, 4 and 6, whose slopes stand beside them; shares in 2 and 3.
+    s_0, s_1 = _slopes(low), _slopes(high)
+    if t > 1.0:  # beyond the last node the slope stays
+        value, slope, second = high + s_1 * (over - 1.0 / per_span), s_1, splat(0.0)
+    else:
+        rise = (high - low) * per_span
+        bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
+        value, slope = low + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
+        second = (2.0 * bend + 6.0 * t * twist) * per_span
+    shares = low + min(t, 1.0) * (high - low)
+    carrying, rough = extract(shares, 2), extract(shares, 3)
+    force, stiffness = extract(value, 0), extract(slope, 0)
     if values == 4:
-        return force, slope, 0.0, 0.0, 0.0, carrying, rough
-    tilt = pairs[i, TILT]
-    moment, m_slope, m_bend = _hermite(numbers, here + 4, there + 4, values, share, over, per_span, beyond)
-    turning, r_slope, r_bend = _hermite(numbers, here + 6, there + 6, values, share, over, per_span, beyond)
-    force += tilt * (m_slope + 0.5 * tilt * r_slope)
-    slope += tilt * (m_bend + 0.5 * tilt * r_bend)
-    cross = m_slope + r_slope * tilt
-    return max(force, 0.0), max(slope, 0.0), moment + turning * tilt, cross, turning, carrying, rough
+        return Spring(force, stiffness, stiffness, penetration_m, 0.0, 0.0, 0.0, carrying, rough)
+    force += tilt * (extract(slope, 4) + 0.5 * tilt * extract(slope, 6))
+    stiffness += tilt * (extract(second, 4) + 0.5 * tilt * extract(second, 6))
+    moment, cross = extract(value, 4) + extract(value, 6) * tilt, extract(slope, 4) + extract(slope, 6) * tilt
+    force, stiffness = max(force, 0.0), max(stiffness, 0.0)
+    return Spring(force, stiffness, stiffness, penetration_m, moment, cross, extract(value, 6), carrying, rough)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _across(numbers: FloatArray, here: int, there: int, share: float) -> float:
-    """Return the value between two columns."""
-    low = numbers[np.uint64(here)]  # never negative, which the compiler cannot know of a signed one
-    value: float = low + share * (numbers[np.uint64(there)] - low)
-    return value
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _hermite(
-    numbers: FloatArray, here: int, there: int, values: int, share: float, over: float, per_span: float, beyond: bool
-) -> tuple[float, float, float]:
-    """Return what `_cubic` returns, without divisions."""
-    f_0, s_0 = _across(numbers, here, there, share), _across(numbers, here + 1, there + 1, share)
-    f_1 = _across(numbers, here + values, there + values, share)
-    s_1 = _across(numbers, here + values + 1, there + values + 1, share)
-    if beyond:
-        return f_1 + s_1 * (over - 1.0 / per_span), s_1, 0.0
-    rise, t = (f_1 - f_0) * per_span, over * per_span
-    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-    value = f_0 + over * (s_0 + t * (bend + t * twist))
-    return value, s_0 + t * (2.0 * bend + 3.0 * t * twist), (2.0 * bend + 6.0 * t * twist) * per_span
+def _across(numbers: FloatArray, here: int, there: int, share: float) -> Lanes:
+    """Return eight values between two columns."""
+    low = load(numbers, here)
+    return low + share * (load(numbers, there) - low)

@@ -10,14 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import place_contact
-from siggen.dynamics.mesh.pair_columns import CELL, FLANK, ROW, TOUCH, WEIGHT, WHOLE
+from siggen.dynamics.mesh.contact_spring import PairPlace, pair_spring
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.pair_springs import spring_of_flank
+from siggen.dynamics.mesh.pair_places import placed_contact, row_places
 
 MOST_DEPTHS = 16
 """Approaches at which forces are asked for, half a static approach apart, as deep as a flank sinks."""
@@ -42,7 +40,7 @@ def event_places(law: PairLaw, approach_m: float, step_pitches: float) -> NDArra
     edges = np.zeros((rows, points), dtype=np.bool_)
     sunk = approach_m + _deepest_m(law)
     for depth in np.linspace(0.0, sunk, max(2, min(MOST_DEPTHS, round(2.0 * sunk / approach_m))) + 1)[1:]:
-        force = _forces(law.scalars, law.numbers, law.places, pair_table(law), rows, float(depth))
+        force = _forces(law, rows, float(depth))
         bend = force[:, 2 * reach :] - 2.0 * force[:, reach:-reach] + force[:, : -2 * reach]
         edges[:, reach:-reach] |= np.abs(bend) > LEAST_SHARE * force.max(axis=0).mean()
     return _widened(edges, 3 * reach, reach)
@@ -63,21 +61,17 @@ def _widened(edges: NDArray[np.bool_], before: int, after: int) -> NDArray[np.bo
     return np.ascontiguousarray(windows.any(axis=2))
 
 
-@njit(cache=True)
-def _forces(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, rows: int, depth_m: float
-) -> FloatArray:
+@njit(cache=True, error_model="numpy")
+def _forces(law: PairLaw, rows: int, depth_m: float) -> FloatArray:
     """Return the force (rows, points) at a depth below the whole flank."""
-    points = index[layout.POINTS]
+    points = law.places[layout.POINTS]
     force = np.empty((rows, points))
-    pairs[0, FLANK] = 1.0
     for row in range(rows):
+        stiffness_at, touch_at, columns_at = row_places(law, row)
         for k in range(points):
-            cell = min(k, points - 2)
-            pairs[0, ROW], pairs[0, CELL], pairs[0, WEIGHT] = row, cell, k - cell
-            pairs[0, WHOLE] = numbers[index[layout.STIFFNESS_AT] + row * points + k]
-            pairs[0, TOUCH] = 0.0
-            if index[layout.CONTACT_NODES] > 0:
-                place_contact(numbers, index, pairs, 0)
-            force[row, k] = spring_of_flank(scalars, numbers, index, pairs, 0, depth_m)[0]
+            cell, touch, curves, share = min(k, points - 2), 0.0, 0.0, 0.0
+            if law.places[layout.CONTACT_NODES] > 0:
+                touch, curves, share = placed_contact(law, touch_at, columns_at, cell, float(k - cell))
+            place = PairPlace(depth_m, touch, curves, share, law.numbers[int(stiffness_at) + k])
+            force[row, k] = pair_spring(law, place, 0.0, depth_m).force
     return force

@@ -1,41 +1,46 @@
 """The pair law of two slots at three nodes in lanes, first part: the table of it, and where its pairs are.
 
 A lane is a pair at a node: slots 0 and 1 at node 0, then at node 1, then at node 2. The last two lanes hold node 2 once
-more and are left out in the end. Operations are those of `pair_places`, in their order, so that all bytes are theirs.
+more and are left out in the end.
 """
 
 from __future__ import annotations
 
+from itertools import count
+
 import numpy as np
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.lanes import (
-    LANES,
-    Lanes,
-    Whole,
-    aligned,
-    as_doubles,
-    gather,
-    gather_pairs,
-    larger,
-    load,
-    shuffle,
-    smaller,
-    store,
-    truncated,
-)
+from siggen.dynamics.mesh.pair_places import Engaged, between, engaged, placed, placed_contact
+from siggen.lanes import LANES, Lanes, aligned, load, shuffle, store
 
-(
-    APPLIES, NODES_AT, PAIR, MISSED_1, MISSED_2, OFFSET, TOUCH_ROW, COLUMN_ROW, DEPTH, TOUCH, CURVES, SHARE, COUPLING,
-    NORMAL, STIFFNESS, YIELD, MOMENT, CROSS, TURNING, CARRYING, ROUGH, POSITION, SCRATCH,
-) = range(23)  # fmt: skip
-"""Rows of the table: whether lanes can be used at all, and the nodes on [0, 1]. What stays during an engagement: number
-of the pair, where its missing material begins, place of its teeth, where its first touch and its columns begin. Then
-what `pair_columns` says of the same names."""
-ROWS = 23
+_row = count()
+APPLIES = next(_row)  # whether lanes can be used at all
+NODES_AT = next(_row)  # on [0, 1]
+PAIR = next(_row)  # number of the pair; this and the next five stay while it is engaged (`pair_places.Engaged`)
+TOUCH_AT = next(_row)
+COLUMNS_AT = next(_row)
+MISSED_1_AT = next(_row)
+MISSED_2_AT = next(_row)
+OFFSET = next(_row)
+DEPTH = next(_row)  # penetration by itself [m]
+TOUCH = next(_row)  # the rest is what `pair_columns` says of the same names
+CURVES = next(_row)
+SHARE = next(_row)
+COUPLING = next(_row)
+NORMAL = next(_row)
+STIFFNESS = next(_row)
+YIELD = next(_row)
+MOMENT = next(_row)
+CROSS = next(_row)
+TURNING = next(_row)
+CARRYING = next(_row)
+ROUGH = next(_row)
+POSITION = next(_row)
+ROWS = next(_row)
 SLOTS = 2
 BOTH = 0b111111
 """All lanes of both slots; of one slot every second of them."""
@@ -59,55 +64,31 @@ def lane_table(law: PairLaw, nodes: FloatArray) -> FloatArray:
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
-def engage_lanes(numbers: FloatArray, index: IntArray, table: FloatArray, slot: int, pair: int) -> None:
-    """Write what stays during the engagement of a pair into the lanes of its slot (`engage_pair`)."""
-    tooth_1, tooth_2 = pair % index[layout.TEETH_1], pair % index[layout.TEETH_2]
-    row = index[index[layout.TABLE_AT] + tooth_1 * index[layout.TEETH_2] + tooth_2]
-    count, points = index[layout.MISSING_POINTS], index[layout.POINTS]
+def engage_lanes(law: PairLaw, table: FloatArray, slot: int, pair: int) -> None:
+    """Write what stays during the engagement of a pair into the lanes of its slot."""
+    kept = engaged(law, pair)
     for lane in range(slot, LANES, SLOTS):
         table[PAIR, lane] = pair
-        table[MISSED_1, lane] = index[layout.MISSING_1_AT] + index[index[layout.KIND_1_AT] + tooth_1] * count
-        table[MISSED_2, lane] = index[layout.MISSING_2_AT] + index[index[layout.KIND_2_AT] + tooth_2] * count
-        table[OFFSET, lane] = (
-            numbers[index[layout.OFFSET_1_AT] + tooth_1] + numbers[index[layout.OFFSET_2_AT] + tooth_2]
-        )
-        table[TOUCH_ROW, lane] = index[layout.TOUCH_AT] + row * points
-        table[COLUMN_ROW, lane] = row * (points - 1)
+        table[TOUCH_AT, lane], table[COLUMNS_AT, lane] = kept.touch, kept.columns
+        table[MISSED_1_AT, lane], table[MISSED_2_AT, lane] = kept.missed_1, kept.missed_2
+        table[OFFSET, lane] = kept.offset
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _between(numbers: FloatArray, place: Whole, weight: Lanes) -> Lanes:
-    """Return values of cells, linear in the weights of their upper ends (`between`)."""
-    low, high = gather_pairs(numbers, place)
-    return low * (1.0 - weight) + high * weight
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def place_lanes(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pitches: Lanes, approach: Lanes, table: FloatArray
-) -> Lanes:
+def place_lanes(law: PairLaw, pitches: Lanes, approach: Lanes, table: FloatArray) -> Lanes:
     """Write where the pairs are and how deep each is by itself [m]; return that depth."""
-    points, count, place = index[layout.POINTS], index[layout.MISSING_POINTS], pitches - load(table, PAIR * LANES)
-    along = smaller(larger(place * scalars[layout.PER_PITCH], 0.0), points - 1.0)
-    cell = smaller(truncated(along), points - 2)
-    weight = along - as_doubles(cell)
-    store(table, POSITION * LANES, scalars[layout.START_M] + place * scalars[layout.PITCH_M])
-    store(table, TOUCH * LANES, _between(numbers, truncated(load(table, TOUCH_ROW * LANES)) + cell, weight))
-    first = truncated(load(table, COLUMN_ROW * LANES)) + cell
-    column = gather(numbers, first + index[layout.COLUMN_AT])
-    column = column + gather(numbers, first + index[layout.GAIN_AT]) * weight
-    whole = smaller(truncated(column), index[layout.CONTACT_COLUMNS] - 2)
-    curves = whole * (index[layout.CONTACT_NODES] * index[layout.CONTACT_VALUES]) + index[layout.CURVES_AT]
-    store(table, CURVES * LANES, as_doubles(curves))
-    store(table, SHARE * LANES, column - as_doubles(whole))
-    if index[layout.APART] > 0:
-        store(table, COUPLING * LANES, _between(numbers, cell + index[layout.COUPLING_AT], weight))
-    missing = (place + scalars[layout.REACH_BEFORE]) * scalars[layout.MISSING_PER_PITCH]
-    missing = smaller(larger(missing, 0.0), count - 1.0)
-    cell = smaller(truncated(missing), count - 2)
-    weight = missing - as_doubles(cell)
-    first_m = _between(numbers, truncated(load(table, MISSED_1 * LANES)) + cell, weight)
-    first_m = first_m + _between(numbers, truncated(load(table, MISSED_2 * LANES)) + cell, weight)
-    depth = approach - (load(table, OFFSET * LANES) + first_m + scalars[layout.LEAD_M])
+    touch_at, columns_at = load(table, TOUCH_AT * LANES), load(table, COLUMNS_AT * LANES)
+    missed_1, missed_2 = load(table, MISSED_1_AT * LANES), load(table, MISSED_2_AT * LANES)
+    # Lanes take contacts alone: no stiffness of whole faces is asked for.
+    kept = Engaged(touch_at, touch_at, touch_at, columns_at, missed_1, missed_2, load(table, OFFSET * LANES))
+    position, cell, weight, gap = placed(law, kept, pitches - load(table, PAIR * LANES))
+    touch, curves, share = placed_contact(law, touch_at, columns_at, cell, weight)
+    store(table, POSITION * LANES, position)
+    store(table, TOUCH * LANES, touch)
+    store(table, CURVES * LANES, curves)
+    store(table, SHARE * LANES, share)
+    if law.places[layout.APART] > 0:
+        store(table, COUPLING * LANES, between(law, cell + law.places[layout.COUPLING_AT], weight))
+    depth = approach - gap
     store(table, DEPTH * LANES, depth)
     return depth

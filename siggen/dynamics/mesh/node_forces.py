@@ -1,27 +1,49 @@
-"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled.
+"""Forces of all tooth pairs at the nodes of one step with their tangents, compiled: springs, dampers, film, friction.
 
-The law is that of `pair_forces`: the same places, springs, moments, dampers, film and friction. Only the asperity share
-that a damper answers to is found once per pair, at the middle of the step and the mean force over it: its error is of
-second order.
+Any law, any number of slots and nodes, one pair after the other; a state by itself is a step of one node
+(`pair_forces`). What a pair answers with is the same code as in lanes (`lane_forces`): places, springs, loads. The
+asperity share that a damper answers to is found once per pair, at the middle of the step and the mean force over it:
+its error is of second order, none at one node.
 """
 
 from __future__ import annotations
 
-from math import sqrt, tanh
+from math import sqrt
 
-from siggen.arrays import FloatArray, IntArray
+from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
+from siggen.dynamics.mesh.contact_spring import Spring
 from siggen.dynamics.mesh.pair_columns import (
+    ALONE,
+    ASPERITY_SHARE,
     CARRYING,
+    COEFFICIENT,
     CROSS,
     DAMPING,
     FLANK,
+    FRICTION,
     MOMENT,
+    MOST_APART,
+    NODE_APPROACH,
+    NODE_ARM,
+    NODE_FRICTION,
+    NODE_MOMENT,
+    NODE_NORMAL,
+    NODE_RATE,
+    NODE_ROWS,
+    NODE_SLIDING_0,
+    NODE_SLIDING_1,
+    NODE_SLOPE,
+    NODE_SLOPE_RATE,
+    NODE_TILT,
+    NODE_TILT_RATE,
+    NODE_TURN,
     NORMAL,
     PENETRATION,
     POSITION,
     ROUGH,
+    SLIDING,
     STIFFNESS,
     TILT,
     TOUCH,
@@ -29,38 +51,21 @@ from siggen.dynamics.mesh.pair_columns import (
     WHOLE,
     YIELD,
 )
-from siggen.dynamics.mesh.pair_forces import LEAST_CARRYING, film_force, lubricated
-from siggen.dynamics.mesh.pair_tangents import write_springs
-
-(
-    NODE_APPROACH, NODE_RATE, NODE_SLIDING_0, NODE_SLIDING_1, NODE_TILT, NODE_TILT_RATE, NODE_NORMAL, NODE_SLOPE,
-    NODE_SLOPE_RATE, NODE_FRICTION, NODE_ARM, NODE_MOMENT, NODE_TURN,
-) = range(13)  # fmt: skip
-"""Rows of the values at the nodes: approach [m], its rate, both parts of the sliding speed [m/s, 1/s], tilt [rad] and
-its rate, which the caller writes; ΣN [N], its tangents to approach [N/m] and rate [N s/m], ΣF [N], Σ s F, Σμ and
-Σ ζ F [N m]."""
-NODE_ROWS = 13
-STRAIGHT = 10.0
-"""tanh is 1 within 4e-9 beyond."""
+from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.pair_loads import LEAST_CARRYING, damped, film_force, lubricated, rubbed
+from siggen.dynamics.mesh.pair_springs import coupling_of, write_springs
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def write_node_forces(
-    scalars: FloatArray,
-    numbers: FloatArray,
-    index: IntArray,
-    nodes: FloatArray,
-    weights: FloatArray,
-    pitches_0: float,
-    pitches_1: float,
-    pairs: FloatArray,
-    node: FloatArray,
-) -> int:
+    law: PairLaw, nodes: FloatArray, weights: FloatArray, pitches_0: float, pitches_1: float, pairs: FloatArray,
+    node: FloatArray, settled: float,
+) -> int:  # fmt: skip
     """Write the forces at the nodes of a step, and return which slots touch, negative where that changes within it.
 
     Parameters
     ----------
-    scalars, numbers, index : of `PairLaw`
+    law : PairLaw
     nodes, weights : (k,)
         Of the quadrature on [0, 1].
     pitches_0, pitches_1 : float
@@ -68,78 +73,95 @@ def write_node_forces(
     pairs : (k slots, COLUMNS)
         Tables of pairs of all nodes, one behind the other (`pair_table`); what they hold is the first guess.
     node : (NODE_ROWS, k or more)
+    settled : float
+        Share of their force to which pairs on one gear body are settled (`write_springs`).
     """
     count = nodes.size
-    slots, tilts = pairs.shape[0] // count, index[layout.CONTACT_VALUES] > 4
+    slots, tilts = pairs.shape[0] // count, law.places[layout.CONTACT_VALUES] > 4
     touching, changed = 0, False
     for q in range(count):
         base, before = q * slots, (q - 1 if q > 0 else count - 1) * slots
         for i in range(slots if tilts else 0):
             pairs[base + i, TILT] = node[NODE_TILT, q]
         pitches = pitches_0 + (pitches_1 - pitches_0) * nodes[q]
-        found = write_springs(scalars, numbers, index, node[NODE_APPROACH, q], pitches, pairs, base, before, slots)
+        found = write_springs(law, node[NODE_APPROACH, q], pitches, pairs, base, before, slots, settled)
         changed = changed or (q > 0 and found != touching)
         touching = found
         for row in range(NODE_NORMAL, NODE_ROWS):
             node[row, q] = 0.0
-    if index[layout.SHARE_DAMPS] > 0:
-        _write_roots(scalars, numbers, index, weights, pairs, slots)
+    for i in range(slots):
+        _write_root(law, weights, pairs, i, slots)
     for q in range(count):
-        _load(scalars, index, pairs, q, slots, tilts, node)
-    if index[layout.ROUGHNESSES] > 0:
+        _load(law, pairs, q, slots, node)
+    if law.places[layout.ROUGHNESSES] > 0:
         for i in range(slots):
-            _rub(scalars, numbers, index, pairs, i, slots, tilts, node)
+            _rub(law, pairs, i, slots, node)
     return -1 - touching if changed else touching
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
-def _write_roots(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, weights: FloatArray, pairs: FloatArray, slots: int
-) -> None:
-    """Write c √Σk/k of every pair by the share of the load that asperities carry, the same at all nodes."""
-    for i in range(slots):
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _write_root(law: PairLaw, weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> None:
+    """Write c √Σk/k of a slot, by the share of the load that asperities carry, the same at all nodes."""
+    scalars, root = law.scalars, law.scalars[layout.DAMPING_ROOT]
+    if law.places[layout.SHARE_DAMPS] > 0:
         root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM]
-        load, position, rough = _middle(weights, pairs, i, slots)
+        load, position, rough = _middle(weights, pairs, slot, slots)
         if load > 0.0:
-            share, _ = lubricated(scalars, numbers, index, position, load, rough)
+            share, _ = lubricated(law, position, load, rough, True)
             root = scalars[layout.DAMPING_STRUCTURE] + scalars[layout.DAMPING_FILM] * (1.0 - share)
             root += scalars[layout.DAMPING_ASPERITIES] * share
-        for q in range(weights.size):
-            pairs[q * slots + i, DAMPING] = root
+    for i in range(slot, pairs.shape[0], slots):
+        pairs[i, DAMPING] = root
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _load(
-    scalars: FloatArray, index: IntArray, pairs: FloatArray, q: int, slots: int, tilts: bool, node: FloatArray
-) -> None:
+def _load(law: PairLaw, pairs: FloatArray, q: int, slots: int, node: FloatArray) -> None:
     """Add springs, dampers and films of all pairs at a node; NORMAL becomes the whole force."""
-    rate, total = node[NODE_RATE, q], 0.0
+    rate, tilt_rate, total, films = node[NODE_RATE, q], node[NODE_TILT_RATE, q], 0.0, law.scalars[layout.FILM] > 0.0
+    if films and law.places[layout.APART] > 0:
+        _widen(law, pairs, q * slots, slots)
     for i in range(q * slots, (q + 1) * slots):
         total += pairs[i, STIFFNESS]
+        pairs[i, SLIDING] = 0.0
+        if pairs[i, WHOLE] > 0.0:
+            pairs[i, SLIDING] = node[NODE_SLIDING_0, q] + pairs[i, POSITION] * node[NODE_SLIDING_1, q]
+        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = 0.0, 0.0, 0.0
     shared = 1.0 / sqrt(total) if total > 0.0 else 0.0
     for i in range(q * slots, (q + 1) * slots):
-        flank = pairs[i, FLANK]
-        if flank == 0.0:
-            if scalars[layout.FILM] > 0.0 and pairs[i, WHOLE] > 0.0:
-                film = film_force(scalars, pairs[i, POSITION], pairs[i, TOUCH] - pairs[i, PENETRATION], rate)
-                node[NODE_NORMAL, q] += film
-                node[NODE_SLOPE_RATE, q] += film / rate if film > 0.0 else 0.0
-            continue
-        root = pairs[i, DAMPING] if index[layout.SHARE_DAMPS] > 0 else scalars[layout.DAMPING_ROOT]
-        damping = root * shared * pairs[i, STIFFNESS]
-        force = pairs[i, NORMAL] + damping * rate
-        if tilts and flank > 0.0:
-            tilt_rate, cross = root * shared * node[NODE_TILT_RATE, q], pairs[i, CROSS]
-            force += cross * tilt_rate
-            moment = pairs[i, MOMENT] + root * shared * cross * rate + pairs[i, TURNING] * tilt_rate
-            pairs[i, MOMENT] = moment if force > 0.0 else 0.0
-            node[NODE_MOMENT, q] += pairs[i, MOMENT]
-        pairs[i, NORMAL] = 0.0
-        if force * flank > 0.0:
-            pairs[i, NORMAL] = force
-            node[NODE_NORMAL, q] += force
+        found = damped(law, pairs[i, DAMPING] * shared, rate, tilt_rate, _spring(pairs, i))
+        pairs[i, NORMAL], pairs[i, DAMPING], pairs[i, MOMENT] = found.force, found.damping, found.moment
+        node[NODE_MOMENT, q] += found.moment
+        if found.carries:
+            node[NODE_NORMAL, q] += found.force
             node[NODE_SLOPE, q] += pairs[i, YIELD]
-            node[NODE_SLOPE_RATE, q] += damping
+            node[NODE_SLOPE_RATE, q] += found.damping
+        elif films and pairs[i, FLANK] == 0.0 and pairs[i, WHOLE] > 0.0:
+            film = film_force(law, pairs[i, POSITION], pairs[i, TOUCH] - pairs[i, PENETRATION], rate)
+            pairs[i, NORMAL] = film
+            node[NODE_NORMAL, q] += film
+            node[NODE_SLOPE_RATE, q] += film / rate if film > 0.0 else 0.0
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _spring(pairs: FloatArray, i: int) -> Spring:
+    return Spring(
+        pairs[i, NORMAL], pairs[i, STIFFNESS], pairs[i, YIELD], pairs[i, PENETRATION], pairs[i, MOMENT],
+        pairs[i, CROSS], pairs[i, TURNING], pairs[i, CARRYING], pairs[i, ROUGH],
+    )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def _widen(law: PairLaw, pairs: FloatArray, base: int, slots: int) -> None:
+    """Write how far pairs that do not touch are apart under the forces of the others, which deflect their gear body."""
+    apart = min(law.places[layout.APART], MOST_APART)
+    for i in range(base, base + slots):
+        if pairs[i, FLANK] != 0.0 or pairs[i, WHOLE] == 0.0:
+            continue
+        depth = pairs[i, ALONE]
+        for j in range(base, base + slots):
+            if j != i and pairs[j, FLANK] != 0.0:
+                depth -= coupling_of(law, pairs, apart, i, j) * pairs[j, NORMAL]
+        pairs[i, PENETRATION] = depth
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -165,25 +187,15 @@ def _middle(weights: FloatArray, pairs: FloatArray, slot: int, slots: int) -> tu
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _rub(
-    scalars: FloatArray, numbers: FloatArray, index: IntArray, pairs: FloatArray, slot: int, slots: int, tilts: bool,
-    node: FloatArray,
-) -> None:  # fmt: skip
+def _rub(law: PairLaw, pairs: FloatArray, slot: int, slots: int, node: FloatArray) -> None:
     """Add the friction of a slot at all nodes."""
     for q in range(pairs.shape[0] // slots):
         i = q * slots + slot
         force, here = pairs[i, NORMAL], pairs[i, POSITION]
         if pairs[i, FLANK] <= 0.0 or force <= 0.0:
             continue
-        load = force / max(pairs[i, CARRYING], LEAST_CARRYING)
-        _, coefficient = lubricated(scalars, numbers, index, here, load, pairs[i, ROUGH])
-        speed = (node[NODE_SLIDING_0, q] + here * node[NODE_SLIDING_1, q]) / scalars[layout.SLIP_SPEED]
-        friction = coefficient * force
-        if abs(speed) < STRAIGHT:
-            friction *= tanh(speed)
-        elif speed < 0.0:
-            friction = -friction
-        node[NODE_FRICTION, q] += friction
-        node[NODE_ARM, q] += here * friction
-        if tilts:
-            node[NODE_TURN, q] += friction * pairs[i, MOMENT] / force
+        found = rubbed(law, force, here, (pairs[i, CARRYING], pairs[i, ROUGH]), pairs[i, SLIDING])
+        pairs[i, FRICTION], pairs[i, COEFFICIENT], pairs[i, ASPERITY_SHARE] = found
+        node[NODE_FRICTION, q] += found.friction
+        node[NODE_ARM, q] += here * found.friction
+        node[NODE_TURN, q] += found.friction * pairs[i, MOMENT] / force

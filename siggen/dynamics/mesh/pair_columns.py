@@ -1,40 +1,62 @@
-"""Columns of the table of tooth pairs in reach, and how its tables are read, compiled."""
+"""Columns of the table of tooth pairs in reach, and rows of the values at the nodes of a step."""
 
 from __future__ import annotations
 
-import numpy as np
+from itertools import count
 
-from siggen.arrays import FloatArray
-from siggen.compiled import njit
-
-(
-    NORMAL, FRICTION, PENETRATION, STIFFNESS, SLIDING, POSITION, FLANK, CARRYING, ASPERITY_SHARE, COEFFICIENT, DAMPING,
-    PLACED, WHOLE, GAP, OFFSET, CELL, WEIGHT, ROW, ROUGH, TOUCH, CURVES, SHARE, TILT, TILT_RATE, MOMENT, CROSS,
-    TURNING, PAIR, STIFF_AT, MISSED_1_AT, MISSED_2_AT, YIELD, ALONE,
-    COUPLED,
-) = range(34)  # fmt: skip
-"""Columns of the table of pairs: forces [N]; penetration p [m]; stiffness f' where a pair touches, of the whole face
-where not, 0 for an empty slot [N/m]; sliding speed [m/s]; position s [m]; +1, -1, 0 for the drive flank, the back flank
-and no contact; share of the face that carries; asperity share; friction coefficient; damping [N s/m]. Then what is kept
-per angle: the angle [base pitches], stiffness of the whole face, missing material, place of the teeth, cell of the
-tables and weight of its upper end, row, share of the face on damage; first touch [m], beginning of the curves and share
-of the upper column (`contact_spring`); tilt [rad] and its rate [rad/s], which the caller writes, moment across the face
-[N m], its derivatives to approach [N] and tilt [N m]. What is kept per engagement: the pair's global number, and where
-its stiffness and its missing material begin. Stiffness to an approach of all pairs [N/m] and penetration of a pair by
-itself [m] (`pair_tangents`); from COUPLED on the coupling to older pairs."""
+_column = count()
+NORMAL = next(_column)  # force [N]
+FRICTION = next(_column)  # [N]
+PENETRATION = next(_column)  # p [m]
+STIFFNESS = next(_column)  # f', 0 where a pair does not touch [N/m]
+SLIDING = next(_column)  # speed [m/s]
+POSITION = next(_column)  # s [m]
+FLANK = next(_column)  # +1, -1, 0: drive flank, back flank, no contact
+CARRYING = next(_column)  # share of the face; this and the next three of pairs that touch
+ASPERITY_SHARE = next(_column)
+COEFFICIENT = next(_column)  # of friction
+DAMPING = next(_column)  # [N s/m]
+WHOLE = next(_column)  # stiffness of the whole face, 0 for an empty slot [N/m]
+ROUGH = next(_column)  # share of the load on damage
+TOUCH = next(_column)  # first touch [m]
+CURVES = next(_column)  # where its curves begin (`contact_spring`)
+SHARE = next(_column)  # of the upper column
+TILT = next(_column)  # [rad]
+MOMENT = next(_column)  # across the face [N m]
+CROSS = next(_column)  # its derivative to the approach [N]
+TURNING = next(_column)  # and to the tilt [N m]
+YIELD = next(_column)  # stiffness to an approach of all pairs [N/m]
+ALONE = next(_column)  # penetration of a pair by itself [m]
+PAIR = next(_column)  # global number
+ROW = next(_column)  # what is kept while it is engaged (`pair_places.Engaged`)
+STIFFNESS_AT = next(_column)
+TOUCH_AT = next(_column)
+COLUMNS_AT = next(_column)
+MISSED_1_AT = next(_column)
+MISSED_2_AT = next(_column)
+OFFSET = next(_column)
+COUPLED = next(_column)  # from here on the coupling to older pairs [m/N]
 MOST_APART = 3
 """Pairs further apart than this do not couple: no gear has more in contact."""
 COLUMNS = COUPLED + MOST_APART
 
+_row = count()
+NODE_APPROACH = next(_row)  # [m]; this and the next five the caller writes
+NODE_RATE = next(_row)  # of the approach [m/s]
+NODE_SLIDING_0 = next(_row)  # sliding speed at s: the first [m/s] plus s times the second [1/s]
+NODE_SLIDING_1 = next(_row)
+NODE_TILT = next(_row)  # [rad]
+NODE_TILT_RATE = next(_row)  # [rad/s]
+NODE_NORMAL = next(_row)  # ΣN [N]
+NODE_SLOPE = next(_row)  # its tangent to the approach [N/m]
+NODE_SLOPE_RATE = next(_row)  # and to the rate [N s/m]
+NODE_FRICTION = next(_row)  # ΣF [N]
+NODE_ARM = next(_row)  # Σ s F [N m]
+NODE_MOMENT = next(_row)  # Σμ [N m]
+NODE_TURN = next(_row)  # Σ ζ F [N m]
+NODE_ROWS = next(_row)
+
 
 def solution_columns(slots: int) -> int:
     """Return the columns behind the table in which coupled pairs are solved (`pair_springs`)."""
-    return 4 + 2 * slots
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def between(numbers: FloatArray, first: int, cell: int, weight: float) -> float:
-    """Return the value in a cell of the table that begins at `first`, linear in the weight of the cell's upper end."""
-    here = np.uint64(first + cell)  # never negative, which the compiler cannot know of a signed one
-    value: float = numbers[here] * (1.0 - weight) + numbers[here + np.uint64(1)] * weight
-    return value
+    return 3 + 2 * slots

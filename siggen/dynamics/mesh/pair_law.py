@@ -19,6 +19,7 @@ of contact the stiffness is that of its end. Load sharing is N_n/ΣN and needs n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -34,24 +35,66 @@ if TYPE_CHECKING:
     from siggen.gears.geometry.missing_material import MissingMaterial
     from siggen.gears.stiffness.mesh_tables import MeshTables
 
-
-(
-    CONTACT_RATIO, PER_PITCH, MISSING_PER_PITCH, REACH_BEFORE, REACH_AFTER, START_M, PITCH_M, LINE_M, DAMPING_ROOT,
-    BACKLASH_M, LEAD_M, FILM, FILM_FLOOR_M, DAMPING_STRUCTURE, DAMPING_FILM, DAMPING_ASPERITIES, SLIP_SPEED, BOUNDARY,
-    LUBRICATED_LINE, LUBRICATED_START, LUBRICATED_PER_M, LUBRICATED_FLOOR, LUBRICATED_PER_LOG, CONTACT_REACH,
-    CONTACT_TILT, CONTACT_UNIT,
-) = range(26)  # fmt: skip
+_scalar = count()
 """Places of single numbers in `PairLaw.scalars`."""
-SCALARS = 26
+CONTACT_RATIO = next(_scalar)  # length of the path of contact [base pitches]
+PER_PITCH = next(_scalar)  # intervals of the tables per base pitch
+MISSING_PER_PITCH = next(_scalar)  # the same of missing material
+REACH_BEFORE = next(_scalar)  # how far before the path of contact teeth may touch [base pitches]
+REACH_AFTER = next(_scalar)
+START_M = next(_scalar)  # beginning of the path of contact
+PITCH_M = next(_scalar)  # base pitch
+LINE_M = next(_scalar)  # line of action
+DAMPING_ROOT = next(_scalar)  # 2 ζ √m_e; where its parts count, their mean
+BACKLASH_M = next(_scalar)
+LEAD_M = next(_scalar)  # missing material of all pairs by their lead
+FILM = next(_scalar)  # 12 π η L, 0 without film
+FILM_FLOOR_M = next(_scalar)
+DAMPING_STRUCTURE = next(_scalar)  # parts of the damper by the share that asperities carry
+DAMPING_FILM = next(_scalar)
+DAMPING_ASPERITIES = next(_scalar)
+SLIP_SPEED = next(_scalar)  # v_0
+BOUNDARY = next(_scalar)  # friction coefficient of asperities
+LUBRICATED_LINE = next(_scalar)  # the table of friction, see `LoadGrid`
+LUBRICATED_START = next(_scalar)
+LUBRICATED_PER_M = next(_scalar)
+LUBRICATED_FLOOR = next(_scalar)
+LUBRICATED_PER_LOG = next(_scalar)
+CONTACT_REACH = next(_scalar)  # approach of the last node of the table of the contact [m]
+CONTACT_TILT = next(_scalar)  # tilt up to which it holds [rad]
+CONTACT_UNIT = next(_scalar)  # approach of its second node [m]
+SCALARS = next(_scalar)
 
-(
-    TEETH_1, TEETH_2, POINTS, MISSING_POINTS, APART, ROUGHNESSES, LUBRICATED_POSITIONS, LUBRICATED_LOADS, SHARE_DAMPS,
-    STIFFNESS_AT, MISSING_1_AT, MISSING_2_AT, OFFSET_1_AT, OFFSET_2_AT, COUPLING_AT, RATIO_AT, FLUID_AT, TABLE_AT,
-    KIND_1_AT, KIND_2_AT, CONTACT_NODES, CONTACT_COLUMNS, TOUCH_AT, COLUMN_AT, GAIN_AT, CURVES_AT, CONTACT_VALUES,
-) = range(27)  # fmt: skip
-"""Places in the head of `PairLaw.places`: counts (0 apart: no coupling; no roughness: no friction; 0 nodes: no table of
-the contact across the face) and, ending in _AT, where a table begins in `numbers`, or in `places` itself."""
-HEAD = 27
+_place = count()
+"""Places in the head of `PairLaw.places`."""
+TEETH_1 = next(_place)  # counts
+TEETH_2 = next(_place)
+POINTS = next(_place)  # of the tables of stiffness, first touch and coupling
+MISSING_POINTS = next(_place)
+APART = next(_place)  # 0: no coupling
+ROUGHNESSES = next(_place)  # 0: no friction
+LUBRICATED_POSITIONS = next(_place)
+LUBRICATED_LOADS = next(_place)
+SHARE_DAMPS = next(_place)  # 1: the damper has parts
+STIFFNESS_AT = next(_place)  # where tables begin in `numbers`
+MISSING_1_AT = next(_place)
+MISSING_2_AT = next(_place)
+OFFSET_1_AT = next(_place)
+OFFSET_2_AT = next(_place)
+COUPLING_AT = next(_place)
+RATIO_AT = next(_place)
+FLUID_AT = next(_place)
+TABLE_AT = next(_place)  # where tables begin in `places` itself
+KIND_1_AT = next(_place)
+KIND_2_AT = next(_place)
+CONTACT_NODES = next(_place)  # 0: no table of the contact across the face
+CONTACT_COLUMNS = next(_place)
+TOUCH_AT = next(_place)  # in `numbers` again
+COLUMN_AT = next(_place)
+GAIN_AT = next(_place)
+CURVES_AT = next(_place)
+CONTACT_VALUES = next(_place)  # per node; 4 without tilt, 8 with
+HEAD = next(_place)
 
 
 class PairLaw(NamedTuple):
@@ -109,14 +152,20 @@ class SqueezeFilm:
     floor_m: float
 
 
+class MeshConstants(NamedTuple):
+    """Length T of the line of action, mass that the mesh feels, and total normal backlash."""
+
+    line_of_action_m: float
+    equivalent_mass_kg: float
+    backlash_m: float
+
+
 def pair_law(
     tables: MeshTables,
     missing: MissingMaterial,
+    mesh: MeshConstants,
     *,
-    line_of_action_m: float,
     damping_ratio: float | DampingLaw,
-    equivalent_mesh_mass_kg: float,
-    backlash_m: float,
     friction: FrictionLaw | None = None,
     film: SqueezeFilm | None = None,
     contact: ContactTable | None = None,
@@ -129,7 +178,7 @@ def pair_law(
     tables : MeshTables
         Stiffness of single pairs; with a contact, of pairs whose whole face is in contact.
     missing : MissingMaterial
-    line_of_action_m, equivalent_mesh_mass_kg, backlash_m : float
+    mesh : MeshConstants
     damping_ratio : float or DampingLaw
         ζ, or its parts by the share of the load that asperities carry, which needs a friction law with such a table.
     friction, film : FrictionLaw, SqueezeFilm or None
@@ -144,7 +193,7 @@ def pair_law(
     ValueError
         If a number is negative or not finite, or tables do not fit together.
     """
-    _check(tables, missing, damping_ratio, backlash_m, film)
+    _check(tables, missing, damping_ratio, mesh.backlash_m, film)
     packed = PackedTables(HEAD)
     scalars = np.zeros(SCALARS)
     pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
@@ -153,8 +202,8 @@ def pair_law(
     scalars[MISSING_PER_PITCH] = (missing_points - 1) * pitch / (missing.end_m - missing.start_m)
     scalars[REACH_BEFORE] = max(0.0, (tables.start_m - missing.start_m) / pitch)
     scalars[REACH_AFTER] = max(0.0, (missing.end_m - tables.end_m) / pitch)
-    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, line_of_action_m
-    scalars[BACKLASH_M] = backlash_m
+    scalars[START_M], scalars[PITCH_M], scalars[LINE_M] = tables.start_m, pitch, mesh.line_of_action_m
+    scalars[BACKLASH_M] = mesh.backlash_m
     scalars[FILM] = 0.0 if film is None else 12.0 * np.pi * film.viscosity_pa_s * film.face_width_m
     scalars[FILM_FLOOR_M] = 1.0 if film is None else film.floor_m
     _pack_teeth(packed, tables, missing)
@@ -164,7 +213,7 @@ def pair_law(
         _pack_coupling(packed, coupling_m_per_n, points)
     if friction is not None:
         _pack_friction(packed, scalars, friction)
-    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(equivalent_mesh_mass_kg)))
+    _pack_damping(packed, scalars, damping_ratio, float(np.sqrt(mesh.equivalent_mass_kg)))
     scalars.setflags(write=False)
     return PairLaw(scalars, packed.numbers, packed.index)
 

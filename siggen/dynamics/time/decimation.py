@@ -131,11 +131,7 @@ def _filter(values: FloatArray, taps: FloatArray, steps_per_sample: int, result:
             for i in range(phase, values.shape[1], steps_per_sample):
                 apart[phase, i // steps_per_sample] = values[c, i]
         for m in range(0, together, 8):
-            _add_eight(
-                result[c], taps[m : m + 8], _behind(apart, m, samples), _behind(apart, m + 1, samples),
-                _behind(apart, m + 2, samples), _behind(apart, m + 3, samples), _behind(apart, m + 4, samples),
-                _behind(apart, m + 5, samples), _behind(apart, m + 6, samples), _behind(apart, m + 7, samples),
-            )  # fmt: skip
+            _add_eight(result[c], taps, apart, m)
         for m in range(together, taps.size):
             _add_one(result[c], taps[m], _behind(apart, m, samples))
 
@@ -148,13 +144,14 @@ def _behind(apart: FloatArray, steps: int, samples: int) -> FloatArray:
 
 
 @njit(cache=True)
-def _add_eight(
-    result: FloatArray, taps: FloatArray,
-    a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray,
-    e: FloatArray, f: FloatArray, g: FloatArray, h: FloatArray,
-) -> None:  # fmt: skip
-    """Add eight taps times values (samples,), one after the other."""
-    t, u, v, w, x, y, z, q = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5], taps[6], taps[7]
+def _add_eight(result: FloatArray, taps: FloatArray, apart: FloatArray, m: int) -> None:
+    """Add eight taps from one on times the values (samples,) behind them, one after the other."""
+    samples = result.size
+    a, b, c = _behind(apart, m, samples), _behind(apart, m + 1, samples), _behind(apart, m + 2, samples)
+    d, e, f = _behind(apart, m + 3, samples), _behind(apart, m + 4, samples), _behind(apart, m + 5, samples)
+    g, h = _behind(apart, m + 6, samples), _behind(apart, m + 7, samples)
+    t, u, v, w = taps[m], taps[m + 1], taps[m + 2], taps[m + 3]
+    x, y, z, q = taps[m + 4], taps[m + 5], taps[m + 6], taps[m + 7]
     for k in range(result.size):
         first = result[k] + t * a[k] + u * b[k] + v * c[k] + w * d[k]
         result[k] = first + x * e[k] + y * f[k] + z * g[k] + q * h[k]

@@ -18,8 +18,8 @@ from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.load_lock import LOCK_HZ
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_scheme import NODES, exponential_scheme
-from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, advance, fresh_memory, work_arrays
-from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, Loop, advance, fresh_memory, work_arrays
+from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 from siggen.dynamics.time.transient import transient_s
 
 BEND_SHARE = 4e-2
@@ -42,9 +42,7 @@ class ExponentialMotion(PairMotion):
         structure: Structure,
         law: PairLaw,
         *,
-        torque_nm: float,
-        speed_hz: float,
-        reference_stiffness_n_per_m: float,
+        mean: MeanState,
         step_s: float,
         contact: PairContact | None = None,
         input_vectors: FloatArray | None = None,
@@ -52,18 +50,15 @@ class ExponentialMotion(PairMotion):
         stride: int = 1,
     ) -> None:
         super().__init__(
-            structure, law, torque_nm=torque_nm, speed_hz=speed_hz, step_s=step_s, contact=contact,
-            reference_stiffness_n_per_m=reference_stiffness_n_per_m, input_vectors=input_vectors,
+            structure, law, mean=mean, step_s=step_s, contact=contact, input_vectors=input_vectors,
             speed_input=speed_input,
         )  # fmt: skip
-        damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
+        damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
         rigid = (self.pair_equations.rigid_sliding_0, self.pair_equations.rigid_sliding_1)
         self.scheme = exponential_scheme(structure, self.equations, damping, rigid, stride * step_s)
-        self._stride = stride
-        self._tolerance_n = BEND_SHARE * abs(self.equations.static_force)
-        self._events = event_places(
-            law, abs(self.equations.static_force) / reference_stiffness_n_per_m, law.teeth * speed_hz * stride * step_s
-        )
+        static_n, pitches_per_s = abs(self.equations.static_force), law.teeth * mean.speed_hz
+        events = event_places(law, static_n / mean.stiffness_n_per_m, pitches_per_s * stride * step_s)
+        self._loop = Loop(self.scheme, law, stride, speed_input, BEND_SHARE * static_n, events)
         if law.places[layout.ROUGHNESSES] > 0:
             self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
@@ -87,10 +82,7 @@ class ExponentialMotion(PairMotion):
         (steps,) whether no pair touched at the end of each step
         """
         apart = np.empty(pitches.size - 1, dtype=np.bool_)
-        advance(
-            self.scheme, self.law, self._stride, self._speed_input, self._tolerance_n, self._events, pitches, inputs,
-            self._memory, self._tables, self._work, apart, trajectory,
-        )  # fmt: skip
+        advance(self._loop, pitches, inputs, self._memory, self._tables, self._work, apart, trajectory)
         return apart
 
     @property

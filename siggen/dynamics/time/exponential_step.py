@@ -13,6 +13,8 @@ what happens and never by a label.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,7 +23,8 @@ from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
 from siggen.dynamics.mesh.lane_table import lane_table
-from siggen.dynamics.mesh.node_forces import (
+from siggen.dynamics.mesh.node_forces import write_node_forces
+from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_FRICTION,
     NODE_NORMAL,
@@ -33,10 +36,11 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_SLOPE_RATE,
     NODE_TILT,
     NODE_TILT_RATE,
-    write_node_forces,
+    PAIR,
+    ROW,
 )
-from siggen.dynamics.mesh.pair_columns import PAIR, ROW
 from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE as SMOOTH_SHARE
 from siggen.dynamics.time.exponential_products import add_response, free_motion, write_middle
 from siggen.dynamics.time.exponential_scheme import LEVELS, NODES, SPLIT, Scheme
 from siggen.lanes import LANES, aligned, extract, load, scalar_at, select, shuffle, splat, store
@@ -57,6 +61,22 @@ STIFFNESS, DAMPING, FORCE, APPROACH, TILT, ROLL_0, ROLL_1 = range(7)
 LAST_LEVEL, TOUCHING, ATTEMPTS, SHORTENED = range(4)
 """Places in the row of the memory behind the excess forces."""
 Work = tuple[FloatArray, ...]
+
+
+class Loop(NamedTuple):
+    """What stays while a motion is stepped.
+
+    A step of the scheme takes `stride` of those asked for, 1 or 2; one that is left over at the end is half of it.
+    `speed_input`: number of the input that is the deviation of the speed, or -1; `tolerance_n`: how far the force may
+    be bent; `events` of `event_places`.
+    """
+
+    scheme: Scheme
+    law: PairLaw
+    stride: int
+    speed_input: int
+    tolerance_n: float
+    events: NDArray[np.bool_]
 
 
 def fresh_memory() -> FloatArray:
@@ -130,18 +150,11 @@ def _correct(
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _attempt(
-    scheme: Scheme,
-    law: PairLaw,
-    level: int,
-    pitches_0: float,
-    pitches_1: float,
-    speed_ratio: float,
-    tolerance_n: float,
-    memory: FloatArray,
-    pairs: FloatArray,
-    work: Work,
-) -> bool:
+    loop: Loop, level: int, pitches_0: float, pitches_1: float, speed_ratio: float, memory: FloatArray,
+    pairs: FloatArray, work: Work,
+) -> bool:  # fmt: skip
     """Write the state at the end of a step; return False, and keep the memory as it is, if the step has an event."""
+    scheme, law = loop.scheme, loop.law
     response, linear, legendre, extrapolation = scheme.response, scheme.linear, scheme.legendre, scheme.extrapolation
     node, excess, seen, start, end, between, table = work
     size, channels, columns = scheme.transition.shape[1], response.shape[1], end.size
@@ -171,10 +184,10 @@ def _attempt(
             tilt = load(seen, first + 2 * LANES)
             store(node, NODE_TILT * LANES, tilt + linear[TILT])
             store(node, NODE_TILT_RATE * LANES, _rates(tilt))
-        touching = write_lane_forces(law.scalars, law.numbers, law.places, pitches_0, pitches_1, pairs, table, node)
+        touching = write_lane_forces(law, pitches_0, pitches_1, pairs, table, node)
         if touching == NOT_HERE:
             touching = write_node_forces(
-                law.scalars, law.numbers, law.places, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node
+                law, scheme.nodes, scheme.weights, pitches_0, pitches_1, pairs, node, SMOOTH_SHARE
             )
         change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
@@ -188,7 +201,7 @@ def _attempt(
             bent += legendre[NODES - 1, q] * node[NODE_NORMAL, q]
             rubbing += legendre[NODES - 1, q] * node[NODE_FRICTION, q]
         parted = touching < 0 or touching != int(memory[CHANNELS, TOUCHING])
-        if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= tolerance_n:
+        if not settled or (level < TOUCHED and parted) or not max(abs(bent), abs(rubbing)) <= loop.tolerance_n:
             return False
     add_response(response, level, excess, 0, first, end, end)
     for channel in range(channels):
@@ -231,26 +244,15 @@ def work_arrays(scheme: Scheme, law: PairLaw) -> Work:
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
-    scheme: Scheme,
-    law: PairLaw,
-    stride: int,
-    speed_input: int,
-    tolerance_n: float,
-    events: NDArray[np.bool_],
-    pitches: FloatArray,
-    inputs: FloatArray,
-    memory: FloatArray,
-    pairs: FloatArray,
-    work: Work,
-    apart: NDArray[np.bool_],
-    trajectory: FloatArray,
-) -> None:
+    loop: Loop, pitches: FloatArray, inputs: FloatArray, memory: FloatArray, pairs: FloatArray, work: Work,
+    apart: NDArray[np.bool_], trajectory: FloatArray,
+) -> None:  # fmt: skip
     """Fill `trajectory` (steps + 1, 2n) after row 0; mark in `apart` (steps,) at which of them no pair touches.
 
-    A step of the scheme takes `stride` of these steps, 1 or 2; one that is left over at the end is half of it.
-    `pitches` (steps + 1,), `inputs` (steps + 1, m), `events` of `event_places`; `memory` of `fresh_memory` and `pairs`
-    (NODES slots, COLUMNS) go on from the steps before.
+    `pitches` (steps + 1,), `inputs` (steps + 1, m); `memory` of `fresh_memory` and `pairs` (NODES slots, COLUMNS) go on
+    from the steps before.
     """
+    scheme, law, stride, speed_input = loop.scheme, loop.law, loop.stride, loop.speed_input
     size, m = scheme.transition.shape[1], inputs.shape[1]
     state, end, between = work[3], work[4], work[5]
     centre = -scheme.linear[ROLL_0] / scheme.linear[ROLL_1]
@@ -267,7 +269,7 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
         if speed_input >= 0:
             ratio += 0.5 * (inputs[i, speed_input] + inputs[last, speed_input])
         place, level = 0, 0
-        if until < FINEST or _has_event(law, pairs, events, pitch_place, reach, pitches[i], pitches[last]):
+        if until < FINEST or _has_event(law, pairs, loop.events, pitch_place, reach, pitches[i], pitches[last]):
             level = 1
         while place < until:
             length = FINEST // SPLIT**level
@@ -278,8 +280,7 @@ def advance(  # noqa: PLR0912 - compiled, and cut up it would count references
             memory[CHANNELS, ATTEMPTS] += 1.0
             a, b = place / FINEST, (place + length) / FINEST
             if not _attempt(
-                scheme, law, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, tolerance_n, memory,
-                pairs, work,
+                loop, level, pitches[i] + a * turned, pitches[i] + b * turned, ratio, memory, pairs, work
             ):  # fmt: skip
                 level += 1
                 memory[CHANNELS, SHORTENED] += 1.0

@@ -61,9 +61,7 @@ def _advance(
         start, end = trajectory[i], trajectory[i + 1]
         external_push(equations.external_input, inputs[i], pushes[0])
         external_push(equations.external_input, inputs[i + 1], pushes[1])
-        runge_kutta_step(
-            linear_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
-        )
+        runge_kutta_step(linear_rate, model, step_s, (pitches[i], pitches[i + 1]), pushes, start, end, scratch)
 
 
 INTEGRATORS: Mapping[str, Callable[[Equations, MeshLaw, float], Integrator]] = {

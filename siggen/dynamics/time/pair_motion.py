@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, MOMENT, NORMAL, POSITION, TILT, TILT_RATE
+from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.mesh.pair_law import PairLaw
@@ -51,6 +51,14 @@ class PairEquations(NamedTuple):
     static_tilt: float
 
 
+class MeanState(NamedTuple):
+    """Motor torque, pinion speed and mesh stiffness that a motion deviates from."""
+
+    torque_nm: float
+    speed_hz: float
+    stiffness_n_per_m: float
+
+
 class PairMotion:
     """Steps with the classical Runge-Kutta method; works with any structure.
 
@@ -65,9 +73,7 @@ class PairMotion:
         structure: Structure,
         law: PairLaw,
         *,
-        torque_nm: float,
-        speed_hz: float,
-        reference_stiffness_n_per_m: float,
+        mean: MeanState,
         step_s: float,
         contact: PairContact | None = None,
         input_vectors: FloatArray | None = None,
@@ -77,10 +83,10 @@ class PairMotion:
         self.law = law
         self.contact = contact
         self.equations = equations_about(
-            structure, torque_nm, reference_stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
+            structure, mean.torque_nm, mean.stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
         )
-        self.pair_equations = _pair_equations(structure, self.equations, speed_hz)
-        damping = law.damping_root_kg * float(np.sqrt(reference_stiffness_n_per_m))
+        self.pair_equations = _pair_equations(structure, self.equations, mean.speed_hz)
+        damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
         self.transient_s = transient_s(structure, self.equations, damping)
         self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
@@ -178,7 +184,7 @@ class PairMotion:
             (states[:, n:] * self.equations.mesh_vector).sum(axis=1),
         ]
         if self.tilts:
-            approach += [pairs[:, 0, TILT], pairs[:, :, MOMENT].sum(axis=1)]
+            approach += [pairs[:, 0, columns.TILT], pairs[:, :, columns.MOMENT].sum(axis=1)]
         moved = states[:, :n] + self.equations.static_deflection
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
@@ -236,7 +242,7 @@ def _load_pairs(
     equations: PairEquations, law: PairLaw, pairs: FloatArray, state: FloatArray, pitches: float
 ) -> tuple[float, float, float, float, float]:
     """Write the table of pairs of a state; return ΣN, ΣF, Σ s F, Σμ and Σ ζ F."""
-    rows = equations.rows
+    rows, node = equations.rows, pairs[:1, pairs.shape[1] - columns.NODE_ROWS :].T
     n = rows.shape[1]
     approach, approach_rate = equations.static_approach, 0.0
     sliding_0, sliding_1 = equations.rigid_sliding_0, equations.rigid_sliding_1
@@ -245,23 +251,22 @@ def _load_pairs(
         approach_rate += rows[2 * n, i] * state[n + i]
         sliding_0 += rows[2 * n + 1, i] * state[n + i]
         sliding_1 += rows[2 * n + 2, i] * state[n + i]
+    node[columns.NODE_APPROACH, 0], node[columns.NODE_RATE, 0] = approach, approach_rate
+    node[columns.NODE_SLIDING_0, 0], node[columns.NODE_SLIDING_1, 0] = sliding_0, sliding_1
     if rows.shape[0] > 2 * n + 6:
         tilt, tilt_rate = equations.static_tilt, 0.0
         for i in range(n):
             tilt += rows[2 * n + 6, i] * state[i]
             tilt_rate += rows[2 * n + 6, i] * state[n + i]
-        for i in range(pairs.shape[0]):
-            pairs[i, TILT], pairs[i, TILT_RATE] = tilt, tilt_rate
-    write_forces(law.scalars, law.numbers, law.places, approach, approach_rate, pitches, sliding_0, sliding_1, pairs)
-    normal, friction, moment, across, rubbed = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(pairs.shape[0]):
-        normal += pairs[i, NORMAL]
-        friction += pairs[i, FRICTION]
-        moment += pairs[i, POSITION] * pairs[i, FRICTION]
-        across += pairs[i, MOMENT]
-        if pairs[i, NORMAL] > 0.0:
-            rubbed += pairs[i, FRICTION] * pairs[i, MOMENT] / pairs[i, NORMAL]
-    return normal, friction, moment, across, rubbed
+        node[columns.NODE_TILT, 0], node[columns.NODE_TILT_RATE, 0] = tilt, tilt_rate
+    write_forces(law, pitches, pairs)
+    return (
+        node[columns.NODE_NORMAL, 0],
+        node[columns.NODE_FRICTION, 0],
+        node[columns.NODE_ARM, 0],
+        node[columns.NODE_MOMENT, 0],
+        node[columns.NODE_TURN, 0],
+    )
 
 
 # Inlined for the same reason; the forces themselves are not, since that would make five compilations of them.
@@ -309,9 +314,7 @@ def _advance(
         external_push(equations.external_input, inputs[i + 1], pushes[1])
         if speed_input >= 0:
             model = (_at_speed(equations, 0.5 * (inputs[i, speed_input] + inputs[i + 1, speed_input])), law, pairs)
-        runge_kutta_step(
-            pair_rate, model, step_s, pitches[i], pitches[i + 1], pushes[0], pushes[1], start, end, scratch
-        )
+        runge_kutta_step(pair_rate, model, step_s, (pitches[i], pitches[i + 1]), pushes, start, end, scratch)
 
 
 @njit(cache=True)
@@ -323,7 +326,7 @@ def _steps_apart(
         _load_pairs(equations, law, pairs, states[i], pitches[i])
         touching = False
         for j in range(pairs.shape[0]):
-            touching = touching or pairs[j, FLANK] != 0.0
+            touching = touching or pairs[j, columns.FLANK] != 0.0
         if not touching:
             count += 1
     return count

@@ -278,7 +278,7 @@ def _substeps(
             rise = (pushes[1, i] - pushes[0, i]) / SUBSTEPS
             low[i], high[i] = pushes[0, i] + j * rise, pushes[0, i] + (j + 1) * rise
         runge_kutta_step(
-            linear_rate, model, step_s / SUBSTEPS, first, first + advance, low, high, state, state, scratch
+            linear_rate, model, step_s / SUBSTEPS, (first, first + advance), pushes[2:], state, state, scratch
         )
 
 

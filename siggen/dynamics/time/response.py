@@ -4,29 +4,61 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.drive import Drive, Rotation
+from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
-from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.history import History
-from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_stream import Piece, ResponseStream, Run
 from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import SolverFailure
 
-if TYPE_CHECKING:
-    from siggen.gears.stiffness.mesh_tables import MeshTables
-
-
 WINDOW_SAMPLES = 32_768
 """Output samples that one spline of the inputs covers."""
+
+
+@dataclass(frozen=True, slots=True)
+class SampleGrid:
+    """Output rate [Hz], how many samples, and steps of integration per sample.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not positive.
+    """
+
+    fs_hz: float
+    samples: int
+    steps_per_sample: int
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.fs_hz) and self.fs_hz > 0.0):
+            raise ValueError(f"fs_hz: received {self.fs_hz}; allowed are finite rates above 0")
+        if self.samples < 1 or self.steps_per_sample < 1:
+            raise ValueError(
+                f"samples, steps_per_sample: received {self.samples}, {self.steps_per_sample}; allowed are counts "
+                "from 1"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What of a response is wanted: internals; bearing forces; accelerations of the named motions, None: of all.
+
+    Filtering costs about a fifth of a response for four forces or motions.
+    """
+
+    internals: bool = False
+    bearing_forces: bool = True
+    motions: Collection[str] | None = None
+
+
+ACCELERATIONS_AND_FORCES = Wanted()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,119 +114,56 @@ class Response:
             yield Piece(_rows(accelerations), _rows(forces))
 
 
-def simulate_response(
-    structure: Structure,
-    tables: MeshTables,
-    *,
-    torque_nm: float,
-    speed_hz: float,
-    start_angle_rad: float,
-    mesh_damping_ratio: float,
-    backlash_m: float,
-    fs_hz: float,
-    samples: int,
-    steps_per_sample: int,
-    integrator: str = "product",
-    internals: bool = False,
-) -> Response:
-    """Return the stationary response under the linear mesh law at constant speed and motor torque.
-
-    Parameters
-    ----------
-    torque_nm : motor torque; negative loads the back flank
-    speed_hz, start_angle_rad : pinion speed and its angle at sample 0
-    mesh_damping_ratio, backlash_m : ζ and the total normal backlash j_n; backlash 0 gives the linear model
-    fs_hz, samples, steps_per_sample : output rate, number of output samples, integration steps per output sample
-    integrator : "product" or "runge_kutta"
-    internals : whether to add mesh_force_n, mesh_stiffness_n_per_m, approach_m (half the backlash plus the dynamic
-        transmission error on the drive flank) and approach_rate_m_s
-
-    Raises
-    ------
-    ValueError
-        If an argument is outside its allowed range.
-    """
-    check_grid(fs_hz, samples, steps_per_sample)
-    motion = LinearMotion(
-        structure,
-        tables,
-        torque_nm=torque_nm,
-        mesh_damping_ratio=mesh_damping_ratio,
-        backlash_m=backlash_m,
-        step_s=1.0 / (fs_hz * steps_per_sample),
-        integrator=integrator,
-    )
-    drive = Drive(speed_hz, start_angle_rad)
-    return response_of(
-        motion, drive, fs_hz=fs_hz, samples=samples, steps_per_sample=steps_per_sample, internals=internals
-    )
-
-
 def response_of(
     motion: Motion,
     drive: Rotation,
+    grid: SampleGrid,
     *,
-    fs_hz: float,
-    samples: int,
-    steps_per_sample: int,
-    internals: bool = False,
-    bearing_forces: bool = True,
-    motions: Collection[str] | None = None,
+    wanted: Wanted = ACCELERATIONS_AND_FORCES,
     excitation: Excitation | None = None,
     settle_s: float = 0.0,
     history_s: float = 0.0,
 ) -> Response:
-    """Return the stationary response of a motion that was made for the step 1/(fs_hz steps_per_sample).
+    """Return the stationary response of a motion that was made for the steps of the grid.
 
     Arguments and errors as `response_stream`; a failed one has a status and its reason.
     """
-    stream = response_stream(
-        motion, drive, fs_hz=fs_hz, samples=samples, steps_per_sample=steps_per_sample, internals=internals,
-        bearing_forces=bearing_forces, motions=motions, excitation=excitation, settle_s=settle_s, history_s=history_s,
-    )  # fmt: skip
-    return collected_response(stream)
+    return collected_response(
+        response_stream(
+            motion, drive, grid, wanted=wanted, excitation=excitation, settle_s=settle_s, history_s=history_s
+        )
+    )
 
 
 def response_stream(
     motion: Motion,
     drive: Rotation,
+    grid: SampleGrid,
     *,
-    fs_hz: float,
-    samples: int,
-    steps_per_sample: int,
-    internals: bool = False,
-    bearing_forces: bool = True,
-    motions: Collection[str] | None = None,
+    wanted: Wanted = ACCELERATIONS_AND_FORCES,
     excitation: Excitation | None = None,
     settle_s: float = 0.0,
     history_s: float = 0.0,
     ahead: int = 0,
 ) -> ResponseStream:
-    """Return what a motion that was made for the step 1/(fs_hz steps_per_sample) does, before it is stepped.
+    """Return what a motion that was made for the steps of the grid does, before it is stepped.
 
     Starts from the static equilibrium and discards the transient that the motion states, or `settle_s` if that is
     longer. Of this time the last `history_s` at most are kept as history; asking for it changes nothing else, nor do
-    `ahead` samples behind the record. Filtering costs about a fifth of a response for four forces or motions: without
-    `bearing_forces` there are none, and accelerations are those of the named `motions`; None: all. The motion must hold
-    the vectors of `excitation`.
-
-    Raises
-    ------
-    ValueError
-        If rate or counts are not positive.
+    `ahead` samples behind the record. The motion must hold the vectors of `excitation`.
     """
-    check_grid(fs_hz, samples, steps_per_sample)
-    settle = settling_steps(motion.transient_s, settle_s, fs_hz * steps_per_sample)
-    history = min(round(history_s * fs_hz), settle // steps_per_sample)
+    rate_hz = grid.fs_hz * grid.steps_per_sample
+    settle = settling_steps(motion.transient_s, settle_s, rate_hz)
+    history = min(round(history_s * grid.fs_hz), settle // grid.steps_per_sample)
     acting: Excitation | SampledExcitation | None = excitation
     if excitation is not None and motion.coarse_inputs:
-        half, rate_hz = half_length(steps_per_sample), fs_hz * steps_per_sample
-        ends_s = -(settle + half) / rate_hz, ((samples + ahead) * steps_per_sample + half) / rate_hz
-        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz, WINDOW_SAMPLES / fs_hz)
-    wanted = tuple(name for name in motion.structure.motions if motions is None or name in motions)
+        half = half_length(grid.steps_per_sample)
+        ends_s = -(settle + half) / rate_hz, ((grid.samples + ahead) * grid.steps_per_sample + half) / rate_hz
+        acting = SampledExcitation(excitation, drive, *ends_s, rate_hz, WINDOW_SAMPLES / grid.fs_hz)
+    names = tuple(name for name in motion.structure.motions if wanted.motions is None or name in wanted.motions)
     return ResponseStream(
-        Run(motion, drive, fs_hz, steps_per_sample, acting, wanted), samples, settle=settle, history=history,
-        ahead=ahead, bearing_forces=bearing_forces, internals=internals,
+        Run(motion, drive, grid.fs_hz, grid.steps_per_sample, acting, names), grid.samples, settle=settle,
+        history=history, ahead=ahead, bearing_forces=wanted.bearing_forces, internals=wanted.internals,
     )  # fmt: skip
 
 
@@ -214,22 +183,6 @@ def collected_response(stream: ResponseStream) -> Response:
     except SolverFailure as failure:
         return _failed(stream.run, failure)
     return _finished(stream, accelerations, forces)
-
-
-def check_grid(fs_hz: float, samples: int, steps_per_sample: int) -> None:
-    """Refuse rates and counts that are no time grid.
-
-    Raises
-    ------
-    ValueError
-        If one of them is not positive.
-    """
-    if not (np.isfinite(fs_hz) and fs_hz > 0.0):
-        raise ValueError(f"fs_hz: received {fs_hz}; allowed are finite rates above 0")
-    if samples < 1 or steps_per_sample < 1:
-        raise ValueError(
-            f"samples, steps_per_sample: received {samples}, {steps_per_sample}; allowed are counts from 1"
-        )
 
 
 def _finished(stream: ResponseStream, accelerations: FloatArray, forces: FloatArray) -> Response:

@@ -15,10 +15,8 @@ def runge_kutta_step(
     rate_function: Callable[..., None],
     model: Any,
     step_s: float,
-    pitches_0: float,
-    pitches_1: float,
-    push_0: FloatArray,
-    push_1: FloatArray,
+    pitches: tuple[float, float],
+    pushes: FloatArray,
     start: FloatArray,
     end: FloatArray,
     scratch: FloatArray,
@@ -26,9 +24,11 @@ def runge_kutta_step(
     """Write the state after one step into `end` (2n,), which may be `start`; `scratch` (3, 2n) is working space.
 
     `rate_function(model, state, pitches, rate)` writes the rate of a state at a pinion angle in base pitches. The angle
-    is taken as linear within the step; at 1000 rad/s² and 5 µs that is wrong by 3e-9 rad. `push_0`, `push_1` (n,) are
-    the accelerations by external inputs at its ends, linear in between; without inputs they have no entries.
+    is taken as linear within the step; at 1000 rad/s² and 5 µs that is wrong by 3e-9 rad. `pushes` (2, n) are the
+    accelerations by external inputs at its ends, linear in between; without inputs they have no entries.
     """
+    pitches_0, pitches_1 = pitches
+    push_0, push_1 = pushes[0], pushes[1]
     stage, rate, total = scratch[0], scratch[1], scratch[2]
     size, half = start.size, start.size // 2
     middle = 0.5 * (pitches_0 + pitches_1)

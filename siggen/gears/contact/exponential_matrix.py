@@ -11,6 +11,8 @@ The numbers of terms and of right sides are constants of the module: compiled lo
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
@@ -69,26 +71,28 @@ def add_row_products(row_strength: FloatArray, row_decay: FloatArray, vector: Fl
         out[i] += run
 
 
+class RowMatrix(NamedTuple):
+    """A matrix by its terms: decays and strengths of the exponentials (EXPONENTIALS,), of the rows (n,), its diagonal.
+
+    `row_strength`, `row_decay` (n,): p and q of the term of the rows; `diagonal` (n,).
+    """
+
+    decay: FloatArray
+    strength: FloatArray
+    row_strength: FloatArray
+    row_decay: FloatArray
+    diagonal: FloatArray
+
+
 @njit(cache=True, fastmath={"contract", "reassoc"})
 def solve_rows(
-    decay: FloatArray,
-    strength: FloatArray,
-    row_strength: FloatArray,
-    row_decay: FloatArray,
-    diagonal: FloatArray,
-    rows: IntArray,
-    count: int,
-    right: FloatArray,
-    steps: FloatArray,
-    work: FloatArray,
+    matrix: RowMatrix, rows: IntArray, count: int, right: FloatArray, steps: FloatArray, work: FloatArray
 ) -> bool:
     """Solve A x = b for the chosen rows, in place of `right`; False if A is not positive definite.
 
     Parameters
     ----------
-    decay, strength : (EXPONENTIALS,)
-    row_strength, row_decay : (n,)
-    diagonal : (n,)
+    matrix : RowMatrix
     rows : (>= count,)
         The chosen rows, ascending.
     right : (n, SIDES)
@@ -98,6 +102,7 @@ def solve_rows(
     work : (n, TERMS + 1)
         Room: the factors, and the pivots' inverse.
     """
+    decay, strength, row_strength, row_decay, diagonal = matrix
     # The sums of all rows before, of which `inner` is symmetric and kept below its diagonal; b and w are those of the
     # row before. Numbers are read once, since the compiler must take arrays to overlap.
     inner, run = np.zeros((TERMS, TERMS)), np.zeros((TERMS, SIDES))

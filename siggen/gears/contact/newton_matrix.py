@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
-from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, TERMS, solve_rows
+from siggen.gears.contact.exponential_matrix import EXPONENTIALS, SIDES, TERMS, RowMatrix, solve_rows
 from siggen.gears.contact.face_slices import FaceSlices
 
 
@@ -51,18 +51,9 @@ def solver_room(slices: int) -> SolverRoom:
 @njit(cache=True)
 def solve_local(slices: FaceSlices, room: SolverRoom, chosen: int) -> bool:
     """Solve for the five right sides with the matrix but for its three vectors; False if not positive definite."""
-    return solve_rows(
-        slices.kernel.decay,
-        room.strength,
-        slices.teeth.strength,
-        slices.teeth.decay,
-        room.diagonal,
-        room.rows,
-        chosen,
-        room.right,
-        room.steps,
-        room.factors,
-    )
+    teeth = slices.teeth
+    matrix = RowMatrix(slices.kernel.decay, room.strength, teeth.strength, teeth.decay, room.diagonal)
+    return solve_rows(matrix, room.rows, chosen, room.right, room.steps, room.factors)
 
 
 class Answers(NamedTuple):

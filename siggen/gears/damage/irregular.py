@@ -11,7 +11,7 @@ upper ones. The milder one's stations are stations of the grown one, so it lies 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import pairwise
@@ -178,8 +178,7 @@ def grown_spall(
     gear: str,
     tooth: int,
     face_m: FloatArray,
-    heights_m: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]],
-    arcs_m: tuple[FloatArray, FloatArray],
+    edges_m: tuple[FloatArray, FloatArray],
     strip_depths_m: FloatArray,
     edge_radius_m: float,
     floor: str,
@@ -193,14 +192,12 @@ def grown_spall(
         As in `IrregularSpall`.
     face_m : (k,)
         `stations_across` [m].
-    heights_m : callable
-        Readings of the lower and the upper edge at stations (k,), (k,) [m] -> heights x (k,), (k,) [m].
-    arcs_m : (k,), (k,)
-        Readings of both edges at the stations [m].
+    edges_m : (k,), (k,)
+        Heights x of the lower and the upper edge at the stations [m].
     strip_depths_m : (k - 1,)
         [m].
     """
-    low, high = (np.array(edge) for edge in heights_m(*arcs_m))
+    low, high = (np.array(edge) for edge in edges_m)
     depths = np.array(strip_depths_m)
     if milder is not None:
         face, lower, upper = np.array(milder.stations_m).T

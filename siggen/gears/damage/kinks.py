@@ -9,6 +9,7 @@ D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic. Points that a deeper damage hides 
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from siggen.gears.damage.row_columns import (
     SEMI_HEIGHT,
     TRAPEZOID,
 )
-from siggen.gears.damage.straight_edges import corner_points, side_conic_points, side_side_points
+from siggen.gears.damage.straight_edges import Conic, corner_points, side_conic_points, side_side_points
 from siggen.gears.damage.union import square_depth
 from siggen.gears.damage.visible_points import edge_square, segment_shows, shows
 
@@ -96,19 +97,24 @@ def roots_between(poly: FloatArray, low: float, high: float, touching: float) ->
     return found[:count].copy()
 
 
+class Ellipse(NamedTuple):
+    """Height and face coordinate of the centre, semi-axis across and semi-axis along the height [m]."""
+
+    mu: float
+    w: float
+    a: float
+    b: float
+
+
 @njit(cache=True)
-def _ellipse_points(
-    mu: float,
-    w: float,
-    a: float,
-    b: float,
-    mu2: float,
-    w2: float,
-    a2: float,
-    b2: float,
-    points: list[tuple[float, float]],
-) -> None:
+def _outline(row: FloatArray) -> Ellipse:
+    return Ellipse(row[HEIGHT], row[FACE], row[SEMI_FACE], row[SEMI_HEIGHT])
+
+
+@njit(cache=True)
+def _ellipse_points(one: Ellipse, two: Ellipse, points: list[tuple[float, float]]) -> None:
     """Append the points where two ellipse outlines cross; in t = (x - mu)/b over their common height range."""
+    (mu, w, a, b), (mu2, w2, a2, b2) = one, two
     low, high = max(mu - b, mu2 - b2), min(mu + b, mu2 + b2)
     gap = abs(w2 - w)
     if high <= low or gap >= a + a2:
@@ -125,28 +131,18 @@ def _ellipse_points(
     first, last = (low - mu) / b, (high - mu) / b
     size = abs(n0) + abs(n1) + abs(n2)
     for t in roots_between(quartic, first, last, 1e-12 * (size * size + four)):
-        _points_at(t, mu, w, a, b, mu2, w2, a2, b2, points)
+        _points_at(t, one, two, points)
     # Columns one above the other: the quartic is (nearly) a square, whose roots rounding can hide. Extra kinks do no
     # harm.
     if abs(distance) < 1e-5:
         for t in roots_between(np.array([n0, n1, n2]), first, last, 1e-12 * size):
-            _points_at(t, mu, w, a, b, mu2, w2, a2, b2, points)
+            _points_at(t, one, two, points)
 
 
 @njit(cache=True)
-def _points_at(
-    t: float,
-    mu: float,
-    w: float,
-    a: float,
-    b: float,
-    mu2: float,
-    w2: float,
-    a2: float,
-    b2: float,
-    points: list[tuple[float, float]],
-) -> None:
+def _points_at(t: float, one: Ellipse, two: Ellipse, points: list[tuple[float, float]]) -> None:
     """Append the points of a crossing's height where the outlines (nearly) meet; without face coordinate if none do."""
+    (mu, w, a, b), (mu2, w2, a2, b2) = one, two
     x = mu + b * t
     u = (x - mu2) / b2
     reach, reach2 = a * sqrt(max((1.0 - t) * (1.0 + t), 0.0)), a2 * sqrt(max((1.0 - u) * (1.0 + u), 0.0))
@@ -162,8 +158,9 @@ def _points_at(
 
 
 @njit(cache=True)
-def _face_points(mu: float, w: float, a: float, b: float, face_width: float, points: list[tuple[float, float]]) -> None:
+def _face_points(ellipse: Ellipse, face_width: float, points: list[tuple[float, float]]) -> None:
     """Append the points where an ellipse outline leaves the face."""
+    mu, w, a, b = ellipse
     for end in (0.0, face_width):
         v = (end - w) / a
         if abs(v) < 1.0:
@@ -176,34 +173,21 @@ def _face_points(mu: float, w: float, a: float, b: float, face_width: float, poi
 def _crossing_points(one: FloatArray, two: FloatArray, points: list[tuple[float, float]]) -> None:
     """Append the points where the outlines of two rows cross."""
     if one[TRAPEZOID] == 0.0 and two[TRAPEZOID] == 0.0:
-        _ellipse_points(
-            one[HEIGHT],
-            one[FACE],
-            one[SEMI_FACE],
-            one[SEMI_HEIGHT],
-            two[HEIGHT],
-            two[FACE],
-            two[SEMI_FACE],
-            two[SEMI_HEIGHT],
-            points,
-        )
+        _ellipse_points(_outline(one), _outline(two), points)
     elif one[TRAPEZOID] != 0.0 and two[TRAPEZOID] != 0.0:
         side_side_points(one, two, points)
     else:
         ellipse, trapezoid = (one, two) if one[TRAPEZOID] == 0.0 else (two, one)
-        _ellipse_side_points(
-            ellipse[HEIGHT], ellipse[FACE], ellipse[SEMI_FACE], ellipse[SEMI_HEIGHT], trapezoid, points
-        )
+        _ellipse_side_points(_outline(ellipse), trapezoid, points)
 
 
 @njit(cache=True)
-def _ellipse_side_points(
-    mu: float, w: float, a: float, b: float, trapezoid: FloatArray, points: list[tuple[float, float]]
-) -> None:
+def _ellipse_side_points(ellipse: Ellipse, trapezoid: FloatArray, points: list[tuple[float, float]]) -> None:
+    mu, w, a, b = ellipse
     low, high = max(mu - b, trapezoid[LOWEST]), min(mu + b, trapezoid[HIGHEST])
     square = (a / b) ** 2
     # (w - w_i)^2 + (a/b)^2 (x - mu)^2 - a^2 = 0 about the ellipse's centre
-    side_conic_points(trapezoid, mu, w, 1.0, 0.0, -a * a, 0.0, square, low, high, points)
+    side_conic_points(trapezoid, Conic(mu, w, 1.0, 0.0, -a * a, 0.0, square), low, high, points)
 
 
 @njit(cache=True)
@@ -217,16 +201,17 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
         if flat[DEPTH] >= dish[DEPTH]:
             return
         scale = sqrt(1.0 - (flat[DEPTH] / dish[DEPTH]) ** 2)
-        mu, w, a, b = dish[HEIGHT], dish[FACE], scale * dish[SEMI_FACE], scale * dish[SEMI_HEIGHT]
+        ellipse = Ellipse(dish[HEIGHT], dish[FACE], scale * dish[SEMI_FACE], scale * dish[SEMI_HEIGHT])
+        mu, w, _, b = ellipse
         level = [(mu - b, w), (mu + b, w)]
         if dish[TRAPEZOID] != 0.0:
             level = [(mu - b, np.nan), (mu + b, np.nan)]
         else:
-            _face_points(mu, w, a, b, face_width, level)
+            _face_points(ellipse, face_width, level)
             if flat[TRAPEZOID] == 0.0:
-                _ellipse_points(mu, w, a, b, flat[HEIGHT], flat[FACE], flat[SEMI_FACE], flat[SEMI_HEIGHT], level)
+                _ellipse_points(ellipse, _outline(flat), level)
             else:
-                _ellipse_side_points(mu, w, a, b, flat, level)
+                _ellipse_side_points(ellipse, flat, level)
         for point in level:
             # A kink outside the shared heights would split sections that the upper row must not touch.
             if low < point[0] < high:
@@ -263,7 +248,7 @@ def _equal_depth_points(  # noqa: PLR0912 - one curve, all its kinds of points
             points.append((one[HEIGHT] + x, end))
     for row in (one, two):
         if row[TRAPEZOID] != 0.0:
-            side_conic_points(row, one[HEIGHT], one[FACE], c2, c1, k0, k1, k2, low, high, points)
+            side_conic_points(row, Conic(one[HEIGHT], one[FACE], c2, c1, k0, k1, k2), low, high, points)
 
 
 @njit(cache=True)
@@ -275,7 +260,7 @@ def _row_kinks(i: int, pits: FloatArray, face_width: float, out: list[float]) ->
     if row[TRAPEZOID] == 0.0:
         points.append((row[LOWEST], row[FACE]))
         points.append((row[HIGHEST], row[FACE]))
-        _face_points(row[HEIGHT], row[FACE], row[SEMI_FACE], row[SEMI_HEIGHT], face_width, points)
+        _face_points(_outline(row), face_width, points)
     else:
         for x, left, right in (
             (row[LOWEST], row[LEFT_LOW], row[RIGHT_LOW]),

@@ -6,6 +6,7 @@ Derived. A side is w = p + m (x - x_low); put into a conic it leaves a quadratic
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -48,24 +49,24 @@ def side_side_points(one: FloatArray, two: FloatArray, points: list[tuple[float,
                 points.append((x, start + slope * (x - one[LOWEST])))
 
 
+class Conic(NamedTuple):
+    """The curve c2 v^2 + c1 v + k0 + k1 t + k2 t^2 = 0 with t = x - x0 and v = w - w0."""
+
+    x0: float
+    w0: float
+    c2: float
+    c1: float
+    k0: float
+    k1: float
+    k2: float
+
+
 @njit(cache=True)
 def side_conic_points(
-    row: FloatArray,
-    x0: float,
-    w0: float,
-    c2: float,
-    c1: float,
-    k0: float,
-    k1: float,
-    k2: float,
-    low: float,
-    high: float,
-    points: list[tuple[float, float]],
+    row: FloatArray, conic: Conic, low: float, high: float, points: list[tuple[float, float]]
 ) -> None:
-    """Append the points between two heights where the sides of a trapezoid cross a conic.
-
-    The conic is c2 v^2 + c1 v + k0 + k1 t + k2 t^2 = 0 with t = x - x0 and v = w - w0.
-    """
+    """Append the points between two heights where the sides of a trapezoid cross a conic."""
+    x0, w0, c2, c1, k0, k1, k2 = conic
     for right in range(2):
         start, slope = _side(row, right)
         offset = start + slope * (x0 - row[LOWEST]) - w0

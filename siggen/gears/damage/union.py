@@ -13,6 +13,7 @@ closed form.
 from __future__ import annotations
 
 from math import atan2, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +35,23 @@ from siggen.gears.damage.row_columns import (
     TRAPEZOID,
 )
 
+
+class Intervals(NamedTuple):
+    """Room for intervals of rows across the face, sorted by their left ends: both ends [m], and the row of each."""
+
+    left: FloatArray
+    right: FloatArray
+    owner: IntArray
+
+
 EDGE = 1e-13
 """Ends of an interval this near to a dish's edge, in its semi-axes, are the edge: rounding of face coordinates."""
+
+
+@njit(cache=True)
+def interval_room(rows: int) -> Intervals:
+    """Return room for the intervals of so many rows."""
+    return Intervals(np.empty(rows), np.empty(rows), np.empty(rows, np.int64))
 
 
 @njit(cache=True)
@@ -54,20 +70,13 @@ def active_pits(x: float, pits: FloatArray, active: IntArray) -> int:
 
 @njit(cache=True)
 def add_intervals(
-    x: float,
-    pits: FloatArray,
-    active: IntArray,
-    count: int,
-    face_width: float,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
-    filled: int,
+    x: float, pits: FloatArray, active: IntArray, count: int, face_width: float, intervals: Intervals, filled: int
 ) -> int:
     """Insert the active rows' intervals, clipped to the face, into lists sorted by `left`; return their number.
 
     A trapezoid's sides go on beyond its ends: at the end of a piece its interval is the limit from inside.
     """
+    left, right, owner = intervals
     for position in range(count):
         i = active[position]
         if pits[i, TRAPEZOID] != 0.0:
@@ -93,8 +102,9 @@ def add_intervals(
 
 
 @njit(cache=True)
-def covered_length(left: FloatArray, right: FloatArray, count: int) -> float:
+def covered_length(intervals: Intervals, count: int) -> float:
     """Return the length of the union of intervals that are sorted by `left`."""
+    left, right, _ = intervals
     length = 0.0
     end = -np.inf
     for k in range(count):
@@ -249,20 +259,13 @@ def _append_deeper(
 
 @njit(cache=True)
 def _add_cluster(
-    x: float,
-    pits: FloatArray,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
-    first: int,
-    last: int,
-    stretches: FloatArray,
-    moments: FloatArray,
+    x: float, pits: FloatArray, intervals: Intervals, first: int, last: int, stretches: FloatArray, moments: FloatArray
 ) -> None:
     """Add the moments of intervals first..last-1, an overlapping chain, stretch by stretch of its deepest row.
 
     Intervals come sorted by their left ends, so each one meets only the last few stretches of those before.
     """
+    left, right, owner = intervals
     count = 0
     for k in range(first, last):
         low, high, i = left[k], right[k], owner[k]
@@ -289,19 +292,13 @@ def _add_cluster(
 
 @njit(cache=True)
 def depth_moments(
-    x: float,
-    pits: FloatArray,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
-    count: int,
-    stretches: FloatArray,
-    moments: FloatArray,
+    x: float, pits: FloatArray, intervals: Intervals, count: int, stretches: FloatArray, moments: FloatArray
 ) -> None:
     """Write int D dw [m2], int D^2 dw [m3] and int D^3 dw [m4] of the union of the intervals into `moments` (3,).
 
     `stretches` is working room, `stretch_room(number of rows)`.
     """
+    left, right, owner = intervals
     moments[:] = 0.0
     uniform = True
     depth = level_depth(x, pits, owner[0]) if count > 0 else 0.0
@@ -310,7 +307,7 @@ def depth_moments(
             uniform = False
             break
     if count > 0 and uniform:
-        length = covered_length(left, right, count)
+        length = covered_length(intervals, count)
         moments[0] = depth * length
         moments[1] = depth * depth * length
         moments[2] = depth * depth * depth * length
@@ -324,7 +321,7 @@ def depth_moments(
         if last == first + 1:
             _add_piece(x, left[first], right[first], pits, owner[first], moments)
         else:
-            _add_cluster(x, pits, left, right, owner, first, last, stretches, moments)
+            _add_cluster(x, pits, intervals, first, last, stretches, moments)
         first = last
 
 
@@ -337,13 +334,12 @@ def lengths_covered(
     The two flanks share the face coordinate; give one of them no rows (0, 13) for the loss of a single flank.
     """
     room = pits_one.shape[0] + pits_two.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active = interval_room(room), np.empty(room, np.int64)
     out = np.zeros(heights_one.size)
     for i in range(heights_one.size):
         count = active_pits(heights_one[i], pits_one, active)
-        filled = add_intervals(heights_one[i], pits_one, active, count, face_width, left, right, owner, 0)
+        filled = add_intervals(heights_one[i], pits_one, active, count, face_width, intervals, 0)
         count = active_pits(heights_two[i], pits_two, active)
-        filled = add_intervals(heights_two[i], pits_two, active, count, face_width, left, right, owner, filled)
-        out[i] = covered_length(left, right, filled)
+        filled = add_intervals(heights_two[i], pits_two, active, count, face_width, intervals, filled)
+        out[i] = covered_length(intervals, filled)
     return out

@@ -29,7 +29,7 @@ from siggen.gears.damage.row_columns import (
     SEMI_HEIGHT,
     TRAPEZOID,
 )
-from siggen.gears.damage.union import active_pits, add_intervals, covered_length
+from siggen.gears.damage.union import Intervals, active_pits, add_intervals, covered_length, interval_room
 from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 
@@ -74,8 +74,7 @@ def _closes(
     face_width: float,
 ) -> bool:
     room = pinion[0].shape[0] + gear[0].shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active = interval_room(room), np.empty(room, np.int64)
     together = pinion[0].shape[0] > 0 and gear[0].shape[0] > 0
     narrowest = NARROWEST * (cuts[-1] - cuts[0])
     stack = [(0.0, 0.0)]
@@ -85,11 +84,11 @@ def _closes(
         while len(stack) > 0:
             low, high = stack.pop()
             middle = 0.5 * (low + high)
-            if _is_closed(middle, line, pinion, gear, face_width, left, right, owner, active):
+            if _is_closed(middle, line, pinion, gear, face_width, intervals, active):
                 return True
             if not together or high - low <= narrowest:
                 continue
-            if _may_close(low, high, line, pinion, gear, face_width, left, right):
+            if _may_close(low, high, line, pinion, gear, face_width, intervals):
                 stack.append((low, middle))
                 stack.append((middle, high))
     return False
@@ -102,17 +101,15 @@ def _is_closed(
     pinion: tuple[FloatArray, float, float],
     gear: tuple[FloatArray, float, float],
     face_width: float,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
+    intervals: Intervals,
     active: IntArray,
 ) -> bool:
     filled = 0
     for travel, flank in ((position, pinion), (line - position, gear)):
         x = involute.height(travel / flank[1], flank[1], flank[2])
         count = active_pits(x, flank[0], active)
-        filled = add_intervals(x, flank[0], active, count, face_width, left, right, owner, filled)
-    return covered_length(left, right, filled) >= face_width * (1.0 - WHOLE_FACE)
+        filled = add_intervals(x, flank[0], active, count, face_width, intervals, filled)
+    return covered_length(intervals, filled) >= face_width * (1.0 - WHOLE_FACE)
 
 
 @njit(cache=True)
@@ -123,23 +120,23 @@ def _may_close(
     pinion: tuple[FloatArray, float, float],
     gear: tuple[FloatArray, float, float],
     face_width: float,
-    left: FloatArray,
-    right: FloatArray,
+    intervals: Intervals,
 ) -> bool:
     """Return whether the extreme ends of all rows between two positions leave no gap."""
     filled = 0
     for start, stop, flank in ((low, high, pinion), (line - high, line - low, gear)):
         bottom = involute.height(start / flank[1], flank[1], flank[2])
         top = involute.height(stop / flank[1], flank[1], flank[2])
-        filled = _add_extremes(bottom, top, flank[0], face_width, left, right, filled)
-    return covered_length(left, right, filled) >= face_width * (1.0 - WHOLE_FACE)
+        filled = _add_extremes(bottom, top, flank[0], face_width, intervals, filled)
+    return covered_length(intervals, filled) >= face_width * (1.0 - WHOLE_FACE)
 
 
 @njit(cache=True)
 def _add_extremes(
-    bottom: float, top: float, rows: FloatArray, face_width: float, left: FloatArray, right: FloatArray, filled: int
+    bottom: float, top: float, rows: FloatArray, face_width: float, intervals: Intervals, filled: int
 ) -> int:
     """Insert the extreme ends of each row between two heights into lists sorted by `left`; return their number."""
+    left, right, _ = intervals
     for i in range(rows.shape[0]):
         if rows[i, LOWEST] > top or rows[i, HIGHEST] < bottom:
             continue

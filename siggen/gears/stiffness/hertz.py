@@ -1,26 +1,21 @@
-r"""Compliance of the contact between two teeth: one linear law and two that depend on the force.
+r"""Compliance of the contact between two teeth: the linear law, and one that depends on the force.
 
 With E, nu of both gears, contact length L, normal force F and the contact half width a_H,
 a_H^2 = 8 F R_e (1 - nu^2)/(pi E L), R_e = rho_1 rho_2/(rho_1 + rho_2):
 
     linear            1/k = 4 (1 - nu^2)/(pi E L)                                              (Yang and Sun)
     weber_banaschek   1/k = 4 (1 - nu^2)/(pi E L) [ln(2 sqrt(h_1 h_2)/a_H) - nu/(2 (1 - nu))]
-    power_law         1/k = 1.275/(E^0.9 L^0.8 F^0.1)
 
-All are secant compliances, deflection over force. `weber_banaschek` is derived: under an elliptic pressure the
+Both are secant compliances, deflection over force. `weber_banaschek` is derived: under an elliptic pressure the
 surface of a half plane approaches a point at depth h >> a_H by 2 F (1 - nu^2)/(pi E L) [ln(2 h/a_H) - nu/(2 (1 - nu))]
 (plane strain; Johnson, Contact Mechanics, section 5.6), and both teeth add; h_i is the distance from the contact to
-the tooth's centre line along the line of action, h(psi)/cos(alpha_1), beyond which bending takes over. `power_law` is
-from memory of the gear literature. Its dimension is right (N^0.9 m^-1.8 m^0.8 N^0.1 = N/m) and its exponent is that
-of Palmgren's roller contact, F^0.9; at the local exponent 0.9 the bracket of `weber_banaschek` is 5 (it is 3 to 5 for
-teeth). Its constant is uncertain: Cornell (1981) has 1.37 in place of 1.275 and Palmgren's rollers have
-3.81 [2 (1 - nu^2)/pi]^0.9 = 2.33, both from memory too. It knows neither curvature nor tooth thickness. Take it for
-comparisons with work that used it.
+the tooth's centre line along the line of action, h(psi)/cos(alpha_1), beyond which bending takes over.
 
-`linear` is `weber_banaschek` with a bracket of 1: it makes the contact three to five times too stiff, but is what
-paper A's kind of model uses. The force is one number for all contacts, the mesh force in single-pair contact. Where
-two pairs share the load the bracket is ln(2)/2 = 0.35 too small for half the force, which is a tenth of the contact's
-compliance and 2 % of the pair's: less than what the laws differ by, and a table stays one per specimen and state.
+`linear` is `weber_banaschek` with a bracket of 1, which is 3 to 5 for teeth: it makes the contact that much too stiff,
+but is what paper A's kind of model uses. The force is one number for all contacts, the mesh force in single-pair
+contact. Where two pairs share the load the bracket is ln(2)/2 = 0.35 too small for half the force, which is a tenth of
+the contact's compliance and 2 % of the pair's: less than what the laws differ by, and a table stays one per specimen
+and state.
 """
 
 from __future__ import annotations
@@ -32,7 +27,6 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
 
-POWER_LAW_FACTOR = 1.275
 LARGEST_HALF_WIDTH = 0.5
 """Largest a_H/h_i that `weber_banaschek` reckons with. There the logarithm is 6 % off the exact approach of the half
 plane (at 0.25: 1 %, measured); a wider contact, on the last remains of a pitted face, keeps this ratio."""
@@ -50,22 +44,6 @@ def linear_compliance(pair: GearPair, length_m: FloatArray) -> FloatArray:
     Source: Yang and Sun; once per pair, equal materials.
     """
     return 4.0 / (pi * _plane_modulus(pair) * length_m)
-
-
-def power_law_compliance(pair: GearPair, length_m: FloatArray, force_n: float) -> FloatArray:
-    """Return 1/k = 1.275/(E^0.9 L^0.8 F^0.1) of contacts of length L (k,) [m/N].
-
-    Parameters
-    ----------
-    pair : GearPair
-    length_m : (k,)
-        Contact lengths, above 0 [m].
-    force_n : float
-        Normal force of the pair, above 0 [N].
-
-    Source: memory of the literature; see this module's docstring for what speaks for it.
-    """
-    return np.asarray(POWER_LAW_FACTOR / (pair.youngs_modulus_pa**0.9 * length_m**0.8 * force_n**0.1))
 
 
 def weber_banaschek_compliance(

@@ -22,7 +22,7 @@ from siggen.gears.geometry import involute
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.compliance import ROLL_TOLERANCE, ToothCompliance, tooth_compliance
 from siggen.gears.stiffness.coupled_pairs import coupled_sum
-from siggen.gears.stiffness.hertz import linear_compliance, power_law_compliance, weber_banaschek_compliance
+from siggen.gears.stiffness.hertz import linear_compliance, weber_banaschek_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 __all__ = [
@@ -126,8 +126,6 @@ def contact_compliance(
 def _law(pair: GearPair, position_m: FloatArray, length_m: FloatArray, options: StiffnessOptions) -> FloatArray:
     if options.hertz_force_n is None:
         return linear_compliance(pair, length_m)
-    if options.hertz == "power_law":
-        return power_law_compliance(pair, length_m, options.hertz_force_n)
     return weber_banaschek_compliance(pair, *rolls_at(pair, position_m), length_m, options.hertz_force_n)
 
 

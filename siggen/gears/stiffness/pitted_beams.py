@@ -12,13 +12,22 @@ S0/(A A') dx.
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
 from siggen.compiled import njit
 from siggen.gears.damage.row_columns import DISH, FACE, HEIGHT, LOWEST, SEMI_HEIGHT, TRAPEZOID
-from siggen.gears.damage.union import active_pits, add_intervals, covered_length, depth_moments, stretch_room
+from siggen.gears.damage.union import (
+    Intervals,
+    active_pits,
+    add_intervals,
+    covered_length,
+    depth_moments,
+    interval_room,
+    stretch_room,
+)
 from siggen.gears.damage.visible_points import edge_square, shows
 from siggen.gears.geometry.involute import half_thickness, height
 from siggen.gears.geometry.quadrature import NODES_4, NODES_6, NODES_16, WEIGHTS_4, WEIGHTS_6, WEIGHTS_16
@@ -44,47 +53,45 @@ def section_losses(h: float, face_width: float, moments: FloatArray) -> tuple[fl
     return s0, loss
 
 
+class PittedTooth(NamedTuple):
+    """Rows (n, 14) of a tooth with their lower ends, its base radius [m], half angle [rad] and face width [m]."""
+
+    pits: FloatArray
+    lowest: FloatArray
+    base_radius: float
+    half_angle: float
+    face_width: float
+
+
+class Room(NamedTuple):
+    """Working space: intervals of the rows in a section, the rows that are there, and stretches of their union."""
+
+    intervals: Intervals
+    active: IntArray
+    stretches: FloatArray
+
+
 @njit(cache=True)
-def _active_between(
-    low: float,
-    high: float,
-    pits: FloatArray,
-    base_radius: float,
-    half_angle: float,
-    face_width: float,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
-    active: IntArray,
-) -> int:
+def _room(rows: int) -> Room:
+    return Room(interval_room(rows), np.empty(rows, np.int64), stretch_room(rows))
+
+
+@njit(cache=True)
+def _active_between(tooth: PittedTooth, low: float, high: float, room: Room) -> int:
     """Write the rows present between two neighbouring breaks into `active`, sorted by their left ends; return how many.
 
     Once per piece: presence and, but for hidden ends, order change at kinks only.
     """
-    x = height(0.5 * (low + high), base_radius, half_angle)
-    count = active_pits(x, pits, active)
-    count = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-    active[:count] = owner[:count]
+    x = height(0.5 * (low + high), tooth.base_radius, tooth.half_angle)
+    active = room.active
+    count = active_pits(x, tooth.pits, active)
+    count = add_intervals(x, tooth.pits, active, count, tooth.face_width, room.intervals, 0)
+    active[:count] = room.intervals.owner[:count]
     return count
 
 
 @njit(cache=True)
-def _add_piece(
-    low: float,
-    high: float,
-    pits: FloatArray,
-    lowest: FloatArray,
-    base_radius: float,
-    half_angle: float,
-    face_width: float,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
-    active: IntArray,
-    count: int,
-    stretches: FloatArray,
-    total: FloatArray,
-) -> None:
+def _add_piece(tooth: PittedTooth, low: float, high: float, room: Room, count: int, total: FloatArray) -> None:
     """Add a piece without kinks inside.
 
     Near the lowest or highest point of an ellipse or a dish roll = middle - half cos t turns its square-root end into
@@ -96,6 +103,8 @@ def _add_piece(
     """
     if count == 0:
         return
+    pits, lowest, base_radius, half_angle, face_width = tooth
+    intervals, active, stretches = room
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     bottom, top = height(low, base_radius, half_angle), height(high, base_radius, half_angle)
     clearance = smallest = np.inf
@@ -120,8 +129,8 @@ def _add_piece(
             roll, step = middle - half * cos(t), 0.5 * pi * weights[node] * half * sin(t)
         x = height(roll, base_radius, half_angle)
         h = half_thickness(roll, base_radius, half_angle)
-        filled = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(x, pits, left, right, owner, filled, stretches, moments)
+        filled = add_intervals(x, pits, active, count, face_width, intervals, 0)
+        depth_moments(x, pits, intervals, filled, stretches, moments)
         area_loss, inertia_loss = section_losses(h, face_width, moments)
         dx = step * base_radius * roll * cos(roll - half_angle)
         area, inertia = 2.0 * h * face_width, 2.0 / 3.0 * h * h * h * face_width
@@ -144,19 +153,12 @@ def _lower_ends(pits: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def _stride(
-    roll: float,
-    pits: FloatArray,
-    lowest: FloatArray,
-    active: IntArray,
-    count: int,
-    base_radius: float,
-    half_angle: float,
-) -> float:
+def _stride(tooth: PittedTooth, roll: float, active: IntArray, count: int) -> float:
     """Return how far to go on from a roll angle so that a piece keeps three heights away from square-root ends.
 
     Beside such an end it is as high as 6 nodes allow. Rows above `roll` are not in `active`: they change nothing.
     """
+    pits, lowest, base_radius, half_angle, _ = tooth
     x = height(roll, base_radius, half_angle)
     clearance = smallest = np.inf
     for k in range(count):
@@ -177,37 +179,20 @@ def pit_sums(
     `breaks` are ascending rolls that hold every kink. Pieces between them are cut into parts from below (`_stride`);
     nothing above a cut changes a bit of its sums. NaN from where a section is consumed.
     """
-    room = pits.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    stretches, lowest = stretch_room(room), _lower_ends(pits)
+    room = _room(pits.shape[0])
+    tooth = PittedTooth(pits, _lower_ends(pits), base_radius, half_angle, face_width)
     total = np.zeros(4)
     below = [breaks[0]]
     sums = [total.copy()]
     for k in range(1, breaks.size):
         low, high = breaks[k - 1], breaks[k]
-        count = _active_between(low, high, pits, base_radius, half_angle, face_width, left, right, owner, active)
+        count = _active_between(tooth, low, high, room)
         parts = 0
         while low < breaks[k]:
             high = breaks[k]
             if count > 0 and parts < PARTS:
-                high = min(high, low + _stride(low, pits, lowest, active, count, base_radius, half_angle))
-            _add_piece(
-                low,
-                high,
-                pits,
-                lowest,
-                base_radius,
-                half_angle,
-                face_width,
-                left,
-                right,
-                owner,
-                active,
-                count,
-                stretches,
-                total,
-            )
+                high = min(high, low + _stride(tooth, low, room.active, count))
+            _add_piece(tooth, low, high, room, count, total)
             below.append(high)
             sums.append(total.copy())
             low = high
@@ -235,10 +220,8 @@ def pit_integrals(
     contact changes a bit of its result. NaN where a section is consumed.
     """
     out = np.zeros((4, rolls.size))
-    room = pits.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
-    stretches, lowest = stretch_room(room), _lower_ends(pits)
+    room = _room(pits.shape[0])
+    tooth = PittedTooth(pits, _lower_ends(pits), base_radius, half_angle, face_width)
     total = np.zeros(4)
     present, count = -1, 0
     for i in range(rolls.size):
@@ -249,26 +232,9 @@ def pit_integrals(
             if k != present:
                 # Up to the next break the same rows are present, for however many contacts.
                 stop = breaks[k + 1] if k + 1 < breaks.size else rolls[i]
-                count = _active_between(
-                    breaks[k], stop, pits, base_radius, half_angle, face_width, left, right, owner, active
-                )
+                count = _active_between(tooth, breaks[k], stop, room)
                 present = k if k + 1 < breaks.size else -1
-            _add_piece(
-                cuts[cut],
-                rolls[i],
-                pits,
-                lowest,
-                base_radius,
-                half_angle,
-                face_width,
-                left,
-                right,
-                owner,
-                active,
-                count,
-                stretches,
-                total,
-            )
+            _add_piece(tooth, cuts[cut], rolls[i], room, count, total)
         out[:, i] = total
     return out
 
@@ -290,8 +256,7 @@ def flank_area(
     of 16 nodes agree to 1e-14 of the pits' size.
     """
     room = pits.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active = interval_room(room), np.empty(room, np.int64)
     total = 0.0
     low = start
     kink = 0
@@ -313,8 +278,8 @@ def flank_area(
                         t = pi * (panel + 0.5 * (1.0 + NODES_16[node])) / panels
                         roll = middle - half * cos(t)
                         x = height(roll, base_radius, half_angle)
-                        filled = add_intervals(x, pits, active, count, face_width, left, right, owner, 0)
-                        length = covered_length(left, right, filled)
+                        filled = add_intervals(x, pits, active, count, face_width, intervals, 0)
+                        length = covered_length(intervals, filled)
                         slope = roll if along_arc else roll * cos(roll - half_angle)
                         area += 0.5 * pi / panels * WEIGHTS_16[node] * half * sin(t) * base_radius * slope * length
                 if abs(area - previous) <= 1e-14 * area:

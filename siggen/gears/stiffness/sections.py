@@ -21,10 +21,12 @@ from siggen.gears.damage.kinks import section_kinks
 from siggen.gears.damage.row_columns import COLUMNS
 from siggen.gears.damage.tooth_damage import ToothDamage
 from siggen.gears.damage.union import (
+    Intervals,
     active_pits,
     add_intervals,
     covered_length,
     depth_moments,
+    interval_room,
     lengths_covered,
     stretch_room,
 )
@@ -92,15 +94,14 @@ def section_loss(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
 @njit(cache=True)
 def _losses_at(height: FloatArray, thickness: FloatArray, pits: FloatArray, face_width: float) -> FloatArray:
     room = pits.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active = interval_room(room), np.empty(room, np.int64)
     stretches, moments = stretch_room(room), np.empty(3)
     out = np.zeros((3, height.size))
     for i in range(height.size):
         count = active_pits(height[i], pits, active)
-        filled = add_intervals(height[i], pits, active, count, face_width, left, right, owner, 0)
-        depth_moments(height[i], pits, left, right, owner, filled, stretches, moments)
-        out[0, i] = covered_length(left, right, filled)
+        filled = add_intervals(height[i], pits, active, count, face_width, intervals, 0)
+        depth_moments(height[i], pits, intervals, filled, stretches, moments)
+        out[0, i] = covered_length(intervals, filled)
         out[1, i], out[2, i] = section_losses(thickness[i], face_width, moments)
     return out
 
@@ -150,47 +151,39 @@ def largest_contact_length_loss(gear: SpurGear, pits: Iterable[ToothDamage], fac
 
 @njit(cache=True)
 def _covered_at(
-    x: float,
-    pits: FloatArray,
-    face_width: float,
-    active: IntArray,
-    count: int,
-    left: FloatArray,
-    right: FloatArray,
-    owner: IntArray,
+    x: float, pits: FloatArray, face_width: float, active: IntArray, count: int, intervals: Intervals
 ) -> float:
-    return covered_length(left, right, add_intervals(x, pits, active, count, face_width, left, right, owner, 0))
+    return covered_length(intervals, add_intervals(x, pits, active, count, face_width, intervals, 0))
 
 
 @njit(cache=True)
 def _largest_covered(cuts: FloatArray, pits: FloatArray, face_width: float) -> float:
     room = pits.shape[0]
-    left, right = np.empty(room), np.empty(room)
-    owner, active = np.empty(room, np.int64), np.empty(room, np.int64)
+    intervals, active = interval_room(room), np.empty(room, np.int64)
     best = 0.0
     for k in range(cuts.size - 1):
         low, high = cuts[k], cuts[k + 1]
         middle = 0.5 * (low + high)
         count = active_pits(middle, pits, active)
-        at_middle = _covered_at(middle, pits, face_width, active, count, left, right, owner)
-        active[:count] = owner[:count]
-        at_low = _covered_at(low, pits, face_width, active, count, left, right, owner)
-        at_high = _covered_at(high, pits, face_width, active, count, left, right, owner)
+        at_middle = _covered_at(middle, pits, face_width, active, count, intervals)
+        active[:count] = intervals.owner[:count]
+        at_low = _covered_at(low, pits, face_width, active, count, intervals)
+        at_high = _covered_at(high, pits, face_width, active, count, intervals)
         best = max(best, at_low, at_middle, at_high)
         # Bound of a concave function from its ends and its middle: most pieces need no search.
         if 2.0 * at_middle - min(at_low, at_high) <= best:
             continue
         one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        length_one = _covered_at(one, pits, face_width, active, count, left, right, owner)
-        length_two = _covered_at(two, pits, face_width, active, count, left, right, owner)
+        length_one = _covered_at(one, pits, face_width, active, count, intervals)
+        length_two = _covered_at(two, pits, face_width, active, count, intervals)
         for _ in range(40):
             if length_one > length_two:
                 high, two, length_two = two, one, length_one
                 one = high - GOLDEN * (high - low)
-                length_one = _covered_at(one, pits, face_width, active, count, left, right, owner)
+                length_one = _covered_at(one, pits, face_width, active, count, intervals)
             else:
                 low, one, length_one = one, two, length_two
                 two = low + GOLDEN * (high - low)
-                length_two = _covered_at(two, pits, face_width, active, count, left, right, owner)
+                length_two = _covered_at(two, pits, face_width, active, count, intervals)
         best = max(best, length_one, length_two)
     return best

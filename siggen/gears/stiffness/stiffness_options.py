@@ -10,7 +10,7 @@ from siggen.gears.stiffness.beams import BEAMS
 TOOTH_MODELS = (*BEAMS, "calibrated")
 FOUNDATIONS = ("sainsot", "none")
 FOUNDATION_ANGLES = ("auto", "profile", "rack")
-HERTZ_LAWS = ("linear", "weber_banaschek", "power_law")
+HERTZ_LAWS = ("linear", "weber_banaschek")
 COUPLINGS = ("none", "body")
 
 
@@ -29,7 +29,8 @@ class StiffnessOptions:
         Tooth root that the foundation sees: 'profile', 'rack', or 'auto' (rack for a rack-cut tooth, else profile);
         'calibrated' holds with 'rack' only.
     hertz : str
-        Contact law, see `siggen.gears.stiffness.hertz`: 'linear', 'weber_banaschek' or 'power_law'.
+        Contact law, see `siggen.gears.stiffness.hertz`: 'linear' or 'weber_banaschek'; the
+        latter for comparisons with finite elements.
     hertz_force_n : float or None
         Normal force at which a load-dependent contact law is taken [N]; None for 'linear'.
     coupling : str

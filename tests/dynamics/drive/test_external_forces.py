@@ -21,7 +21,7 @@ from siggen.dynamics.drive.varying_drive import VaryingDrive
 from siggen.dynamics.structure.casing_structure import torsional
 from siggen.dynamics.structure.structure import Bearing, SpurStage, Structure, eight_dof, vector
 from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, SampleGrid, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.casing_stage import make_structure as casing
 from tests.dynamics.conftest import BASE_RADIUS_1, BASE_RADIUS_2, make_stage
@@ -45,7 +45,7 @@ def respond(structure: Structure, tables: MeshTables, drive: Drive, *sources: So
         input_vectors=excitation.vectors,
     )  # fmt: skip
     motion.transient_s = 3.0  # the soft bearings decay at 14.6/s
-    return response_of(motion, drive, fs_hz=FS, samples=samples, steps_per_sample=4, excitation=excitation)
+    return response_of(motion, drive, SampleGrid(FS, samples, 4), excitation=excitation)
 
 
 def line(signal: np.ndarray, frequency_hz: float) -> complex:

@@ -18,8 +18,8 @@ from siggen.dynamics.mesh.pair_columns import FRICTION, SLIDING
 from siggen.dynamics.structure.structure import Structure, eight_dof, six_dof
 from siggen.dynamics.time.equations import state_rate
 from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.pair_motion import MeanState, PairMotion
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.casing_stage import make_structure as casing
 from tests.dynamics.conftest import make_stage
@@ -46,7 +46,7 @@ def settings(seed: int = 0, **changes) -> TorqueSettings:
 
 def respond(motion: LinearMotion, drive: Rotation, source: TorqueVariation | None, samples: int, **flags) -> Response:
     excitation = None if source is None else Excitation((source,))
-    return response_of(motion, drive, fs_hz=FS, samples=samples, steps_per_sample=STEPS, excitation=excitation, **flags)
+    return response_of(motion, drive, SampleGrid(FS, samples, STEPS), wanted=Wanted(**flags), excitation=excitation)
 
 
 def run(motion, drive: Rotation, excitation: Excitation | None, steps: int, step_s: float, first_s: float = 0.0):
@@ -241,8 +241,8 @@ def test_work_of_a_run_up_with_friction_becomes_kinetic_energy_and_losses() -> N
     excitation = Excitation((SpeedDeviation(structure.coordinates, nominal), source))
     drive = VaryingDrive(SpeedRamp(15.0, 45.0, 0.25), 0.3, Ripple(1e-3))
     motion = PairMotion(
-        structure, law(friction=constant_friction(0.05)), torque_nm=TORQUE, speed_hz=speed,
-        reference_stiffness_n_per_m=mean_mesh_stiffness(tables()), step_s=STEP / 2,
+        structure, law(friction=constant_friction(0.05)), step_s=STEP / 2,
+        mean=MeanState(TORQUE, speed, mean_mesh_stiffness(tables())),
         input_vectors=excitation.vectors, speed_input=0,
     )  # fmt: skip
     time, pitches, inputs, states = run(motion, drive, excitation, 60000, STEP / 2)

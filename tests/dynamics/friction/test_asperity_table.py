@@ -69,7 +69,11 @@ def test_grid_points_are_exact_and_the_ends_hold() -> None:
 
 
 def test_fluid_friction_may_depend_on_place_and_load() -> None:
-    table = asperity_table(mesh(), [1e-6], lambda s, force: 1.0 * s + 0.01 * np.log(force), RANGE, 2e4)
+    ratio = np.zeros((1, 65, 65))
+    position = np.linspace(*RANGE, 65)
+    lowest = TABLE.floor_n_per_m * relative_radius(position, TABLE.line_m)
+    force = lowest[:, None] * np.exp(np.arange(65) / TABLE.per_log)
+    table = TABLE._replace(ratio=ratio, fluid=position[:, None] + 0.01 * np.log(force))
     expected = PITCH_POINT + 0.01 * np.log(FORCE)
     # Linear in the position; in the load axis only up to the curvature of ln R_e along a cell, 1e-3 of 0.01.
     assert mixed_contact(table, 0, PITCH_POINT, FORCE)[1] == pytest.approx(expected, abs=2e-5)

@@ -7,7 +7,7 @@ import pytest
 
 from siggen.dynamics.mesh.pair_columns import CARRYING, NORMAL, PENETRATION, POSITION, ROUGH, STIFFNESS
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
-from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.contact.contact_table import ContactTable, contact_table
 from siggen.gears.contact.table_options import TableOptions
@@ -39,10 +39,8 @@ def made(damage: Damage, *, coupled: bool = False) -> tuple[ContactTable, PairLa
     law = pair_law(
         whole_face(pair, damage, TEETH, POINTS),
         missing_material(pair, RELIEF),
-        line_of_action_m=pair.line_of_action_m,
+        MeshConstants(pair.line_of_action_m, 0.2124, 80e-6),
         damping_ratio=0.07,
-        equivalent_mesh_mass_kg=0.2124,
-        backlash_m=80e-6,
         contact=table,
         coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
     )

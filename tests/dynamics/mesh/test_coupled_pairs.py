@@ -10,7 +10,7 @@ from scipy.optimize import nnls
 
 from siggen.dynamics.mesh.pair_columns import COLUMNS, NORMAL, WHOLE
 from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_law import PairLaw, pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.geometry.missing_material import missing_material
 from tests.dynamics.casing_stage import make_structure
@@ -37,10 +37,8 @@ def law(coupling: np.ndarray | None, backlash_m: float = 80e-6) -> PairLaw:
     return pair_law(
         TABLES,
         exact_involutes(TABLES),
-        line_of_action_m=gear_pair().line_of_action_m,
+        MeshConstants(gear_pair().line_of_action_m, 0.2124, backlash_m),
         damping_ratio=0.07,
-        equivalent_mesh_mass_kg=0.2124,
-        backlash_m=backlash_m,
         coupling_m_per_n=coupling,
     )
 
@@ -123,10 +121,8 @@ def test_a_coupled_mesh_runs_and_carries_the_torque() -> None:
     coupled = pair_law(
         tables(),
         missing_material(gear_pair(), RELIEF),
-        line_of_action_m=gear_pair().line_of_action_m,
+        MeshConstants(gear_pair().line_of_action_m, 0.2124, 80e-6),
         damping_ratio=0.07,
-        equivalent_mesh_mass_kg=0.2124,
-        backlash_m=80e-6,
         coupling_m_per_n=np.full((1, points), 0.15 / 1.8e8),
     )
     run = motion(make_structure(), coupled, step_s=1.0 / 204800)

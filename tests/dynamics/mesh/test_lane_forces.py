@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,8 @@ from siggen.dynamics.friction.asperity_table import asperity_table
 from siggen.dynamics.friction.friction import composite_friction
 from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
 from siggen.dynamics.mesh.lane_table import APPLIES, lane_table
-from siggen.dynamics.mesh.node_forces import (
+from siggen.dynamics.mesh.node_forces import write_node_forces
+from siggen.dynamics.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_NORMAL,
     NODE_RATE,
@@ -18,11 +21,13 @@ from siggen.dynamics.mesh.node_forces import (
     NODE_SLIDING_1,
     NODE_TILT,
     NODE_TILT_RATE,
-    write_node_forces,
-)  # fmt: skip
-from siggen.dynamics.mesh.pair_columns import NORMAL, PAIR, STIFFNESS
+    NORMAL,
+    PAIR,
+    STIFFNESS,
+)
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
 from siggen.dynamics.mesh.pair_places import pair_table
+from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE
 from siggen.dynamics.time.exponential_scheme import NODES
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
@@ -41,7 +46,7 @@ GAUSS = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
 WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(NODES)[1]
 
 
-def spalled(seed: int, *, tilts: bool, coupled: bool = True, film: SqueezeFilm | None = None) -> PairLaw:
+def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> PairLaw:
     """Return the law of a gear pair with a drawn spall on every third tooth, misaligned where gears tilt."""
     rng, pair = np.random.default_rng(seed), gear_pair()
     height = float(pair.pinion.height_m(np.array([pair.pitch_point_m / pair.pinion.base_radius_m]))[0])
@@ -60,7 +65,7 @@ def spalled(seed: int, *, tilts: bool, coupled: bool = True, film: SqueezeFilm |
         contact=contact_table(pair, tuple(damage), TEETH, options, POINTS, lead),
         friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], 0.04, RANGE, 2e4)),
         coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
-        film=film,
+        **other,
     )
 
 
@@ -88,11 +93,11 @@ def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, cou
         step = 0.015 * 0.5 ** rng.integers(0, 4)
         expected = drawn_node(rng)
         node = expected.copy()
-        said = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected)
-        found = write_lane_forces(*chosen, pitches, pitches + step, pairs, table, node)
+        said = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected, SMOOTH_CHANGE)
+        found = write_lane_forces(chosen, pitches, pitches + step, pairs, table, node)
         taken += found != NOT_HERE
         if found == NOT_HERE:
-            found = write_node_forces(*chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node)
+            found = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node, SMOOTH_CHANGE)
         assert found == said
         alike.add(said)
         rows = slice(NODE_NORMAL, NODE_ROWS)

@@ -8,7 +8,7 @@ from siggen.dynamics.friction.asperity_table import AsperityTable
 from siggen.dynamics.friction.friction import FrictionLaw
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.law_tables import law_tables
-from siggen.dynamics.mesh.pair_law import pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.missing_material import MissingMaterial, ToothTables
 from siggen.gears.stiffness.mesh_tables import MeshTables
@@ -46,10 +46,8 @@ def test_names_give_back_every_input_of_the_law() -> None:
         pair_law(
             over,
             missing,
-            line_of_action_m=0.033,
+            MeshConstants(0.033, 0.25, 8e-5),
             damping_ratio=DampingLaw(0.04, 0.02, 0.05),
-            equivalent_mesh_mass_kg=0.25,
-            backlash_m=8e-5,
             friction=FrictionLaw(lubricated, 0.11, 0.02),
             contact=contact,
             coupling_m_per_n=coupling,

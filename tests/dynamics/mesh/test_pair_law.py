@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS
+from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS, WHOLE
 from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
 from siggen.dynamics.mesh.pair_places import pair_table
@@ -111,7 +111,7 @@ def test_pairs_are_those_of_the_path_of_contact_and_its_corners() -> None:
     chosen = law()
     pair = gear_pair()
     angles = np.linspace(0.0, 3.0, 6001)
-    counts = np.array([(loaded(chosen, 0.0, a)[:, STIFFNESS] > 0.0).sum() for a in angles])
+    counts = np.array([(loaded(chosen, 0.0, a)[:, WHOLE] > 0.0).sum() for a in angles])
     assert counts.mean() == pytest.approx(pair.contact_ratio + 0.3, abs=1e-3)
     touching = np.array([(loaded(law(exact()), 1e-6, a)[:, FLANK] > 0.0).sum() for a in angles])
     assert touching.mean() == pytest.approx(1.6368, abs=1e-3)
@@ -148,7 +148,7 @@ def test_a_squeezed_film_acts_only_between_flanks_that_approach_apart() -> None:
     wet, dry = law(exact(), film=film), law(exact())
     for approach, rate in ((5e-6, 1e-3), (5e-6, -1e-3), (-5e-6, -1e-3)):
         assert np.array_equal(loaded(wet, approach, SINGLE, rate), loaded(dry, approach, SINGLE, rate))
-    row = next(row for row in loaded(wet, -5e-6, SINGLE, 1e-3) if row[STIFFNESS] > 0.0)
+    row = next(row for row in loaded(wet, -5e-6, SINGLE, 1e-3) if row[WHOLE] > 0.0)
     s, length = row[POSITION], gear_pair().line_of_action_m
     expected = 12.0 * np.pi * 0.112 * 0.02 * (s * (length - s) / length / (2.0 * 5e-6)) ** 1.5 * 1e-3
     assert row[NORMAL] == pytest.approx(expected, rel=1e-9)

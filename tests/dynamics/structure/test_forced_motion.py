@@ -13,7 +13,7 @@ from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.forced_responses import TOGETHER
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import response_of
+from siggen.dynamics.time.response import SampleGrid, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.casing_stage import make_structure
 
@@ -53,7 +53,7 @@ def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
         input_vectors=excitation.vectors,
     )  # fmt: skip
     response = response_of(
-        motion, Drive(speed_hz, 0.0), fs_hz=FS, samples=samples, steps_per_sample=4, excitation=excitation, settle_s=3.0
+        motion, Drive(speed_hz, 0.0), SampleGrid(FS, samples, 4), excitation=excitation, settle_s=3.0
     )
     stiffness = mean_mesh_stiffness(constant_tables)
     damping = 2.0 * 0.07 * np.sqrt(stiffness * structure.equivalent_mesh_mass_kg)

@@ -13,7 +13,7 @@ from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.time.equations import no_inputs, state_matrix
 from siggen.dynamics.time.exponential_motion import ExponentialMotion
 from siggen.dynamics.time.matrix_exponential import matrix_exponential
-from siggen.dynamics.time.pair_motion import PairMotion
+from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import TORQUE, constant_tables, exact_involutes, law, tables
 
@@ -23,8 +23,7 @@ FS = 25600.0
 def motion(kind: type[PairMotion], chosen: PairLaw, step_s: float, torque_nm: float = TORQUE, **more) -> PairMotion:
     stiffness = more.pop("stiffness", mean_mesh_stiffness(tables()))
     return kind(
-        locked_load(make_structure()), chosen, torque_nm=torque_nm, speed_hz=30.0, step_s=step_s,
-        reference_stiffness_n_per_m=stiffness, **more,
+        locked_load(make_structure()), chosen, mean=MeanState(torque_nm, 30.0, stiffness), step_s=step_s, **more
     )  # fmt: skip
 
 

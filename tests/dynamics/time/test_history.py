@@ -6,7 +6,7 @@ import pytest
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gears.stiffness.mesh_tables import MeshTables
 
 FS = 25600.0
@@ -18,12 +18,12 @@ def respond(
     motion = LinearMotion(
         structure, tables, torque_nm=60.0, mesh_damping_ratio=0.07, backlash_m=80e-6, step_s=1.0 / (FS * 4)
     )
-    return response_of(motion, Drive(30.0, start_rad), fs_hz=FS, samples=samples, steps_per_sample=4, **changes)
+    return response_of(motion, Drive(30.0, start_rad), SampleGrid(FS, samples, 4), **changes)
 
 
 def test_asking_for_history_changes_nothing_else(structure: Structure, ramp_tables: MeshTables) -> None:
-    plain = respond(structure, ramp_tables, internals=True)
-    asked = respond(structure, ramp_tables, internals=True, history_s=0.12)
+    plain = respond(structure, ramp_tables, wanted=Wanted(internals=True))
+    asked = respond(structure, ramp_tables, wanted=Wanted(internals=True), history_s=0.12)
     for name, values in plain.acceleration_m_s2.items():
         assert asked.acceleration_m_s2[name].tobytes() == values.tobytes()
         assert asked.history.acceleration_m_s2[name].size == 3072
@@ -59,5 +59,5 @@ def test_a_longer_settling_gives_more_history(structure: Structure, ramp_tables:
 def test_forces_that_are_not_asked_for_have_no_history(
     structure: Structure, ramp_tables: MeshTables, forces: bool
 ) -> None:
-    response = respond(structure, ramp_tables, history_s=0.01, bearing_forces=forces)
+    response = respond(structure, ramp_tables, history_s=0.01, wanted=Wanted(bearing_forces=forces))
     assert bool(response.history.bearing_force_n) == forces

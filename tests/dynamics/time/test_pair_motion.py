@@ -16,7 +16,7 @@ from siggen.dynamics.structure.structure import eight_dof
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.dynamics.time.response import Response, response_of
+from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from tests.dynamics.casing_stage import grounded_structure, make_stage, make_structure
 from tests.dynamics.pair_runs import (
@@ -233,7 +233,7 @@ def test_agrees_with_an_adaptive_solver() -> None:
 
 def casing_response(steps: int, **changes) -> Response:
     run = motion(make_structure(), law(corners()), step_s=1.0 / (51200 * steps), **changes)
-    return response_of(run, Drive(30.0, 0.3), fs_hz=51200.0, samples=5120, steps_per_sample=steps, internals=True)
+    return response_of(run, Drive(30.0, 0.3), SampleGrid(51200.0, 5120, steps), wanted=Wanted(internals=True))
 
 
 def test_halving_the_step_changes_the_casing_by_less_than_a_thousandth() -> None:

@@ -7,13 +7,13 @@ import pytest
 
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.response import simulate_response
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.compliance import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from tests.dynamics.linear_runs import simulate_response
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 
 SPEEDS = (30.0, 15.0, 37.3)

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.dynamics.structure.structure import SpurStage, Structure, eight_dof, six_dof
-from siggen.dynamics.time.response import Response, simulate_response
+from siggen.dynamics.time.response import Response
 from siggen.gears.stiffness.mesh_tables import MeshTables
 from tests.dynamics.conftest import BASE_PITCH, BASE_RADIUS_1, PRESSURE_ANGLE, make_tables
+from tests.dynamics.linear_runs import simulate_response
 
 PINION = "pinion_bearing/vertical"
 CASE = {

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FRICTION, MOMENT, NORMAL, SLIDING, TILT
+from siggen.dynamics.mesh.pair_columns import FRICTION, MOMENT, NODE_ROWS, NODE_TILT, NORMAL, SLIDING
 from siggen.dynamics.mesh.pair_forces import pair_forces
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
@@ -72,7 +72,7 @@ def structure(shaft: Shaft = SHAFT) -> Structure:
 def sums(chosen: PairLaw, approach_m: float, tilt_rad: float, pitches: float) -> np.ndarray:
     """Force and moment of all pairs at rest."""
     pairs = pair_table(chosen)
-    pairs[:, TILT] = tilt_rad
+    pairs[0, NODE_TILT - NODE_ROWS] = tilt_rad  # in the node behind the table
     pair_forces(chosen, approach_m, 0.0, pitches, 0.0, 0.0, pairs)
     return pairs[:, [NORMAL, MOMENT]].sum(axis=0)
 

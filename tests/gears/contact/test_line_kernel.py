@@ -7,7 +7,7 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from siggen.gears.contact.exponential_matrix import SIDES, TERMS, add_row_products, products, solve_rows
+from siggen.gears.contact.exponential_matrix import SIDES, TERMS, RowMatrix, add_row_products, products, solve_rows
 from siggen.gears.contact.line_kernel import (
     EXPONENTIALS,
     diagonal,
@@ -87,13 +87,14 @@ def test_rows_are_solved_like_a_full_matrix():
     x = right.copy()
     room = np.zeros((CELLS, TERMS)), np.zeros((CELLS, TERMS + 1))
     padded = np.append(rows, np.zeros(80, np.int64))
-    assert solve_rows(kernel.decay, strength, teeth.strength, teeth.decay, own, padded, 120, x, *room)
+    found = RowMatrix(kernel.decay, strength, teeth.strength, teeth.decay, own)
+    assert solve_rows(found, padded, 120, x, *room)
     np.testing.assert_allclose(matrix[np.ix_(rows, rows)] @ x[rows], right[rows], atol=1e-12)
     product, other = np.zeros(CELLS), np.zeros(CELLS)
     products(kernel.decay, strength, slope, right[:, 0].copy(), product, other)
     add_row_products(teeth.strength, teeth.decay, right[:, 0].copy(), product)
     np.testing.assert_allclose(product, matrix @ right[:, 0] - own * right[:, 0], atol=1e-12)
-    assert not solve_rows(kernel.decay, strength, teeth.strength, teeth.decay, own - 30.0, padded, 120, x, *room)
+    assert not solve_rows(found._replace(diagonal=own - 30.0), padded, 120, x, *room)
 
 
 def test_impossible_faces_are_refused():

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from siggen.dynamics.mesh.pair_forces import static_force
-from siggen.dynamics.mesh.pair_law import pair_law
+from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions
@@ -59,9 +59,7 @@ def spall(
         for side, skew, wave in zip((-1.0, 1.0), skews, waves, strict=True)
     )
     depths = depth_m * (1.0 + rough * np.sin(1e4 * face[:-1]))
-    return grown_spall(
-        "pinion", 0, face, lambda low, high: (low, high), (arcs[0], arcs[1]), depths, 1e-4, floor, milder
-    )
+    return grown_spall("pinion", 0, face, (arcs[0], arcs[1]), depths, 1e-4, floor, milder)
 
 
 def edges_at(one: IrregularSpall, face_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -194,10 +192,8 @@ def forces(damage: Damage, cell_widths: float) -> np.ndarray:
     law = pair_law(
         whole_face(PAIR, damage, teeth, 257),
         missing_material(PAIR, None, corner_contact=False, points=2),
-        line_of_action_m=PAIR.line_of_action_m,
+        MeshConstants(PAIR.line_of_action_m, 1.0, 1e-3),
         damping_ratio=0.0,
-        equivalent_mesh_mass_kg=1.0,
-        backlash_m=1e-3,
         contact=contact_table(PAIR, damage, teeth, TableOptions(4e3, cell_widths=cell_widths), 257),
     )
     pairs = pair_table(law)

@@ -1,8 +1,4 @@
-"""Lanes: eight doubles in one vector register, for compiled loops whose vectorising no compiler finds by itself.
-
-Every operation is that of IEEE 754 on each lane by itself, in the order written: lanes have the bytes of the scalars
-that they stand for. Machines with registers of four or two doubles take several for one value; bytes stay the same.
-numba knows no such type; it is told here how to lower it. Only compiled code may call these functions.
+"""Functions of lanes, and of scalars as they are of a lane; only compiled code may call them.
 
 An array is read and written by the number of its first element in memory, whatever its shape: no sign of an index is
 looked at, and no bound.
@@ -12,7 +8,7 @@ looked at, and no bound.
 
 from __future__ import annotations
 
-import operator
+import math
 from collections.abc import Callable
 from inspect import Parameter, Signature
 from typing import Any, NamedTuple
@@ -20,119 +16,23 @@ from typing import Any, NamedTuple
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.core.typing.templates import signature
+from numba.extending import intrinsic
 
 from siggen.arrays import FloatArray
-
-LANES = 8
-_DOUBLE, _INT64, _INT32 = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
-Lanes = Any
-Whole = Any
-Choice = Any
-"""Eight doubles, integers and truths; checkers see nothing of them: no such object exists outside compiled code."""
-
-
-class _LanesType(types.Type):
-    """So many lanes of one kind."""
-
-    def __init__(self, scalar: Any, lanes: int) -> None:
-        self.lanes, self.scalar = lanes, scalar
-        held = {types.float64: _DOUBLE, types.int64: _INT64, types.boolean: ir.IntType(1)}[scalar]
-        self.vector = ir.VectorType(held, lanes)
-        super().__init__(name=f"lanes({scalar}, {lanes})")
-
-
-class _Doubles(_LanesType):
-    def __init__(self, lanes: int) -> None:
-        super().__init__(types.float64, lanes)
-
-
-class _Wholes(_LanesType):
-    def __init__(self, lanes: int) -> None:
-        super().__init__(types.int64, lanes)
-
-
-class _Truths(_LanesType):
-    def __init__(self, lanes: int) -> None:
-        super().__init__(types.boolean, lanes)
-
-
-@register_model(_Doubles)
-@register_model(_Wholes)
-@register_model(_Truths)
-class _Model(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, kind.vector)
-
-
-DOUBLES, WHOLES, TRUTHS = _Doubles(LANES), _Wholes(LANES), _Truths(LANES)
-
-
-def _spread(builder: Any, value: Any, vector: Any) -> Any:
-    """Return a vector with the scalar in all lanes."""
-    first = builder.insert_element(ir.Constant(vector, ir.Undefined), value, ir.Constant(_INT32, 0))
-    zeros = ir.Constant(ir.VectorType(_INT32, vector.count), [0] * vector.count)
-    return builder.shuffle_vector(first, ir.Constant(vector, ir.Undefined), zeros)
-
-
-def _as_lanes(context: Any, builder: Any, value: Any, given: Any, wanted: Any) -> Any:
-    """Return the vector of a value, in all lanes where it is a scalar."""
-    if isinstance(given, _LanesType):
-        return value
-    return _spread(builder, context.cast(builder, value, given, wanted.scalar), wanted.vector)
-
-
-def _kind(args: tuple[Any, ...]) -> Any:
-    """Return of which kind lanes are that are to be joined with each other or with scalars; None where none are."""
-    kinds = {arg for arg in args if isinstance(arg, _LanesType)}
-    scalars = [arg for arg in args if not isinstance(arg, _LanesType)]
-    if len(kinds) != 1 or not all(isinstance(arg, (types.Number, types.Boolean)) for arg in scalars):
-        return None
-    (kind,) = kinds
-    return None if isinstance(kind, _Wholes) and any(isinstance(arg, types.Float) for arg in scalars) else kind
-
-
-def _operation(symbol: Any, result: Callable[[Any], Any], emit: dict[Any, Callable[[Any, Any, Any], Any]]) -> None:
-    """Let numba lower an operator on lanes: `emit` by kind takes builder and both vectors."""
-
-    @infer_global(symbol)
-    class _Template(AbstractTemplate):
-        def generic(self, args: tuple[Any, ...], _: Any) -> Any:
-            kind = _kind(args) if len(args) == 2 else None
-            return signature(result(kind), *args) if type(kind) in emit else None
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        kind = _kind(sig.args)
-        left, right = (_as_lanes(context, builder, a, t, kind) for a, t in zip(args, sig.args, strict=True))
-        return emit[type(kind)](builder, left, right)
-
-    for pattern in ((_LanesType, _LanesType), (_LanesType, types.Number), (types.Number, _LanesType)):
-        lower_builtin(symbol, *pattern)(lower)
-
-
-def _register_operators() -> None:
-    def emitted(method: str, *sign: str) -> Callable[[Any, Any, Any], Any]:
-        return lambda builder, left, right: getattr(builder, method)(*sign, left, right)
-
-    for symbol, real, whole in (
-        (operator.add, "fadd", "add"), (operator.sub, "fsub", "sub"), (operator.mul, "fmul", "mul"),
-    ):  # fmt: skip
-        _operation(symbol, lambda kind: kind, {_Doubles: emitted(real), _Wholes: emitted(whole)})
-    _operation(operator.truediv, lambda kind: kind, {_Doubles: emitted("fdiv")})
-    for symbol, sign in (
-        (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="), (operator.eq, "=="),
-        (operator.ne, "!="),
-    ):  # fmt: skip
-        # As Python compares: false beside what is no number, but for unequal, which is true.
-        real = "fcmp_unordered" if sign == "!=" else "fcmp_ordered"
-        emit = {_Doubles: emitted(real, sign), _Wholes: emitted("icmp_signed", sign)}
-        _operation(symbol, lambda kind: _Truths(kind.lanes), emit)
-    for symbol, method in ((operator.and_, "and_"), (operator.or_, "or_")):
-        _operation(symbol, lambda kind: kind, {_Truths: emitted(method)})
-
-
-_register_operators()
+from siggen.lanes.kinds import (
+    DOUBLE,
+    DOUBLES,
+    INT32,
+    INT64,
+    LANES,
+    SCALARS,
+    Doubles,
+    LanesType,
+    Wholes,
+    as_lanes,
+    joined_kind,
+)
 
 
 class _Call(NamedTuple):
@@ -151,7 +51,7 @@ class _Call(NamedTuple):
     def vectors(self, first: int, kind: Any) -> list[Any]:
         """Return the vectors of the arguments from one on, spread where they are scalars."""
         given = zip(self.args[first:], self.signature.args[first:], strict=True)
-        return [_as_lanes(self.context, self.builder, value, of, kind) for value, of in given]
+        return [as_lanes(self.context, self.builder, value, of, kind) for value, of in given]
 
 
 def _lowered(names: str, kinds: Callable[..., Any]) -> Callable[[Callable[[_Call], Any]], Any]:
@@ -179,7 +79,7 @@ def _lowered(names: str, kinds: Callable[..., Any]) -> Callable[[Callable[[_Call
 
 def splat_of(lanes: int) -> Any:
     """Return the function that puts a float in so many lanes; more than LANES are several registers in one value."""
-    kind = _Doubles(lanes)
+    kind = Doubles(lanes)
 
     @_lowered("value", kind)
     def spread(call: _Call) -> Any:
@@ -194,7 +94,9 @@ splat = splat_of(LANES)
 
 def _read(call: _Call) -> Any:
     """Return elements of an array from one on, as many as the result has lanes."""
-    place = call.builder.bitcast(call.address(call.args[1]), call.signature.return_type.vector.as_pointer())
+    kind = call.signature.return_type
+    vector = kind.vector if isinstance(kind, LanesType) else DOUBLE
+    place = call.builder.bitcast(call.address(call.args[1]), vector.as_pointer())
     return call.builder.load(place, align=8)
 
 
@@ -218,25 +120,36 @@ def scalar_at(call: _Call) -> Any:
     return call.builder.load(call.address(call.args[1]), align=8)
 
 
-@_lowered("array places", DOUBLES)
+def _found_at(places: Any) -> Any:
+    """Return of which kind doubles are that stand at places."""
+    return DOUBLES if isinstance(places, LanesType) else types.float64
+
+
+@_lowered("array places", lambda array, places: _found_at(places)(array, places))
 def gather(call: _Call) -> Any:
     """Return the elements of an array of doubles at eight places."""
+    if not isinstance(call.signature.args[1], LanesType):
+        return call.builder.load(call.address(call.args[1]), align=8)
     result = ir.Constant(DOUBLES.vector, ir.Undefined)
     for lane in range(LANES):
-        index = call.builder.extract_element(call.args[1], ir.Constant(_INT32, lane))
+        index = call.builder.extract_element(call.args[1], ir.Constant(INT32, lane))
         result = call.builder.insert_element(
-            result, call.builder.load(call.address(index), align=8), ir.Constant(_INT32, lane)
+            result, call.builder.load(call.address(index), align=8), ir.Constant(INT32, lane)
         )
     return result
 
 
-@_lowered("array places", types.UniTuple(DOUBLES, 2))
+@_lowered("array places", lambda array, places: types.UniTuple(_found_at(places), 2)(array, places))
 def gather_pairs(call: _Call) -> Any:
     """Return the elements of an array of doubles at eight places, and those behind them."""
     builder, parts = call.builder, []
+    if not isinstance(call.signature.args[1], LanesType):
+        here = call.address(call.args[1])
+        both = builder.load(here, align=8), builder.load(builder.gep(here, [INT64(1)], inbounds=True), align=8)
+        return call.context.make_tuple(builder, call.signature.return_type, both)
     for lane in range(LANES):
-        index = builder.extract_element(call.args[1], ir.Constant(_INT32, lane))
-        place = builder.bitcast(call.address(index), ir.VectorType(_DOUBLE, 2).as_pointer())
+        index = builder.extract_element(call.args[1], ir.Constant(INT32, lane))
+        place = builder.bitcast(call.address(index), ir.VectorType(DOUBLE, 2).as_pointer())
         parts.append(builder.load(place, align=8))
     even, odd = (_joined(builder, parts[first::2]) for first in (0, 1))
     low = _shuffled(builder, even, odd, [0, 8, 2, 10, 4, 12, 6, 14])
@@ -245,7 +158,7 @@ def gather_pairs(call: _Call) -> Any:
 
 
 def _shuffled(builder: Any, left: Any, right: Any, lanes: list[int]) -> Any:
-    return builder.shuffle_vector(left, right, ir.Constant(ir.VectorType(_INT32, len(lanes)), lanes))
+    return builder.shuffle_vector(left, right, ir.Constant(ir.VectorType(INT32, len(lanes)), lanes))
 
 
 def _joined(builder: Any, parts: list[Any]) -> Any:
@@ -268,7 +181,7 @@ def shuffle(*lanes: int) -> Any:
 
 
 @_lowered(
-    "value lane", lambda value, _: (types.float64 if isinstance(value, _Doubles) else types.int64)(value, types.int32)
+    "value lane", lambda value, _: (types.float64 if isinstance(value, Doubles) else types.int64)(value, types.int32)
 )
 def extract(call: _Call) -> Any:
     """Return one lane as a float or an integer."""
@@ -282,7 +195,12 @@ def insert(call: _Call) -> Any:
     return call.builder.insert_element(value, scalar, lane)
 
 
-@_lowered("chosen left right", lambda chosen, *sides: (_kind(sides) or DOUBLES)(chosen, *sides))
+def _selected(chosen: Any, *sides: Any) -> Any:
+    kind = joined_kind(sides)
+    return (Doubles(chosen.lanes) if isinstance(chosen, LanesType) and kind in SCALARS else kind)(chosen, *sides)
+
+
+@_lowered("chosen left right", _selected)
 def select(call: _Call) -> Any:
     """Return the left lanes where chosen, else the right ones."""
     return call.builder.select(call.args[0], *call.vectors(1, call.signature.return_type))
@@ -291,11 +209,12 @@ def select(call: _Call) -> Any:
 def _extreme(sign: str) -> Any:
     """Return the smaller or larger of two as `min` and `max` of numba are: the first where they do not compare."""
 
-    @_lowered("left right", lambda *given: _kind(given)(*given))
+    @_lowered("left right", lambda *given: joined_kind(given)(*given))
     def extreme(call: _Call) -> Any:
         kind = call.signature.return_type
         a, b = call.vectors(0, kind)
-        compared = call.builder.fcmp_ordered if isinstance(kind, _Doubles) else call.builder.icmp_signed
+        real = kind == types.float64 or isinstance(kind, Doubles)
+        compared = call.builder.fcmp_ordered if real else call.builder.icmp_signed
         return call.builder.select(compared(sign, b, a), b, a)
 
     return extreme
@@ -312,9 +231,8 @@ def _function(name: str) -> Any:
         vector = call.args[0].type
         function = ir.FunctionType(vector, [vector])
         insert_function: Any = cgutils.get_or_insert_function
-        return call.builder.call(
-            insert_function(call.builder.module, function, f"llvm.{name}.v{vector.count}f64"), call.args
-        )
+        kind = f"v{vector.count}f64" if isinstance(vector, ir.VectorType) else "f64"
+        return call.builder.call(insert_function(call.builder.module, function, f"llvm.{name}.{kind}"), call.args)
 
     return of_lanes
 
@@ -322,23 +240,76 @@ def _function(name: str) -> Any:
 square_root, magnitude = _function("sqrt"), _function("fabs")
 
 
-@_lowered("value", lambda value: _Wholes(value.lanes)(value))
+def _as_bits(builder: Any, chosen: Any) -> Any:
+    return builder.zext(builder.bitcast(chosen, ir.IntType(chosen.type.count)), INT64)
+
+
+def _lane_of(builder: Any, vector: Any, lane: Any) -> Any:
+    """Return where a lane of a vector in memory lies."""
+    return builder.gep(builder.bitcast(vector, DOUBLE.as_pointer()), [lane], inbounds=True)
+
+
+def _called(function: Any) -> Any:
+    """Return a function of doubles that is called for every lane by itself, and only where chosen; 0 elsewhere."""
+
+    @_lowered("value chosen", lambda value, chosen: value(value, chosen))
+    def where_chosen(call: _Call) -> Any:
+        builder, (value, chosen) = call.builder, call.args
+        of_scalar = call.context.get_function(function, signature(types.float64, types.float64))
+        if not isinstance(value.type, ir.VectorType):
+            found = cgutils.alloca_once_value(builder, DOUBLE(0.0))
+            with builder.if_then(chosen):
+                builder.store(of_scalar(builder, (value,)), found)
+            return builder.load(found)
+        # In memory, lane after lane: vectors would be put aside around every call.
+        given = cgutils.alloca_once_value(builder, value)
+        found = cgutils.alloca_once_value(builder, ir.Constant(value.type, None))
+        left = cgutils.alloca_once_value(builder, _as_bits(builder, chosen))
+        again, body, behind = (builder.append_basic_block(name) for name in ("again", "lane", "behind"))
+        builder.branch(again)
+        builder.position_at_end(again)
+        mask = builder.load(left)
+        builder.cbranch(builder.icmp_unsigned("!=", mask, INT64(0)), body, behind)
+        builder.position_at_end(body)
+        lane = builder.cttz(mask, ir.IntType(1)(1))
+        one = builder.load(_lane_of(builder, given, lane))
+        builder.store(of_scalar(builder, (one,)), _lane_of(builder, found, lane))
+        builder.store(builder.and_(mask, builder.sub(mask, INT64(1))), left)
+        builder.branch(again)
+        builder.position_at_end(behind)
+        return builder.load(found)
+
+    return where_chosen
+
+
+logarithm, hyperbolic_tangent = _called(math.log), _called(math.tanh)
+
+
+@_lowered("value", lambda value: (Wholes(value.lanes) if isinstance(value, LanesType) else types.int64)(value))
 def truncated(call: _Call) -> Any:
     """Return the integers that `int` makes of doubles."""
-    return call.builder.fptosi(call.args[0], call.signature.return_type.vector)
+    return call.builder.fptosi(call.args[0], getattr(call.signature.return_type, "vector", INT64))
 
 
-@_lowered("value", lambda value: _Doubles(value.lanes)(value))
+@_lowered("value", lambda value: (Doubles(value.lanes) if isinstance(value, LanesType) else types.float64)(value))
 def as_doubles(call: _Call) -> Any:
     """Return integers as doubles."""
-    return call.builder.sitofp(call.args[0], call.signature.return_type.vector)
+    return call.builder.sitofp(call.args[0], getattr(call.signature.return_type, "vector", DOUBLE))
+
+
+@_lowered("chosen", types.boolean)
+def any_of(call: _Call) -> Any:
+    """Return whether one lane is chosen, or the scalar."""
+    builder, chosen = call.builder, call.args[0]
+    if not isinstance(chosen.type, ir.VectorType):
+        return chosen
+    return builder.icmp_unsigned("!=", _as_bits(builder, chosen), INT64(0))
 
 
 @_lowered("chosen", types.int64)
 def bits(call: _Call) -> Any:
     """Return truths as an integer, the first lane in the lowest place."""
-    chosen = call.args[0]
-    return call.builder.zext(call.builder.bitcast(chosen, ir.IntType(chosen.type.count)), _INT64)
+    return _as_bits(call.builder, call.args[0])
 
 
 def aligned(values: FloatArray) -> FloatArray:
