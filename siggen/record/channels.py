@@ -29,7 +29,7 @@ from siggen.specimen.instrument import Instrument, specimen_instrument
 def measured_channels(
     config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument | None = None
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
-    """Return channel name -> float32 signal (n,) in m/s^2, and the labels of all channels.
+    """Return channel name -> float32 signal (n,) in its unit, and the labels of all channels.
 
     Every channel has its own generators, so that adding a sensor leaves the others as they were. `instrument` is that
     of the specimen, if it is there already. A stream is stepped here, piece after piece.
@@ -57,7 +57,7 @@ def measured_channels(
     signals: dict[str, np.ndarray] = {}
     for channel in instrument.channels:
         measured = recorders[channel.name].measurement()
-        signals[channel.name] = measured.accel_m_s2
+        signals[channel.name] = measured.values
         labels |= {**channel_labels(channel, measured), **disturbances[channel.name].labels}
     return signals, {**labels, **inputs.labels}
 
@@ -80,10 +80,10 @@ def _disturbances(
         found[channel.name] = ChannelDisturbance(channel, draws, turning, noise_length)
         rng, floor = white_noise(config, record, channel, draws)
         recorders[channel.name].finish(
-            range_m_s2=channel.sensor.range_m_s2,
+            limit=channel.sensor.limit,
             bits=channel.sensor.bits,
             rng=rng,
-            noise_floor_m_s2=floor,
+            noise_floor=floor,
         )
     return found
 
@@ -99,7 +99,7 @@ def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> Floa
 
 def _largest_step_rad(config: Config, rotation: Rotation) -> float:
     """Return how far the pinion turns in a sample at most; 0 where nobody asks."""
-    if all(sensor.lines is None for sensor in config.sensors):
+    if all("lines" not in sensor.added for sensor in config.sensors):
         return 0.0
     steps = (
         np.diff(_angle_rad(rotation, config.fs_hz, first, min(BLOCK_SAMPLES, config.samples - first) + 1)).max()

@@ -6,13 +6,13 @@ is drawn from the state.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Inverter, Mains, PinkNoise, Sensor, SensorDensity, Tones
+from siggen.config import Inverter, Mains, PinkNoise, SensorDensity, Tones
 from siggen.keys.number import at
 from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines, Turning
 from siggen.sensing.force_density import tabulated
@@ -43,20 +43,21 @@ class ChannelDisturbance:
         self._labels: dict[str, object] = {}
         self._spreads: dict[str, Spread] = {}
         self._parts: list[tuple[str | None, Part]] = []
-        sensor, name = channel.sensor, channel.name
-        modulated = sensor.noise_spectrum is not None and sensor.noise_spectrum.modulation is not None
-        self.follows_angle = modulated or sensor.lines is not None
-        if sensor.pink_noise is not None:
-            self._parts.append((None, self._pink(sensor.pink_noise, channel, draws, record)))
-        if sensor.noise_spectrum is not None:
-            part = _of_spectrum(sensor.noise_spectrum, channel, draws, turning, record)
-            self._parts.append((f"noise_spectrum_{name}_m_s2", part))
-        if sensor.lines is not None:
-            table = TableLines(sensor.lines, draws, record.fs_hz, turning.largest_step_rad)
-            self._parts.append((f"lines_{name}_m_s2", lambda first, angle: table.at(angle, first)))
-        for part_name, lines in _lines(sensor, draws):
+        added, name, suffix = channel.sensor.added, channel.name, channel.sensor.quantity.suffix
+        spectrum = added.get("noise_spectrum")
+        modulated = spectrum is not None and spectrum.modulation is not None
+        self.follows_angle = modulated or "lines" in added
+        if "pink_noise" in added:
+            self._parts.append((None, self._pink(added["pink_noise"], channel, draws, record)))
+        if spectrum is not None:
+            part = _of_spectrum(spectrum, channel, draws, turning, record)
+            self._parts.append((f"noise_spectrum_{name}_{suffix}", part))
+        if "lines" in added:
+            table = TableLines(added["lines"], draws, record.fs_hz, turning.largest_step_rad)
+            self._parts.append((f"lines_{name}_{suffix}", lambda first, angle: table.at(angle, first)))
+        for part_name, lines in _lines(added, draws):
             self._parts.append((None, _line_part(part_name, lines, channel, record)))
-            self._labels[f"{part_name}_{name}_m_s2"] = lines.rms_m_s2
+            self._labels[f"{part_name}_{name}_{suffix}"] = lines.rms_m_s2
 
     def take(self, first: int, angle_rad: FloatArray) -> FloatArray | None:
         """Return what is added (k,) from sample `first` on, at angles of the pinion (k,); None for nothing."""
@@ -79,7 +80,7 @@ class ChannelDisturbance:
         rng = draws.record("pink_noise")
         density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
         corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
-        self._labels[f"pink_noise_{channel.name}_m_s2_per_sqrt_hz"] = density
+        self._labels[f"pink_noise_{channel.name}_{channel.sensor.quantity.suffix}_per_sqrt_hz"] = density
         pink = PinkStream(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
         return lambda _, angle: pink.take(angle.size)
 
@@ -127,14 +128,14 @@ def _line_part(part: str, lines: Lines, channel: ChannelInstrument, record: Nois
     return lambda first, angle: lines_signal(lines, response, record.fs_hz, angle.size, first)
 
 
-def _lines(sensor: Sensor, draws: Draws) -> Iterator[tuple[str, Lines]]:
+def _lines(added: Mapping[str, Any], draws: Draws) -> Iterator[tuple[str, Lines]]:
     """Yield part -> its lines, for every part that the sensor has."""
-    if sensor.mains is not None:
-        yield "mains", _mains(sensor.mains, draws)
-    if sensor.tones is not None:
-        yield "tones", _tones(sensor.tones, draws)
-    if sensor.inverter is not None:
-        yield "inverter", _inverter(sensor.inverter, draws)
+    if "mains" in added:
+        yield "mains", _mains(added["mains"], draws)
+    if "tones" in added:
+        yield "tones", _tones(added["tones"], draws)
+    if "inverter" in added:
+        yield "inverter", _inverter(added["inverter"], draws)
 
 
 def _mains(section: Mains, draws: Draws) -> Lines:

@@ -8,6 +8,7 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import available_quantities, quantity_problems
 from siggen.columns.column import Column
+from siggen.columns.record import channels
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
@@ -41,7 +42,7 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
     columns: dict[str, np.ndarray] = {
         "time_s": np.arange(config.samples) / config.fs_hz,
         "angle_rad": response.angle_rad,
-        **{f"accel_{channel}_m_s2": signal for channel, signal in stored.items()},
+        **{channel.column: stored[channel.name] for channel in channels(own)},
         **(internal_quantities(specimen, response) if internals else {}),
     }
     facts = {
