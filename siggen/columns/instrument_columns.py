@@ -17,7 +17,7 @@ FORCE_NOISE_COLUMN = Column(
 )
 
 ADDED = {
-    "pink_noise": "at the corner, in {channel}",
+    "pink_noise": "density of the 1/f noise at 100 Hz, in {channel}",
     "noise_spectrum": "RMS of the noise of given density in {channel}",
     "lines": "RMS of the lines of given orders or frequencies in {channel}",
     "mains": "RMS of mains hum in {channel}",

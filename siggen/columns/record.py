@@ -210,15 +210,20 @@ def schema_metadata(config: Config) -> dict[str, str]:
     }
 
 
-def _signal_field(config: Config, channel: Channel) -> pa.Field:
-    metadata = {
+def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
+    """Return what a file says about the column of a channel."""
+    return {
         "sensor": channel.sensor,
         "place": channel.place,
         "axis": channel.axis,
         "quantity": channel.quantity,
         "unit": channel.unit,
-        "fs_hz": repr(float(config.fs_hz)),
+        "fs_hz": repr(float(fs_hz)),
     }
+
+
+def _signal_field(config: Config, channel: Channel) -> pa.Field:
+    metadata = channel_metadata(channel, config.fs_hz)
     signal = list_of(pa.float32(), config.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
 

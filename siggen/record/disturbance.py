@@ -23,6 +23,8 @@ from siggen.sensing.spread import Spread
 from siggen.sensing.tones import Lines, carrier_lines, harmonic_lines, lines_signal, single_lines
 from siggen.specimen.instrument import ChannelInstrument
 
+PINK_HZ = 100.0
+"""Where the density of 1/f noise is given, about where it meets the white noise of accelerometers (assumed)."""
 CARRIER_SIDEBANDS = 2
 """On either side of the carrier of an inverter (assumed)."""
 SPECTRUM_TAPS = 16_384
@@ -79,9 +81,9 @@ class ChannelDisturbance:
     def _pink(self, section: PinkNoise, channel: ChannelInstrument, draws: Draws, record: NoiseLength) -> Part:
         rng = draws.record("pink_noise")
         density = at(section.density_m_s2_per_sqrt_hz, draws.level("pink_noise.density_m_s2_per_sqrt_hz", rng))
-        corner_hz = at(section.corner_hz, draws.level("pink_noise.corner_hz", rng))
+        rng.random()  # the noise of sets begins behind this number
         self._labels[f"pink_noise_{channel.name}_{channel.sensor.quantity.suffix}_per_sqrt_hz"] = density
-        pink = PinkStream(density, corner_hz, channel.high_pass_hz, record.fs_hz, rng)
+        pink = PinkStream(density, PINK_HZ, channel.high_pass_hz, record.fs_hz, rng)
         return lambda _, angle: pink.take(angle.size)
 
 

@@ -26,10 +26,7 @@ class PinkNoise(Section):
     """Noise whose power falls as 1/f."""
 
     density_m_s2_per_sqrt_hz: Annotated[Number, Within(least=0)] = Field(
-        description="one-sided density at the corner, drawn per record and axis"
-    )
-    corner_hz: Annotated[Number, Within(above=0)] = Field(
-        default=100.0, description="where the density is given, such as where it meets the white noise"
+        description="one-sided density at 100 Hz, drawn per record and axis"
     )
 
 

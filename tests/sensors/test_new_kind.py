@@ -14,7 +14,10 @@ import numpy as np
 import pytest
 
 import siggen
+from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
 from siggen.config import parse
+from siggen.errors import UsageError
 from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
 
@@ -117,6 +120,23 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
     card = (folder / "both" / "README.md").read_text(encoding="utf-8")
     assert "labelled bearing force and acceleration records" in card
     assert "`washer_vertical` (pinion_bearing, vertical), in N; `lid_vertical` (casing, vertical), in m/s^2" in card
+
+
+def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
+    command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
+    assert '"washer_vertical":{"word":"bearing force","unit":"N"}' in (folder / "explorer.html").read_text("utf-8")
+    said = words_of(folder / "explorer.html")
+    assert "RMS [N]" in said
+    assert not OTHER_QUANTITY.search(said)
+
+
+def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
+    command(folder, "siggen", "simulate", "toy.yaml", "--record", "0", "--signals", "--out", "one.parquet")
+    found = read_columns(folder / "one.parquet")
+    assert found.own == {"washer_vertical": SIGNAL}
+    assert found.units == {SIGNAL: "N"}
+    with pytest.raises(UsageError, match="states the unit 'N'"):
+        read_recording(folder / "one.parquet", ("washer_vertical",), RecordingFacts())
 
 
 @pytest.mark.slow
