@@ -96,7 +96,7 @@ def missing(config: Config) -> Iterator[str]:
     """Yield what a set lacks that every measurement has."""
     if config.manufacture is None:
         yield "manufacture: perfect gears: healthy records have no sidebands, so any damage is trivially found"
-    noises = [s.noise_floor is not None or "noise_spectrum" in s.added for s in config.sensors]
+    noises = [s.noise_floor is not None or any(one.broad for one in s.sources) for s in config.sensors]
     if not any(noises) and config.housing is None and config.background is None:
         yield "sensors: no noise at all: any damage is trivially found"
     seen: list[Sensor] = []

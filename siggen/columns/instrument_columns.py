@@ -16,26 +16,14 @@ FORCE_NOISE_COLUMN = Column(
     "force_noise_n_per_sqrt_hz", pa.float64(), "N/sqrt(Hz)", "noise on each bearing force, below its corner"
 )
 
-ADDED = {
-    "pink_noise": "density of the 1/f noise at 100 Hz, in {channel}",
-    "noise_spectrum": "RMS of the noise of given density in {channel}",
-    "lines": "RMS of the lines of given orders or frequencies in {channel}",
-    "mains": "RMS of mains hum in {channel}",
-    "tones": "RMS of the tones of other machines at {channel}",
-    "inverter": "RMS of the inverter's lines at {channel}",
-}
-
 
 def channel_columns(sensor: Sensor, channel: str) -> Iterator[Column]:
     """Yield the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
     if sensor.through is not None:
         yield from path_columns(channel, is_family=getattr(sensor.through, "is_family", False))
-    unit, suffix = sensor.quantity.unit, sensor.quantity.suffix
-    for part in sensor.added:
-        name, per = (f"{part}_{channel}_{suffix}", "")
-        if part == "pink_noise":
-            name, per = f"{name}_per_sqrt_hz", "/sqrt(Hz)"
-        yield Column(name, pa.float64(), f"{unit}{per}", ADDED[part].format(channel=channel))
+    for source in sensor.sources:
+        name = source.column(channel, sensor.quantity.suffix)
+        yield Column(name, pa.float64(), f"{sensor.quantity.unit}{source.per[1]}", f"{source.meaning} {channel}")
 
 
 def path_columns(channel: str, *, is_family: bool) -> Iterator[Column]:

@@ -20,10 +20,16 @@ from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
 from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
+from siggen.noise.density import Density
+from siggen.noise.inverter import Inverter
+from siggen.noise.line_table import LineTable
+from siggen.noise.mains import Mains
+from siggen.noise.pink import PinkNoise
+from siggen.noise.spectrum import NoiseModulation, SensorDensity
+from siggen.noise.tones import Tones
 from siggen.sensors.accelerometer import Accelerometer, NoiseFloor
-from siggen.sensors.density import Density, LineTable, NoiseModulation, SensorDensity
-from siggen.sensors.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.sensors.path import MeasuredPath, ModalPath, TransferPath
+from siggen.sensors.resonance import Resonance
 from siggen.sensors.sensor import Sensor
 
 __all__ = [

@@ -15,7 +15,7 @@ from pydantic import Field
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
-from siggen.sensors.density import Density
+from siggen.noise.density import Density
 
 
 class Base(Section):

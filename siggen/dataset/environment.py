@@ -22,6 +22,7 @@ MAKES_RECORDS = (
         "seeding.py",
         "keys/**/*.py",
         "faults/**/*.py",
+        "noise/**/*.py",
         "sensors/**/*.py",
         "config/**/*.py",
         "rig/**/*.py",

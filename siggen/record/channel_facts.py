@@ -9,9 +9,9 @@ import numpy as np
 
 from siggen.config import Config, MeasuredPath
 from siggen.keys.number import at
+from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import noise_levels
-from siggen.record.measured_disturbance import Draws
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement
 from siggen.specimen.drive import record_owner

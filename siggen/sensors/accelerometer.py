@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from math import cos, pi, sin
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -15,12 +15,12 @@ from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import received_text
 from siggen.keys.section import Real, Section
 from siggen.keys.wording import AllowedText
+from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import FORCE, MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
-from siggen.sensors.density import LineTable, SensorDensity
-from siggen.sensors.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath, ModalPath, TransferPath
 from siggen.sensors.quantity import ACCELERATION, Quantity
+from siggen.sensors.resonance import Resonance
 from siggen.sensors.sensor import AxisDraws, Sensor
 
 POSITION = AllowedText(
@@ -34,7 +34,7 @@ class NoiseFloor(Section):
     floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
 
 
-class Accelerometer(Sensor):
+class Accelerometer(SourceKeys, Sensor):
     """An accelerometer with up to three axes.
 
     Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a
@@ -78,16 +78,6 @@ class Accelerometer(Sensor):
     cross_axis: Annotated[Number, Within(least=0, most=0.2)] = Field(
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
-    pink_noise: PinkNoise | None = Field(default=None, description="of the electronics; null: none")
-    noise_spectrum: SensorDensity | None = Field(
-        default=None, description="noise of any density beside the white and the pink one; null: none"
-    )
-    lines: LineTable | None = Field(
-        default=None, description="lines of given orders or frequencies, such as those found in recordings; null: none"
-    )
-    mains: Mains | None = Field(default=None, description="null: none")
-    tones: Tones | None = Field(default=None, description="null: none")
-    inverter: Inverter | None = Field(default=None, description="null: none")
 
     def own_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
@@ -158,12 +148,6 @@ class Accelerometer(Sensor):
         return None if self.noise is None else self.noise.floor_m_s2
 
     @property
-    def added(self) -> Mapping[str, Any]:
-        """Key -> section of its noise and lines, in the order in which they are added."""
-        keys = ("pink_noise", "noise_spectrum", "lines", "mains", "tones", "inverter")
-        return {key: section for key in keys if (section := getattr(self, key)) is not None}
-
-    @property
     def through(self) -> TransferPath | None:
         """The path from the bearing forces through the housing to it."""
         return self.path
@@ -176,7 +160,7 @@ class Accelerometer(Sensor):
     @property
     def fitted(self) -> bool:
         """Whether lines or paths are those of recordings."""
-        return bool(self.lines) or (isinstance(self.path, MeasuredPath) and self.path.is_family)
+        return super().fitted or (isinstance(self.path, MeasuredPath) and self.path.is_family)
 
     def drawn(self, uniform: Callable[[str], float]) -> Self:
         """Return the sensor of one specimen: gains and position are drawn, what belongs to records is left."""

@@ -19,6 +19,7 @@ from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import BRANCHES, received_text, refusal
 from siggen.keys.section import Section, Whole
 from siggen.keys.wording import AllowedText
+from siggen.noise.source import Source
 from siggen.sensing.inputs import FORCE, Input
 from siggen.sensors.path import TransferPath
 from siggen.sensors.quantity import Quantity
@@ -116,9 +117,9 @@ class Sensor(Section):
         return None
 
     @property
-    def added(self) -> Mapping[str, Any]:
-        """Key -> section of what is added to its channels beside the white noise."""
-        return {}
+    def sources(self) -> tuple[Source, ...]:
+        """What is added to its channels beside the white noise; `SourceKeys` has a key for each."""
+        return ()
 
     @property
     def through(self) -> TransferPath | None:
@@ -133,7 +134,7 @@ class Sensor(Section):
     @property
     def fitted(self) -> bool:
         """Whether it holds what was fitted to recordings."""
-        return False
+        return any(source.fitted for source in self.sources)
 
     def response(self, draw: AxisDraws, frequency_hz: FloatArray) -> ComplexArray | None:  # noqa: ARG002
         """Return what the sensor itself does to its quantity at frequencies (k,); None for nothing."""

@@ -16,7 +16,7 @@ SIGGEN_ROOMS = (
     "errors", "sources", "seeding", "arrays", "compiled", "lanes", "stage_times", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time", "sensing",
-    "faults", "sensors", "config", "rig", "planning", "specimen", "checks", "columns", "record",
+    "faults", "noise", "sensors", "config", "rig", "planning", "specimen", "checks", "columns", "record",
     "dataset", "engines", "sets", "views", "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
