@@ -16,7 +16,8 @@ from siggen.dynamics.time.decimation import Decimator, second_difference_taps, v
 from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import specimen_state
-from siggen.specimen.instrument import needs_forces, specimen_instrument
+from siggen.sensors.sensor import needs_forces
+from siggen.specimen.instrument import specimen_instrument
 from siggen.specimen.integration import time_grid
 
 PRESETS = ("quickstart", "bench", "industrial", "paper_b", "linear_pits")
@@ -94,7 +95,7 @@ def _outputs(name: str) -> Outputs:
     built = state.mesh.structure
     seen = {motion for channel in specimen_instrument(config, specimen).channels for motion in channel.motions}
     steps, _ = time_grid(config, specimen, built, state.mesh.tables)
-    forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs_forces(config) else []
+    forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs_forces(config.sensors) else []
     return Outputs(
         np.array([row for motion, row in built.motions.items() if motion in seen]),
         np.array(forces).reshape(len(forces), 2 * len(built.coordinates)),

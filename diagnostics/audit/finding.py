@@ -32,7 +32,7 @@ GROUPS = (
     ColumnGroup(
         "noise",
         r"noise|floor|mains|hum|background|tone|bearing_tone",
-        "Draw the noise by one law for all states, in m/s^2 and not from the level of the record.",
+        "Draw the noise by one law for all states, in the unit of the channel and not from the level of the record.",
     ),
     ColumnGroup(
         "path",

@@ -68,6 +68,7 @@ def beside_source(measured: PageSource, simulated: PageSource) -> PageSource:
         damage=simulated.damage,
         flanks=[*({} for _ in range(ours)), *simulated.flanks],
         quantities=simulated.quantities,
+        held=simulated.held,
         internals=lambda detail, fine: [*({} for _ in range(ours)), *simulated.internals(detail, fine[ours:])],
         beside=nearest_of_the_others(labels, ours, theirs),
     )

@@ -8,8 +8,9 @@ Transmission error, mesh force and mesh stiffness of records, where a set stores
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import acos, cos, pi, radians, tan
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from diagnostics.explore.record_views import PageAxes, highest_order, order_axis
 from diagnostics.indicators.registry import indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
+from diagnostics.records.channel_quantities import RECORDED, ShownQuantity, channel_quantities
 from diagnostics.records.recording import Recording, recordings
 from siggen.dataset.reading import Dataset
 
@@ -163,6 +165,8 @@ class PageSource:
         Whether these are recordings of one machine.
     beside : list of int or None, optional
         Row of the other side that each can be laid over, where there are recordings and simulated records.
+    held : mapping
+        What channels hold; those of recordings are not named.
     """
 
     labels: dict[str, np.ndarray]
@@ -178,6 +182,11 @@ class PageSource:
     internals: Callable[[Detail, list[tuple[int, int]]], list[dict[str, Any]]]
     measured: bool = False
     beside: list[int | None] | None = None
+    held: Mapping[str, ShownQuantity] = field(default_factory=dict)
+
+    def holds(self, channel: str) -> ShownQuantity:
+        """Return what a channel holds."""
+        return self.held.get(channel, RECORDED)
 
 
 def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSource:
@@ -199,7 +208,8 @@ def set_source(dataset: Dataset, table: RecordTable, rows: np.ndarray) -> PageSo
         channels=tuple(channel.name for channel in dataset.channels),
         fs_hz=dataset.fs_hz,
         duration_s=dataset.duration_s,
-        indicators=_indicators(table, rows),
+        indicators=_indicators(table, rows, channel_quantities(dataset)),
+        held=channel_quantities(dataset),
         damage=_damage(dataset, labels["record_id"]),
         flanks=[_flanks(dataset, labels, k) for k in range(rows.size)],
         quantities=shown_internals(dataset),
@@ -226,6 +236,7 @@ def page_payload(source: PageSource, stage: Stage, *, full: bool) -> dict[str, A
         "fs_hz": source.fs_hz,
         "samples": round(source.fs_hz * source.duration_s),
         "channels": list(source.channels),
+        "held": {name: source.holds(name)._asdict() for name in source.channels},
         "order_step": axes.orders.step,
         "envelope_step": axes.envelope_orders.step,
         "steps_per_tooth": axes.detail.steps_per_tooth,
@@ -284,21 +295,28 @@ def _flanks(dataset: Dataset, labels: dict[str, np.ndarray], row: int) -> dict[s
     return {gear: flank_size(dataset.config, gear, int(labels[f"teeth_{gear}"][row])) for gear in GEARS}
 
 
-def _indicators(table: RecordTable, rows: np.ndarray) -> list[dict[str, Any]]:
+def _indicators(table: RecordTable, rows: np.ndarray, held: Mapping[str, ShownQuantity]) -> list[dict[str, Any]]:
     names = table.names()
-    return packed_indicators(names, table.values(names)[rows], table.settings, table.own)
+    return packed_indicators(names, table.values(names)[rows], table.settings, table.own, held)
 
 
 def packed_indicators(
-    names: Sequence[str], values: np.ndarray, settings: IndicatorSettings, own: Collection[str] = ()
+    names: Sequence[str],
+    values: np.ndarray,
+    settings: IndicatorSettings,
+    own: Collection[str] = (),
+    held: Mapping[str, ShownQuantity] = MappingProxyType({}),
 ) -> list[dict[str, Any]]:
     """Return name, title, definition and packed values (records, names) of every indicator that some record defines."""
-    titles, definitions = indicator_titles(settings), indicator_definitions(settings)
-    found = []
+    titles = {unit: indicator_titles(settings, unit) for unit in {RECORDED.unit, *(one.unit for one in held.values())}}
+    definitions, found = indicator_definitions(settings), []
     for name, column in zip(names, values.T, strict=True):
         base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():
-            facts = {"title": titles.get(base, name), "definition": definitions.get(base, "your own indicator")}
+            facts = {
+                "title": titles[held.get(channel, RECORDED).unit].get(base, name),
+                "definition": definitions.get(base, "your own indicator"),
+            }
             found.append({"name": name, "channel": channel, **facts, "data": packed_floats(column)})
     return found
 

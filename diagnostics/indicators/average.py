@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from diagnostics.indicators.indicator import BOOK, CONDITION_METRICS, STILL, indicator
+from diagnostics.indicators.indicator import BOOK, CONDITION_METRICS, OF_CHANNEL, STILL, indicator
 from diagnostics.indicators.level import UNDEFINED_BELOW, crest_factor, kurtosis, moment_ratio, rms
 
 NO_DIFFERENCE = "the difference signal is below 1e-9 of the average (perfect gears)"
@@ -17,7 +17,7 @@ NO_DIFFERENCE = "the difference signal is below 1e-9 of the average (perfect gea
     "Mesh amplitude",
     signal="average",
     formula="A(h z)",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="A cos(h z θ): A",
     undefined="never",
     source=BOOK,
@@ -32,7 +32,7 @@ def mesh_amplitude(lines: np.ndarray, teeth: int, harmonic: int) -> float:
     "RMS of the average",
     signal="average",
     formula="sqrt(mean x²)",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="sine A/√2",
     undefined="never",
     source=BOOK,
@@ -105,7 +105,7 @@ def noise_share(revolutions: np.ndarray, average: np.ndarray) -> float:
     "RMS of the residual",
     signal="residual",
     formula="sqrt(mean r²)",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="sine A/√2",
     undefined="never",
     source="Lebold 2000",
@@ -120,7 +120,7 @@ def residual_rms(residual: np.ndarray) -> float:
     "RMS of the difference",
     signal="difference",
     formula="sqrt(mean d²)",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="sine A/√2",
     undefined="never",
     source="Lebold 2000",

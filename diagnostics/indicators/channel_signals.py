@@ -40,7 +40,7 @@ class ChannelSignals:
     Parameters
     ----------
     signal : (n,) float64
-        Record [m/s²], finite.
+        Record in the unit of the channel, finite.
     fs_hz : float
         Sampling frequency [Hz].
     grid : AngleGrid, optional

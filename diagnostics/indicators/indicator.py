@@ -20,6 +20,8 @@ STILL = "the signal does not vary (standard deviation below 1e-9 of its rms)"
 NO_LINE = "the mesh line is below 1e-9 of the strongest line, or a sideband is unresolved or outside the band"
 BOOK = "standard literature"
 CONDITION_METRICS = "MATLAB gearConditionMetrics"
+OF_CHANNEL = "that of the channel"
+"""Unit of an indicator that grows with the signal."""
 OF_A_HISTORY = "_variances"
 """How names end that hold one value per record of a history."""
 
@@ -43,7 +45,7 @@ class Indicator:
     formula : str
         Its value.
     unit : str
-        Empty for ratios.
+        Empty for ratios; `OF_CHANNEL` for levels and amplitudes.
     known : str
         Its value on signals where that follows from the formula.
     undefined : str

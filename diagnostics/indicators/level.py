@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from diagnostics.indicators.indicator import BOOK, STILL, indicator
+from diagnostics.indicators.indicator import BOOK, OF_CHANNEL, STILL, indicator
 
 UNDEFINED_BELOW = 1e-9
 """A standard deviation below this share of the rms of the signal (or of a reference) is numerical dust."""
@@ -17,7 +17,7 @@ UNDEFINED_BELOW = 1e-9
     "RMS",
     signal="record",
     formula="sqrt(mean x²)",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="Gaussian σ; sine A/√2",
     undefined="never",
     source=BOOK,

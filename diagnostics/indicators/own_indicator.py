@@ -146,7 +146,7 @@ _REGISTERED: dict[str, OwnIndicator] = {}
 
 @dataclass(frozen=True, slots=True)
 class OwnIndicator:
-    """A named function `(signal (n,) [m/s²], tacho (k,) [s], gears) -> float`; NaN means undefined."""
+    """A named function `(signal (n,), tacho (k,) [s], gears) -> float`; NaN means undefined."""
 
     name: str
     function: IndicatorFunction
@@ -277,8 +277,8 @@ def _check_function(function: object, reference: str, attribute: str) -> None:
         return
     except TypeError as error:
         raise UsageError(
-            f"--indicator {reference}: {error}. It is called as function(signal, tacho, gears): signal (n,) [m/s²], "
-            "pulse times (k,) [s], tooth numbers and rates."
+            f"--indicator {reference}: {error}. It is called as function(signal, tacho, gears): signal (n,) in the "
+            "unit of the channel, pulse times (k,) [s], tooth numbers and rates."
         ) from error
 
 

@@ -9,8 +9,9 @@ from itertools import product
 from typing import Any
 
 from diagnostics.indicators import average, cepstrum, history, level, sidebands
-from diagnostics.indicators.indicator import INDICATORS, Indicator
+from diagnostics.indicators.indicator import INDICATORS, OF_CHANNEL, Indicator
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.records.channel_quantities import RECORDED
 
 WORDS = {
     "shaft": "{}",
@@ -27,14 +28,15 @@ ALL: tuple[Indicator, ...] = tuple(
 BY_NAME = {entry.name: entry for entry in ALL}
 
 
-def indicator_titles(settings: IndicatorSettings) -> dict[str, str]:
-    """Return the title of every column of one channel, with its unit, without the channel's name."""
+def indicator_titles(settings: IndicatorSettings, channel_unit: str = RECORDED.unit) -> dict[str, str]:
+    """Return the title of every column of a channel of this unit, with its unit, without the channel's name."""
     found: dict[str, str] = {}
     for entry in ALL:
         for values in product(*(settings.choices(field) for field in entry.fields)):
             chosen: dict[str, Any] = dict(zip(entry.fields, values, strict=True))
             title = ", ".join([entry.title, *_words(chosen)])
-            found[entry.column.format(**chosen)] = f"{title} [{entry.unit}]" if entry.unit else title
+            unit = channel_unit if entry.unit == OF_CHANNEL else entry.unit
+            found[entry.column.format(**chosen)] = f"{title} [{unit}]" if unit else title
     return found
 
 

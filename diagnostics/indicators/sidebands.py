@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from diagnostics.indicators.indicator import BOOK, NO_LINE, indicator
+from diagnostics.indicators.indicator import BOOK, NO_LINE, OF_CHANNEL, indicator
 from diagnostics.indicators.level import UNDEFINED_BELOW, moment_ratio, rms
 from diagnostics.signal.mesh_band import Modulation
 from diagnostics.signal.order_bands import localised_energy
@@ -22,7 +22,7 @@ OUTSIDE = "the record carries less than half of the band, or the band is below 1
     "SI",
     signal="lines of the average",
     formula="[A(z − 1) + A(z + 1)]/2",
-    unit="m/s²",
+    unit=OF_CHANNEL,
     known="AM of index m: A m/2",
     undefined=NO_LINE,
     source="Szczepanik",

@@ -30,6 +30,8 @@ def file_channels(path: Path, tacho: str | None = None, row: int | None = None) 
         If the file cannot be read, or holds no such column, or very many.
     """
     found = read_columns(path, row)
+    if found.own:
+        return tuple(found.own)
     own = [name for name in found.values if name.startswith(PREFIX) and name.endswith(SUFFIX)]
     names = own or [name for name in found.values if name not in {tacho, OWN_TACHO, *found.clocks}]
     if not 1 <= len(names) <= MOST_CHANNELS:

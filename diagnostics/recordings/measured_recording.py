@@ -20,6 +20,7 @@ HYSTERESIS = 0.2
 """Share of the swing that the waveform must fall below the middle before the next rise counts."""
 
 OWN_COLUMN = "accel_{}_m_s2"
+"""How siggen calls a channel in files whose columns cannot say what they hold, such as CSV."""
 RATES_ALIKE = 1e-5
 """A rate that a time column states is as exact as its digits: 1e-6 s in 0.1 s."""
 
@@ -176,9 +177,9 @@ def _mapping(path: Path, found: Columns, names: tuple[str, ...], said: Mapping[s
 
 
 def _column(found: Columns, name: str, said: str | None) -> str | None:
-    for wanted in (said,) if said else (name, OWN_COLUMN.format(name)):
+    for wanted in (said,) if said else (found.own.get(name), name, OWN_COLUMN.format(name)):
         if wanted in found.values:
-            return wanted
+            return str(wanted)
         if said and said.isdigit() and 1 <= int(said) <= len(found.values):
             return list(found.values)[int(said) - 1]
     return None

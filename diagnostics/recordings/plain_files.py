@@ -131,16 +131,24 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
         table = parquet.read_table(path, columns=lists or numbers)
     except (OSError, pa.ArrowInvalid) as error:
         raise UsageError(f"{path}: cannot be read as Parquet ({error})") from error
-    simulated = IDENTITY in (schema.metadata or {})
+    about: Any = {"simulated": IDENTITY in (schema.metadata or {}), **_channels(schema)}
     if not lists:
-        return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers}, simulated=simulated)
+        return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers}, **about)
     chosen = 0 if row is None and table.num_rows == 1 else row
     if chosen is None or not 0 <= chosen < table.num_rows:
         raise UsageError(
             f"{path}: holds {table.num_rows} records, one per row; received row {row}. Choose one as "
             f"{path.name}:ROW, from 0 to {table.num_rows - 1}."
         )
-    return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists}, simulated=simulated)
+    return Columns({name: _numbers(table.column(name)[chosen].values) for name in lists}, **about)
+
+
+def _channels(schema: Any) -> dict[str, dict[str, str]]:
+    """Return the columns of channels, and their units, of fields that say which sensor and axis they are."""
+    said = {field.name: {k: v.decode(errors="replace") for k, v in (field.metadata or {}).items()} for field in schema}
+    facts = {name: found for name, found in said.items() if {b"sensor", b"axis", b"unit"} <= found.keys()}
+    own = {f"{found[b'sensor']}_{found[b'axis']}": name for name, found in facts.items()}
+    return {"own": own, "units": {name: found[b"unit"] for name, found in facts.items()}}
 
 
 def _is_list(kind: Any) -> bool:

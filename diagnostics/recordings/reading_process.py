@@ -139,6 +139,7 @@ def _keep(found: Columns, folder: Path) -> None:
         "full_scale": found.full_scale,
         "simulated": found.simulated,
         "units": dict(found.units),
+        "own": dict(found.own),
     }
     (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
     for number, column in enumerate(found.values.values()):

@@ -34,6 +34,8 @@ class Columns:
         Whether the file says that siggen wrote it.
     units : mapping of str to str
         Unit of columns where the file states it, as spelled there.
+    own : mapping of str to str
+        Channel -> its column, where the file says so of its columns, as those of siggen do.
     clocks : mapping of str to float or None
         Columns that are no signals: times, with the rate [Hz] that they state, and counters of samples, with None.
     """
@@ -43,6 +45,7 @@ class Columns:
     full_scale: bool = False
     simulated: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    own: Mapping[str, str] = field(default_factory=dict)
     clocks: Mapping[str, float | None] = field(default_factory=dict)
 
 

@@ -18,6 +18,7 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import GEAR_COLOUR, PINION_COLOUR, SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.page.tables import explorer_link, indicator_links, records_line, state_links
+from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, example_set
@@ -105,19 +106,19 @@ def stiffness_loss_figure(
 
 
 def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
-    """Return acceleration over two pinion revolutions, one row per state, all on one scale."""
+    """Return the signal over two pinion revolutions, one row per state, all on one scale."""
     rows = len(examples.examples)
     figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
     for axis, example in zip(axes[:, 0], examples.examples, strict=True):
         start_s = example.tacho_s[0] if len(example.tacho_s) else 0.0
         first = round(start_s * examples.fs_hz)
-        signal = example.signal_m_s2[first : first + round(REVOLUTIONS_SHOWN / examples.speed_hz * examples.fs_hz)]
+        signal = example.signal[first : first + round(REVOLUTIONS_SHOWN / examples.speed_hz * examples.fs_hz)]
         axis.plot(1e3 * np.arange(signal.size) / examples.fs_hz, signal, color=colours[example.state], linewidth=0.6)
         axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
         for pulse in range(REVOLUTIONS_SHOWN + 1):
             axis.axvline(1e3 * pulse / examples.speed_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
     axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
-    figure.supylabel("Acceleration [m/s²]", fontsize=10)
+    figure.supylabel(f"{examples.quantity.capitalize()} [{examples.unit}]", fontsize=10)
     return figure
 
 
@@ -139,7 +140,7 @@ def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int
     axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
     mesh_hz = harmonic * examples.teeth[0] * examples.speed_hz
     axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [pinion orders of {examples.speed_hz:.3g} Hz]")
-    figure.supylabel("Amplitude [m/s²]", fontsize=10)
+    figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)
     _add_legend(axes[0, 0])
     return figure
 
@@ -232,7 +233,7 @@ def draw(
         drawing.studies["learning_curve"] = (figure, caption)
     shown = distinct_features(found, INDICATORS_SHOWN)
     if shown:
-        figure = score_figures.indicator_figure(matrix, shown, classes, colours)
+        figure = score_figures.indicator_figure(matrix, shown, classes, colours, channel_quantities(dataset))
         drawing.indicators["indicators"] = (
             figure,
             "The strongest single indicators of different definitions, on all specimens.",

@@ -21,7 +21,7 @@ class Example:
     record_id: int
     state: str
     fault: str
-    signal_m_s2: np.ndarray
+    signal: np.ndarray
     tacho_s: np.ndarray
     spectrum: OrderSpectrum | None
 
@@ -33,6 +33,8 @@ class ExampleSet:
     examples: tuple[Example, ...]
     specimen_id: int
     channel: str
+    quantity: str
+    unit: str
     speed_hz: float
     torque_nm: float
     teeth: tuple[int, int]
@@ -62,6 +64,8 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
         examples=tuple(_example(record, found.column, dataset.fs_hz) for record in records),
         specimen_id=int(first["specimen_id"]),
         channel=found.name,
+        quantity=found.quantity,
+        unit=found.shown_unit,
         speed_hz=float(first["speed_hz"]),
         torque_nm=float(first["torque_nm"]),
         teeth=(int(first["teeth_pinion"]), int(first["teeth_gear"])),

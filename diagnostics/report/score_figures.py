@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from diagnostics.indicators.indicator import OF_CHANNEL, base_name
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.registry import BY_NAME
 from diagnostics.page.style import new_figure, state_ticks
+from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.report.indicator_figures import panel_title
 from diagnostics.statistics.judgement import TITLES, Judged
 from diagnostics.statistics.separability import Separability
@@ -89,12 +93,17 @@ def learning_curve_figure(points: tuple[CurvePoint, ...]) -> Figure:
 
 
 def indicator_figure(
-    matrix: FeatureMatrix, found: list[Separability], classes: tuple[str, ...], colours: dict[str, str]
+    matrix: FeatureMatrix,
+    found: list[Separability],
+    classes: tuple[str, ...],
+    colours: dict[str, str],
+    channels: Mapping[str, ShownQuantity],
 ) -> Figure:
     """Return the values of the strongest indicators by state, one row each, a dot per record."""
     figure, axes = new_figure(len(found), 1, height_in=0.6 + 1.25 * len(found), sharex=True)
     for axis, entry in zip(axes[:, 0], found, strict=True):
         _draw_indicator(axis, matrix, entry.feature, classes, colours)
+        axis.set_ylabel(f"[{unit_of(entry.feature, channels)}]")
     state_ticks(axes[-1, 0], classes)
     axes[-1, 0].set_xlabel("State (one dot per record)")
     return figure
@@ -112,11 +121,12 @@ def _draw_indicator(
         )
     if (values > 0).all() and values.max() > 30.0 * values.min():
         axis.set_yscale("log")
-    axis.set_ylabel(f"[{unit_of(feature)}]")
     axis.set_title(panel_title(feature, 50), loc="left", fontsize=9, fontweight="bold")
 
 
-def unit_of(feature: str) -> str:
-    """Return the unit of a feature by its name: m/s^2 for levels and amplitudes, 1 for ratios."""
-    level = ("rms", "average_rms", "difference_rms", "mesh_amplitude", "sideband_index")
-    return "m/s²" if feature.startswith(level) else "-"
+def unit_of(feature: str, channels: Mapping[str, ShownQuantity]) -> str:
+    """Return the unit of a feature by its name: that of its channel for levels and amplitudes, - for ratios."""
+    known = BY_NAME.get(base_name(feature))
+    if known is None or not known.unit:
+        return "-"
+    return channels[feature.partition("__")[2]].unit if known.unit == OF_CHANNEL else known.unit

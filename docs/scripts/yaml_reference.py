@@ -148,10 +148,11 @@ class Shipped:
             path = f"{prefix}{name_node.value}"
             yield path, self._remark(name_node.value, value_node)
             entries = value_node.value if isinstance(value_node, yaml.SequenceNode) else [value_node]
-            for ending, inner in schema.sections(value):
-                kind = inner["properties"].get("kind", {}).get("const")
+            sections = [(*one, one[1]["properties"].get("kind", {}).get("const")) for one in schema.sections(value)]
+            for ending, inner, kind in sections:
                 for entry in entries:
-                    if isinstance(entry, yaml.MappingNode) and kind in (None, kind_of(entry)):
+                    # an entry without a kind is of the first one
+                    if isinstance(entry, yaml.MappingNode) and kind in (None, kind_of(entry) or sections[0][2]):
                         yield from self._walk(schema, inner, entry, f"{path}{ending}.")
 
     def _remark(self, name: str, value: Any) -> str:
@@ -209,7 +210,7 @@ class Entry:
     @property
     def kinds(self) -> list[str]:
         """Kinds of the section that have the key."""
-        return list(dict.fromkeys(kind for key in self.keys for kind in re.findall(r"\(kind: (\w+)\)", key.path)))
+        return list(dict.fromkeys(kind for key in self.keys for kind in re.findall(r"\(kind: (\w+)\)", key.path)[-1:]))
 
     @property
     def defaults(self) -> list[str]:
@@ -217,8 +218,8 @@ class Entry:
         return list(dict.fromkeys(default(key) for key in self.keys))
 
 
-BEGINNING = r"^{}(?:\[\])?(?:\.\w+ \(kind: \w+\))?\."
-"""Of the paths of a top-level key: an entry of its list, and a section with kinds."""
+BEGINNING = r"^{}(?:\[\])?(?: \(kind: \w+\))?(?:\.\w+ \(kind: \w+\))?\."
+"""Of the paths of a top-level key: an entry of its list and its kind, and a section with kinds."""
 
 
 def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
@@ -235,7 +236,7 @@ def entries(schema: Schema, keys: list[Key], top: str) -> list[list[Entry]]:
 
 def table(schema: Schema, rows: list[Entry], users: Mapping[str, list[str]]) -> Iterator[str]:
     """Yield a table of keys."""
-    kinds = ["kind"] if any(entry.kinds for entry in rows) else []
+    kinds = ["kind"] if len({kind for entry in rows for kind in entry.kinds}) > 1 else []
     yield row("key", *kinds, "meaning", "allowed", "default", "use")
     yield row(*["---"] * (5 + len(kinds)))
     for entry in rows:
@@ -282,7 +283,8 @@ def page() -> str:
             if number == 0:
                 lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}. {need}{listed}", ""]
             else:
-                lines += [f"### {rows[0].keys[0].path.partition(' (kind')[0]}", ""]
+                place = rows[0].keys[0].path.rpartition(" (kind")[0]
+                lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
             lines += [*table(schema, rows, users), *sources(rows, remarks), ""]
     lines += [DISTRIBUTION_TEXT, *distributions(schema)]
     return "\n".join(lines).rstrip() + "\n"

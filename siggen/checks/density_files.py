@@ -11,9 +11,9 @@ from typing import Any
 
 from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
+from siggen.noise.kinds import SOURCES
 
 COLUMNS = ("frequency_hz", "density")
-LINE_COLUMNS = ("order", "frequency_hz", "amplitude_m_s2")
 MOST_KNOTS = 10_000
 
 
@@ -37,9 +37,11 @@ def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[st
 
     found = dict(raw)
     if isinstance(raw.get("sensors"), (list, tuple)):
-        places = enumerate(raw["sensors"])
-        with_noise = [(i, filled(one, "noise_spectrum", f"sensors.{i}.noise_spectrum")) for i, one in places]
-        found["sensors"] = [filled(one, "lines", f"sensors.{i}.lines", LINE_COLUMNS) for i, one in with_noise]
+        sensors = list(raw["sensors"])
+        for source in (one for one in SOURCES if one.file_columns):
+            key, columns = source.key, source.file_columns
+            sensors = [filled(one, key, f"sensors.{i}.{key}", columns) for i, one in enumerate(sensors)]
+        found["sensors"] = sensors
     background = raw.get("background")
     if isinstance(background, Mapping) and "floor" in background:
         floor = filled(background["floor"], "spectrum", "background.floor.spectrum")

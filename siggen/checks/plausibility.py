@@ -96,7 +96,7 @@ def missing(config: Config) -> Iterator[str]:
     """Yield what a set lacks that every measurement has."""
     if config.manufacture is None:
         yield "manufacture: perfect gears: healthy records have no sidebands, so any damage is trivially found"
-    noises = [s.noise is not None or s.noise_spectrum is not None for s in config.sensors]
+    noises = [s.noise_floor is not None or any(one.broad for one in s.sources) for s in config.sensors]
     if not any(noises) and config.housing is None and config.background is None:
         yield "sensors: no noise at all: any damage is trivially found"
     seen: list[Sensor] = []
@@ -232,8 +232,8 @@ def _record(config: Config) -> Iterator[Quantity]:
         "duration_s", "turns of the gear in a record", (turns, turns), 3.0, 1e5, "averages need several turns"
     )
     for i, sensor in enumerate(config.sensors):
-        if sensor.range_m_s2 is not None:
-            yield _of(f"sensors.{i}.range_m_s2", "range [m/s²]", sensor.range_m_s2, 1.0, 1e5, "is it in m/s², not g?")
+        what = f"range [{sensor.quantity.shown_unit}]"
+        yield _of(f"sensors.{i}.{sensor.limit_key}", what, sensor.limit, *sensor.plausible)
 
 
 def _of(path: str, what: str, number: Number, least: float, most: float, hint: str = "", over: float = 1.0) -> Quantity:

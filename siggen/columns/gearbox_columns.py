@@ -60,6 +60,6 @@ def draws_casing(config: Config) -> bool:
 def drawn_places(config: Config) -> Iterator[tuple[int, int, str]]:
     """Yield sensor, axis and column of every coordinate that gearboxes draw; all of them in a set of several pairs."""
     for i, sensor in enumerate(config.sensors):
-        for axis, number in enumerate(sensor.position_mm or ()):
+        for axis, number in enumerate(sensor.place_on_casing_mm):
             if config.gears.pairs or not isinstance(number, float):
                 yield i, axis, f"position_{'xy'[axis]}_{sensor.name}_mm"

@@ -17,56 +17,28 @@ FORCE_NOISE_COLUMN = Column(
 )
 
 
-def channel_columns(sensor: Sensor, channel: str) -> tuple[Column, ...]:
-    """Return the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
-    accelerance = f"path_accelerance_{channel}_m_s2_per_n"
-    parts: dict[str, tuple[object, Column]] = {
-        "modes": (
-            sensor.path,
-            Column(f"path_modes_{channel}", pa.int32(), "", f"flexible modes to {channel}; 0 if it was measured"),
-        ),
-        "accelerance": (
-            sensor.path,
-            Column(
-                accelerance, pa.float64(), "m/s^2/N", f"rms accelerance to {channel}, 100 Hz to 0.45 fs, all forces"
-            ),
-        ),
-        "number": (
-            getattr(sensor.path, "is_family", False) or None,
-            Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0"),
-        ),
-        "pink": (
-            sensor.pink_noise,
-            Column(
-                f"pink_noise_{channel}_m_s2_per_sqrt_hz", pa.float64(), "m/s^2/sqrt(Hz)", f"at the corner, in {channel}"
-            ),
-        ),
-        "spectrum": (
-            sensor.noise_spectrum,
-            Column(
-                f"noise_spectrum_{channel}_m_s2",
-                pa.float64(),
-                "m/s^2",
-                f"RMS of the noise of given density in {channel}",
-            ),
-        ),
-        **{
-            part: (section, Column(f"{part}_{channel}_m_s2", pa.float64(), "m/s^2", f"RMS of {what} {channel}"))
-            for part, section, what in (
-                ("lines", sensor.lines, "the lines of given orders or frequencies in"),
-                ("mains", sensor.mains, "mains hum in"),
-                ("tones", sensor.tones, "the tones of other machines at"),
-                ("inverter", sensor.inverter, "the inverter's lines at"),
-            )
-        },
-    }
-    return tuple(column for section, column in parts.values() if section not in (None, False))
+def channel_columns(sensor: Sensor, channel: str) -> Iterator[Column]:
+    """Yield the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
+    if sensor.through is not None:
+        yield from path_columns(channel, is_family=getattr(sensor.through, "is_family", False))
+    for source in sensor.sources:
+        name = source.column(channel, sensor.quantity.suffix)
+        yield Column(name, pa.float64(), f"{sensor.quantity.unit}{source.per[1]}", f"{source.meaning} {channel}")
+
+
+def path_columns(channel: str, *, is_family: bool) -> Iterator[Column]:
+    """Yield the columns about the path to one channel."""
+    accelerance = f"rms accelerance to {channel}, 100 Hz to 0.45 fs, all forces"
+    yield Column(f"path_modes_{channel}", pa.int32(), "", f"flexible modes to {channel}; 0 if it was measured")
+    yield Column(f"path_accelerance_{channel}_m_s2_per_n", pa.float64(), "m/s^2/N", accelerance)
+    if is_family:
+        yield Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0")
 
 
 def instrument_columns(config: Config) -> Iterator[Column]:
     """Yield the columns of all parts that a configuration has, channel by channel."""
     for sensor in config.sensors:
-        for axis in sensor.axes:
-            yield from channel_columns(sensor, f"{sensor.name}_{axis}")
+        for name, _ in sensor.channels:
+            yield from channel_columns(sensor, name)
     if config.housing is not None and config.housing.force_noise is not None:
         yield FORCE_NOISE_COLUMN

@@ -22,13 +22,15 @@ from siggen.errors import DatasetError, counted
 if TYPE_CHECKING:
     from siggen.config import Config
     from siggen.planning.plan import PlannedRecord
+    from siggen.sensors.quantity import Quantity
 
-ACCELERATION_UNIT = "m/s^2"
+BEFORE_QUANTITIES = "acceleration"
+"""What channels hold in a set whose files do not say so."""
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One axis of one sensor and the column that holds its signal."""
+    """One axis of one sensor and the column that holds its signal, a `quantity` in a `unit`."""
 
     name: str
     sensor: str
@@ -36,6 +38,12 @@ class Channel:
     axis: str
     unit: str
     column: str
+    quantity: str = BEFORE_QUANTITIES
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit as pages and pictures show it."""
+        return self.unit.replace("^2", "²").replace("^3", "³")
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +57,7 @@ class Record:
     labels
         Exactly the names of `label_names(config)`: the state's name, and the columns of `label_columns(config)`.
     channels
-        Channel name (`<sensor>_<axis>`) to float32 signal (n,) in m/s^2.
+        Channel name (`<sensor>_<axis>`) to float32 signal (n,) in the unit of the channel.
     tacho_s
         Times of the shaft pulses (k,), seconds from the first sample.
     internals
@@ -137,27 +145,24 @@ def channels(config: Config) -> tuple[Channel, ...]:
     """Return the channels of a configuration in the order of its sensors and their axes."""
     return tuple(
         Channel(
-            name=f"{sensor.name}_{axis}",
+            name=name,
             sensor=sensor.name,
             place=sensor.place,
             axis=axis,
-            unit=ACCELERATION_UNIT,
-            column=signal_column(f"{sensor.name}_{axis}"),
+            unit=sensor.quantity.unit,
+            column=sensor.quantity.column(name),
+            quantity=sensor.quantity.word,
         )
         for sensor in config.sensors
-        for axis in sensor.axes
+        for name, axis in sensor.channels
     )
 
 
-def signal_column(channel: str) -> str:
-    """Return the name of the column that holds a channel's signal."""
-    return f"accel_{channel}_m_s2"
-
-
-def channel_label_columns(channel: str) -> tuple[Column, ...]:
+def channel_label_columns(channel: str, quantity: Quantity) -> tuple[Column, ...]:
     """Return the columns that describe one channel of one record."""
+    floor = f"noise_floor_{channel}_{quantity.suffix}"
     return (
-        Column(f"noise_floor_{channel}_m_s2", pa.float64(), ACCELERATION_UNIT, f"RMS of the white noise in {channel}"),
+        Column(floor, pa.float64(), quantity.unit, f"RMS of the white noise in {channel}"),
         Column(f"snr_{channel}_db", pa.float64(), DECIBEL, f"power of the signal over the white noise in {channel}"),
         Column(f"clipped_share_{channel}", pa.float64(), "", f"share of clipped samples in {channel}"),
     )
@@ -165,7 +170,8 @@ def channel_label_columns(channel: str) -> tuple[Column, ...]:
 
 def label_columns(config: Config) -> tuple[Column, ...]:
     """Return what `Record.labels` holds: labels, operating conditions, errors of the gears, labels of every channel."""
-    per_channel = (column for channel in channels(config) for column in channel_label_columns(channel.name))
+    named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
+    per_channel = (column for one in named for column in channel_label_columns(*one))
     varying = VARIATION_COLUMNS if config.variation.active else ()
     common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *gearbox_columns(config), *varying, *manufacture_columns(config))
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
@@ -204,14 +210,20 @@ def schema_metadata(config: Config) -> dict[str, str]:
     }
 
 
-def _signal_field(config: Config, channel: Channel) -> pa.Field:
-    metadata = {
+def channel_metadata(channel: Channel, fs_hz: float) -> dict[str, str]:
+    """Return what a file says about the column of a channel."""
+    return {
         "sensor": channel.sensor,
         "place": channel.place,
         "axis": channel.axis,
+        "quantity": channel.quantity,
         "unit": channel.unit,
-        "fs_hz": repr(float(config.fs_hz)),
+        "fs_hz": repr(float(fs_hz)),
     }
+
+
+def _signal_field(config: Config, channel: Channel) -> pa.Field:
+    metadata = channel_metadata(channel, config.fs_hz)
     signal = list_of(pa.float32(), config.samples)
     return pa.field(channel.column, signal, nullable=False, metadata=metadata)
 
@@ -222,8 +234,9 @@ def signal_channels(schema: pa.Schema) -> tuple[Channel, ...]:
     for field in schema:
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
         if pa.types.is_fixed_size_list(field.type) and "sensor" in facts:
-            name = f"{facts['sensor']}_{facts['axis']}"
-            found.append(Channel(name, facts["sensor"], facts["place"], facts["axis"], facts["unit"], field.name))
+            place = facts["sensor"], facts["place"], facts["axis"]
+            quantity = facts.get("quantity", BEFORE_QUANTITIES)
+            found.append(Channel(f"{place[0]}_{place[2]}", *place, facts["unit"], field.name, quantity))
     return tuple(found)
 
 

@@ -3,31 +3,39 @@
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
 from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
-from siggen.config.density import Density, LineTable, NoiseModulation, SensorDensity
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import ForceNoise, Housing
 from siggen.config.inheritance import extended_files, inherited
-from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
 from siggen.config.manufacture import Manufacture
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
-from siggen.config.path import MeasuredPath, ModalPath, TransferPath
 from siggen.config.presets import config_file
-from siggen.config.sensors import NoiseFloor, Sensor
 from siggen.config.shafts import Shaft, Shafts
 from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
 from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
+from siggen.noise.density import Density
+from siggen.noise.inverter import Inverter
+from siggen.noise.line_table import LineTable
+from siggen.noise.mains import Mains
+from siggen.noise.pink import PinkNoise
+from siggen.noise.spectrum import NoiseModulation, SensorDensity
+from siggen.noise.tones import Tones
+from siggen.sensors.accelerometer import Accelerometer, NoiseFloor
+from siggen.sensors.path import MeasuredPath, ModalPath, TransferPath
+from siggen.sensors.resonance import Resonance
+from siggen.sensors.sensor import Sensor
 
 __all__ = [
     "BLOCK",
     "STORED_NUMBERS",
+    "Accelerometer",
     "Background",
     "Base",
     "BearingTones",

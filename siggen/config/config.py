@@ -15,7 +15,6 @@ from siggen.config.gears import Gears
 from siggen.config.housing import Housing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
-from siggen.config.sensors import Sensor
 from siggen.config.states import State, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
@@ -24,6 +23,7 @@ from siggen.keys.number import Number, Within
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
+from siggen.sensors.registry import SensorSection
 
 IDENTITY_VERSION = 2
 """Part of every identity; raising it changes all of them; see docs/develop/versions.md."""
@@ -91,7 +91,9 @@ class Config(Section):
         description="speeds and torques; ranges are drawn for each entry"
     )
     states: Annotated[tuple[State, ...], Field(min_length=1)] = Field(description="conditions of health")
-    sensors: Annotated[tuple[Sensor, ...], Field(min_length=1)] = Field(description="accelerometers")
+    sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1)] = Field(
+        description="what measures; of kind accelerometer unless it says otherwise"
+    )
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
@@ -106,7 +108,7 @@ class Config(Section):
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of the channels, `<sensor>_<axis>`, in the order of the file."""
-        return tuple(f"{sensor.name}_{axis}" for sensor in self.sensors for axis in sensor.axes)
+        return tuple(name for sensor in self.sensors for name, _ in sensor.channels)
 
     @property
     def records_per_specimen(self) -> int:
@@ -134,16 +136,20 @@ class Config(Section):
 
 
 def _identity_content(value: Any) -> Any:
-    """Return a value as plain mappings and lists without the keys that are at their defaults; `kind` always counts."""
+    """Return a value as plain mappings and lists without the keys that are at their defaults.
+
+    `kind` counts at its default too, unless the section means the same without it.
+    """
     match value:
         case Section():
             found: dict[str, Any] = {}
+            named = "" if value.understood_kind else "kind"
             for name, field in type(value).model_fields.items():
                 item, default = value.identity_value(name), field.get_default(call_default_factory=True)
                 content = _identity_content(item)
                 # what is named and means the same does not count either (`identity_value`)
                 counts = bool(content) if isinstance(default, Section) else item != default
-                found |= {name: content} if counts or name == "kind" else {}
+                found |= {name: content} if counts or name == named else {}
             return found
         case tuple():
             return [_identity_content(item) for item in value]

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from siggen.config.path import MeasuredPath
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 from siggen.faults.registry import HEALTHY, kinds_called
@@ -68,44 +67,25 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
 SETTLED_DECAYS = 7.0
 """Decay times after which a mode of the housing has forgotten how it was started: 1e-3 of it is left."""
 
-PLACES = {
-    "torsional": ("pinion_rim", "gear_rim"),
-    "6dof": ("pinion_bearing", "gear_bearing"),
-    "8dof": ("pinion_bearing", "gear_bearing"),
-    "casing": ("casing", "pinion_bearing", "gear_bearing"),
-}
-"""Places of a sensor that a model has."""
-
 
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
-    places = PLACES[model]
     for index, sensor in sections.get("sensors", {}).items():
-        if sensor.path is not None and model != "torsional":
-            continue  # checked by _paths
-        if sensor.place not in places:
-            allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
-            yield Problem(f"sensors.{index}.place", f"'{sensor.place}'", allowed)
+        for problem in sensor.model_problems(model):
+            yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
 def _paths(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield paths without what they need, and modes that ring longer than the history that is kept for them."""
+    """Yield paths without a housing, and modes that ring longer than the history that is kept for them."""
     if "dynamics" not in sections:
         return
     model, housing = sections["dynamics"].model, sections.get("housing")
     for index, sensor in sections.get("sensors", {}).items():
-        if sensor.path is None or model == "torsional":
-            continue
-        if raw.get("housing") is None:
-            yield Problem(f"sensors.{index}.path", f"kind: {sensor.path.kind}", "allowed: null, or a section housing")
-        if isinstance(sensor.path, MeasuredPath) and sensor.cross_axis != 0.0:
-            allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
-            yield Problem(f"sensors.{index}.cross_axis", str(sensor.cross_axis), allowed)
-        if sensor.sees_model and model != "casing":
-            allowed = f"allowed: false (dynamics.model: {model} has no casing that moves)"
-            yield Problem(f"sensors.{index}.path.rigid", "true", allowed)
+        if sensor.through is not None and model != "torsional" and raw.get("housing") is None:
+            received = f"kind: {sensor.through.kind}"
+            yield Problem(f"sensors.{index}.path", received, "allowed: null, or a section housing")
     if housing is not None:
         decay_per_s = 2.0 * math.pi * bounds(housing.frequency_hz)[0] * bounds(housing.damping_ratio)[0]
         if housing.settle_s * decay_per_s < SETTLED_DECAYS:

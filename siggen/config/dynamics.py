@@ -63,7 +63,7 @@ class Dynamics(Section):
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the delivered acceleration that steps are chosen for with the law pairs, "
+        description="relative rms error of the delivered signals that steps are chosen for with the law pairs, "
         "once for all states of a gearbox",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -14,7 +14,6 @@ from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
 from siggen.errors import Problem
 from siggen.keys.problems import MOST_PROBLEMS, missing_key, section_problems, unknown_keys
-from siggen.keys.wording import models_in
 
 LISTS = ("states", "sensors")
 """Sections whose entries are checked one by one, so that one bad entry does not hide what is wrong with the others."""
@@ -104,4 +103,4 @@ def _adapter(name: str) -> TypeAdapter[Any]:
 
 @cache
 def _entry_adapter(name: str) -> TypeAdapter[Any]:
-    return TypeAdapter(models_in(Config.model_fields[name].annotation)[0])
+    return TypeAdapter(get_args(Config.model_fields[name].annotation)[0])

@@ -12,7 +12,7 @@ from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
 from siggen.columns.record import channels, damage_schema, record_schema
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.card_making import making
+from siggen.dataset.card_making import channels_text, making, quantities_text
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
@@ -108,12 +108,11 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
 
 
 def _summary(config: Config, rows: int) -> str:
-    sensors = ", ".join(f"`{channel.name}` ({channel.place}, {channel.axis})" for channel in channels(config))
-    records = counted(rows, "labelled acceleration record")
+    records = counted(rows, f"labelled {quantities_text(config)} record")
     return f"""# {config.name}
 
 {records} of a simulated spur gear pair, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
-Channels: {sensors}, in m/s^2. Every record is simulated from its own gearbox, state, speed, load and noise;
+Channels: {channels_text(config)}. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """
 
@@ -186,7 +185,7 @@ def _columns(title: str, schema: pa.Schema) -> str:
     lines = [f"## {title}", "", "| column | type | unit | meaning |", "|---|---|---|---|"]
     for field in schema:
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
-        meaning = facts.get("meaning") or f"acceleration at {facts['place']}, {facts['axis']}, {facts['fs_hz']} Hz"
+        meaning = facts.get("meaning") or "{quantity} at {place}, {axis}, {fs_hz} Hz".format(**facts)
         lines.append(f"| `{field.name}` | {_type_name(field.type)} | {facts.get('unit', '')} | {meaning} |")
     return "\n".join([*lines, ""])
 

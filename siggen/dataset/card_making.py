@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from siggen.columns.record import channels
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -108,13 +109,13 @@ def _dynamics_text(config: Config) -> str:
         mesh = "a mesh of single tooth pairs with backlash, stiffness, tip relief and damping"
     return (
         f"A lumped gearbox (`{config.dynamics.model}`): motor, load, shafts, bearings, and {mesh}. "
-        f"{across_text(config)}{friction_text(config)} {drive_text(config)} Bearing accelerations are low-pass "
-        f"filtered before they are sampled. {integration_text(config)}"
+        f"{across_text(config)}{friction_text(config)} {drive_text(config)} What sensors see is low-pass "
+        f"filtered before it is sampled. {integration_text(config)}"
     )
 
 
 def stated_tolerance(config: Config) -> float | None:
-    """Return the error of the delivered acceleration (relative rms) that a set states, or None if it states none."""
+    """Return the error of the delivered signals (relative rms) that a set states, or None if it states none."""
     return config.dynamics.integration_tolerance if config.dynamics.method == "exponential" else None
 
 
@@ -124,7 +125,7 @@ def integration_text(config: Config) -> str:
     if tolerance is None:
         return f"{head}, {counted(config.dynamics.steps_per_sample, 'step')} per sample; no error is stated for it."
     return (
-        f"{head}, with steps for a relative rms error of {tolerance:g} in the delivered acceleration, the same for all "
+        f"{head}, with steps for a relative rms error of {tolerance:g} in the delivered signals, the same for all "
         "states of a gearbox; `siggen verify --physics` measures it."
     )
 
@@ -133,8 +134,27 @@ def _sensing_text(config: Config) -> str:
     return (
         f"{_path_text(config)}{force_noise_text(config)}{background_text(config)}Gain, noise, clipping at the sensor's "
         "range, and rounding to the converter's step, which is a power of two and therefore exact in float32 (each "
-        "sensor's noise and bits are in `config.yaml`)."
+        "sensor's noise and bits are in `config.yaml`)." + "".join(f" {acts}" for acts in _acts(config))
     )
+
+
+def _acts(config: Config) -> list[str]:
+    """Say how kinds of sensors read the model that need saying."""
+    return list(dict.fromkeys(sensor.acts for sensor in config.sensors if sensor.acts))
+
+
+def quantities_text(config: Config) -> str:
+    """Return what the channels of a set hold."""
+    words = list(dict.fromkeys(channel.quantity for channel in channels(config)))
+    return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
+
+
+def channels_text(config: Config) -> str:
+    """Return the channels with their places, by unit."""
+    by_unit: dict[str, list[str]] = {}
+    for channel in channels(config):
+        by_unit.setdefault(channel.unit, []).append(f"`{channel.name}` ({channel.place}, {channel.axis})")
+    return "; ".join(f"{', '.join(named)}, in {unit}" for unit, named in by_unit.items())
 
 
 def across_text(config: Config) -> str:
@@ -165,7 +185,7 @@ def drive_text(config: Config) -> str:
 
 def _path_text(config: Config) -> str:
     """Say how vibrations come to the sensors, if any of them stands behind a transfer path."""
-    kinds = sorted({sensor.path.kind for sensor in config.sensors if sensor.path is not None})
+    kinds = sorted({sensor.through.kind for sensor in config.sensors if sensor.through is not None})
     if not kinds:
         return ""
     behind = " or ".join(BEHIND[kind] for kind in kinds)
@@ -173,7 +193,7 @@ def _path_text(config: Config) -> str:
 
 
 def _sensors(config: Config) -> str:
-    through = [sensor.name for sensor in config.sensors if sensor.path is not None]
+    through = [sensor.name for sensor in config.sensors if sensor.through is not None]
     if len(through) == len(config.sensors):
         return "the sensors"
     return f"{counted(len(through), 'sensor')} of {len(config.sensors)}"
@@ -181,7 +201,7 @@ def _sensors(config: Config) -> str:
 
 def force_noise_text(config: Config) -> str:
     """Say whether the bearing forces carry noise on their way to the sensors."""
-    has_path = any(sensor.path is not None for sensor in config.sensors)
+    has_path = any(sensor.through is not None for sensor in config.sensors)
     if config.housing is None or config.housing.force_noise is None or not has_path:
         return ""
     return "Broad-band noise is added to the bearing forces (`housing.force_noise`). "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -11,6 +11,9 @@ from siggen.keys.wording import AllowedText
 
 class Section(BaseModel):
     """A mapping of the YAML file; keys are the attributes."""
+
+    understood_kind: ClassVar[bool] = False
+    """Whether its `kind` is what the same section without one is; then it counts in no identity."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from siggen.columns.record import BEFORE_QUANTITIES
 from siggen.publication.publication_facts import PublicationFacts
 
 CONTEXT: dict[str, Any] = {
@@ -122,7 +123,8 @@ def _records(view: str, schema: pa.Schema) -> dict[str, Any]:
 
 def _field(view: str, field: pa.Field) -> dict[str, Any]:
     facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
-    meaning = facts.get("meaning") or f"acceleration at {facts.get('place', '')}, {facts.get('axis', '')}"
+    quantity = facts.get("quantity", BEFORE_QUANTITIES)
+    meaning = facts.get("meaning") or f"{quantity} at {facts.get('place', '')}, {facts.get('axis', '')}"
     unit = f" [{facts['unit']}]" if facts.get("unit") else ""
     return {
         "@type": "cr:Field",

@@ -98,6 +98,8 @@ def _assay(
     files: Sequence[str],
 ) -> dict[str, Any]:
     where = f"{state.name}/{channel['name']}"
+    sensor = next(one for one in config.sensors if channel["name"] in dict(one.channels))
+    measurement = sensor.quantity.measurement or sensor.quantity.word
     outputs = [f"#data_file/{where}/{file}" for file in files]
     values: dict[str, dict[str, Any]] = {
         "sampling_rate": {"value": float(config.fs_hz), **_unit("Hz")},
@@ -111,8 +113,8 @@ def _assay(
     process = _process(f"measurement/{where}", "measurement", [one["@id"] for one in samples], outputs, parameters)
     return {
         "filename": f"a_{state.name}_{channel['name']}.txt",
-        "measurementType": _term("measurement/vibration", "vibration"),
-        "technologyType": _term("technology/accelerometer", "simulated accelerometer"),
+        "measurementType": _term(f"measurement/{measurement.replace(' ', '_')}", measurement),
+        "technologyType": _term(f"technology/{sensor.noun.replace(' ', '_')}", f"simulated {sensor.noun}"),
         "technologyPlatform": "siggen",
         "comments": [_comment("sensor alias", channel["name"])],
         "characteristicCategories": [],

@@ -22,7 +22,7 @@ def physics_section(config: Config) -> str:
 
 def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     dynamics, mesh, made = config.dynamics, config.dynamics.mesh, config.manufacture
-    paths = [sensor for sensor in config.sensors if sensor.path is not None]
+    paths = [sensor for sensor in config.sensors if sensor.through is not None]
     housing = config.housing
     yield (
         "manufacturing errors of the teeth",

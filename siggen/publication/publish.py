@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from siggen.config.path import MeasuredPath
 from siggen.dataset.card import faults_text, tags
+from siggen.dataset.card_making import quantities_text
 from siggen.dataset.manifest import CARD, INJECTED, MANIFEST
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
@@ -94,7 +94,7 @@ def publication(
 
 def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool) -> None:
     """Refuse a set whose configuration holds what was fitted to recordings, unless its owner says so."""
-    fitted = [s.name for s in config.sensors if s.lines or (isinstance(s.path, MeasuredPath) and s.path.is_family)]
+    fitted = [s.name for s in config.sensors if s.fitted]
     if fitted and not with_recordings:
         raise UsageError(
             f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; --with-recordings publishes them"
@@ -174,8 +174,9 @@ def _texts(
     dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None, size: int
 ) -> dict[str, bytes]:
     rows = dataset.inventory.rows
+    records = counted(rows, f"labelled {quantities_text(config)} record")
     description = (
-        f"{counted(rows, 'labelled acceleration record')} of a simulated spur gear pair, {faults_text(config)}, "
+        f"{records} of a simulated spur gear pair, {faults_text(config)}, "
         f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "
         "Computed by siggen, not measured."
     )

@@ -20,6 +20,7 @@ from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, course_at
 from siggen.record.force_floor import bearing_strength, floor_levels, random_levels
 from siggen.record.rubbing import RubbingForce
+from siggen.sensing.inputs import BACKGROUND, FLOOR, Input
 from siggen.specimen.background import AXES, FLOOR_INPUTS, SpecimenBackground
 from siggen.specimen.background_numbers import (
     FOREIGN_LINES,
@@ -29,7 +30,6 @@ from siggen.specimen.background_numbers import (
     ShaftNumbers,
     background_numbers,
 )
-from siggen.specimen.block_responses import BACKGROUND, FLOOR, Input
 
 
 class BackgroundBlocks:

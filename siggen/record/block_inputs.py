@@ -14,12 +14,12 @@ from siggen.planning.specimen import Specimen
 from siggen.record.background import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks
 from siggen.sensing.block_filter import AHEAD, TOGETHER
-from siggen.specimen.block_responses import MOTION, BlockResponses, Input, block_responses
+from siggen.specimen.block_responses import BlockResponses, block_responses
 from siggen.specimen.instrument import Instrument, instrument_ways
 
 
 class BlockInputs:
-    """Inputs of one record, and the accelerations that its channels see of them."""
+    """Inputs of one record, and what its channels see of them."""
 
     def __init__(
         self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument
@@ -34,7 +34,7 @@ class BlockInputs:
             self._background = BackgroundBlocks(config, specimen, record, background, -back, length)
             if background.section.redraw == "record":
                 self._filters = _with_floor(instrument, self._background).filters
-        self._plain = {c.name: Input(MOTION, next(iter(c.motions))) for c in instrument.channels if c.is_plain}
+        self._plain = {c.name: next(iter(c.seen)) for c in instrument.channels if c.is_plain}
         felt = dict.fromkeys(one for filters in self._filters.values() for one in filters)
         seen = tuple(dict.fromkeys([*felt, *self._plain.values()]))
         self._felt, self._values = tuple(felt), np.zeros((len(seen), self._grid.length))
@@ -46,7 +46,7 @@ class BlockInputs:
         return {**self._motions.labels, **({} if self._background is None else self._background.labels)}
 
     def seen(self) -> Iterator[dict[str, FloatArray]]:
-        """Yield channel -> acceleration (k,) before its gain, block after block."""
+        """Yield channel -> its quantity (k,) before its gain, block after block."""
         block, back = self._grid.block, self._grid.back
         for first in range(0, self._samples, block):
             count = min(block, self._samples - first)

@@ -13,12 +13,12 @@ from siggen.arrays import FloatArray
 from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.response_stream import Pieces
+from siggen.noise.source import NoisyChannel
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
-from siggen.record.disturbance import ChannelDisturbance, NoiseLength
-from siggen.record.measured_disturbance import Turning
+from siggen.record.disturbance import ChannelDisturbance
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.specimen.drive import record_rotation, start_angle_rad
@@ -29,7 +29,7 @@ from siggen.specimen.instrument import Instrument, specimen_instrument
 def measured_channels(
     config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, instrument: Instrument | None = None
 ) -> tuple[dict[str, np.ndarray], dict[str, object]]:
-    """Return channel name -> float32 signal (n,) in m/s^2, and the labels of all channels.
+    """Return channel name -> float32 signal (n,) in its unit, and the labels of all channels.
 
     Every channel has its own generators, so that adding a sensor leaves the others as they were. `instrument` is that
     of the specimen, if it is there already. A stream is stepped here, piece after piece.
@@ -57,7 +57,7 @@ def measured_channels(
     signals: dict[str, np.ndarray] = {}
     for channel in instrument.channels:
         measured = recorders[channel.name].measurement()
-        signals[channel.name] = measured.accel_m_s2
+        signals[channel.name] = measured.values
         labels |= {**channel_labels(channel, measured), **disturbances[channel.name].labels}
     return signals, {**labels, **inputs.labels}
 
@@ -72,18 +72,26 @@ def _disturbances(
 ) -> dict[str, ChannelDisturbance]:
     """Return channel -> what is added to it; its recorder learns its noise and its converter."""
     largest = _largest_step_rad(config, rotation)
-    turning = Turning(specimen.gears.pinion.teeth / specimen.gears.gear.teeth, largest)
-    noise_length = NoiseLength(instrument.length, config.fs_hz)
+    gear_order = specimen.gears.pinion.teeth / specimen.gears.gear.teeth
     found = {}
     for channel in instrument.channels:
         draws = channel_draws(config, record, channel.name)
-        found[channel.name] = ChannelDisturbance(channel, draws, turning, noise_length)
+        about = NoisyChannel(
+            gain=channel.gain,
+            response=channel.sensor_response,
+            coupling_hz=channel.high_pass_hz,
+            fs_hz=config.fs_hz,
+            length=instrument.length,
+            gear_order=gear_order,
+            largest_step_rad=largest,
+        )
+        found[channel.name] = ChannelDisturbance(channel, about, draws)
         rng, floor = white_noise(config, record, channel, draws)
         recorders[channel.name].finish(
-            range_m_s2=channel.sensor.range_m_s2,
+            limit=channel.sensor.limit,
             bits=channel.sensor.bits,
             rng=rng,
-            noise_floor_m_s2=floor,
+            noise_floor=floor,
         )
     return found
 
@@ -99,7 +107,7 @@ def _angle_rad(rotation: Rotation, fs_hz: float, first: int, count: int) -> Floa
 
 def _largest_step_rad(config: Config, rotation: Rotation) -> float:
     """Return how far the pinion turns in a sample at most; 0 where nobody asks."""
-    if all(sensor.lines is None for sensor in config.sensors):
+    if not any(source.asks_largest_step for sensor in config.sensors for source in sensor.sources):
         return 0.0
     steps = (
         np.diff(_angle_rad(rotation, config.fs_hz, first, min(BLOCK_SAMPLES, config.samples - first) + 1)).max()

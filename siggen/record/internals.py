@@ -8,6 +8,7 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import available_quantities, quantity_problems
 from siggen.columns.column import Column
+from siggen.columns.record import channel_metadata, channels
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
@@ -41,7 +42,7 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
     columns: dict[str, np.ndarray] = {
         "time_s": np.arange(config.samples) / config.fs_hz,
         "angle_rad": response.angle_rad,
-        **{f"accel_{channel}_m_s2": signal for channel, signal in stored.items()},
+        **{channel.column: stored[channel.name] for channel in channels(own)},
         **(internal_quantities(specimen, response) if internals else {}),
     }
     facts = {
@@ -52,7 +53,9 @@ def internals_table(config: Config, record_id: int, *, internals: bool = True) -
         "torque_nm": repr(point.torque_nm),
         "fs_hz": repr(config.fs_hz),
     }
-    return pa.table(columns).replace_schema_metadata(facts)
+    own_facts = {channel.column: channel_metadata(channel, own.fs_hz) for channel in channels(own)}
+    fields = [field.with_metadata(own_facts.get(field.name)) for field in pa.table(columns).schema]
+    return pa.table(columns, pa.schema(fields, metadata=facts))
 
 
 def record_internals(

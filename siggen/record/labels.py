@@ -59,7 +59,7 @@ def damage_labels(
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
     """Return what a gearbox draws as a whole: pair, oil, casing, places of sensors; nothing that all share."""
     oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
-    positions = {i: sensor.position_mm or () for i, sensor in enumerate(specimen.sensors)}
+    positions = {i: sensor.place_on_casing_mm for i, sensor in enumerate(specimen.sensors)}
     places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
     return {**_pair_labels(config, specimen), **oil, **_casing_labels(config, specimen), **places}
 

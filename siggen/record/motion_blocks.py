@@ -10,8 +10,8 @@ from siggen.dynamics.time.response_stream import Pieces
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.forces import DrawnForceNoise, force_generator, force_noise
+from siggen.sensing.inputs import FORCE, MOTION, Input
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.block_responses import FORCE, MOTION, Input
 
 ROLL_OFF_TAPS = 1024
 """Of the filter of force noise that rolls off."""

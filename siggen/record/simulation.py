@@ -30,12 +30,13 @@ from siggen.record.quantities import is_asked_for
 from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
+from siggen.sensors.sensor import needs_forces
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
 from siggen.specimen.errors import SpecimenErrors, error_labels
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
-from siggen.specimen.instrument import Instrument, history_s, needs_forces, settle_s, specimen_instrument
+from siggen.specimen.instrument import Instrument, history_s, settle_s, specimen_instrument
 from siggen.specimen.integration import time_grid
 from siggen.specimen.made_gears import MadeGears
 from siggen.specimen.motion import SpecimenMesh, specimen_motion
@@ -184,7 +185,7 @@ def _stream(
             motion,
             driven.rotation,
             SampleGrid(config.fs_hz, config.samples, steps),
-            wanted=Wanted(internals, internals or needs_forces(config), motions),
+            wanted=Wanted(internals, internals or needs_forces(config.sensors), motions),
             excitation=driven.excitation,
             settle_s=_settle_s(config, motion),
             history_s=history_s(config),

@@ -1,4 +1,4 @@
-"""Measurement: what a data logger stores of an acceleration: gain, white noise, clipping, quantisation.
+"""Measurement: what a data logger stores of a quantity, in its unit: gain, white noise, clipping, quantisation.
 
 Model: standard measurement chain (reference: standard literature); the power-of-two step is derived: it makes every
 stored value an exact float32.
@@ -22,28 +22,26 @@ class Measurement:
 
     Attributes
     ----------
-    accel_m_s2 : (n,) float32, read-only; exactly on the grid of `step_m_s2` if quantised
-    noise_floor_m_s2 : standard deviation of the added noise
+    values : (n,) float32, read-only; exactly on the grid of `step` if quantised
+    noise_floor : standard deviation of the added noise
     snr_db : rms of the amplified signal about its mean over the noise floor; inf without noise, -inf without signal
     clipped_share : share of samples that were beyond the range
-    step_m_s2 : quantisation step, 0 without quantisation
+    step : quantisation step, 0 without quantisation
     """
 
-    accel_m_s2: NDArray[np.float32]
-    noise_floor_m_s2: float
+    values: NDArray[np.float32]
+    noise_floor: float
     snr_db: float
     clipped_share: float
-    step_m_s2: float
+    step: float
 
 
-def converted(
-    analogue_m_s2: NDArray[np.float64], range_m_s2: float, bits: int | None
-) -> tuple[NDArray[np.float32], int, float]:
+def converted(analogue: NDArray[np.float64], limit: float, bits: int | None) -> tuple[NDArray[np.float32], int, float]:
     """Return what a converter stores (n,), how many values were clipped, and its step, 0 without quantisation."""
-    step = 0.0 if bits is None else power_of_two_from(2.0 * range_m_s2 / 2.0**bits)
-    limit = math.floor(range_m_s2 / step) * step if step else range_m_s2
-    clipped = int((np.abs(analogue_m_s2) > limit).sum())
-    kept = np.clip(analogue_m_s2, -limit, limit)
+    step = 0.0 if bits is None else power_of_two_from(2.0 * limit / 2.0**bits)
+    on_grid = math.floor(limit / step) * step if step else limit
+    clipped = int((np.abs(analogue) > on_grid).sum())
+    kept = np.clip(analogue, -on_grid, on_grid)
     return (np.round(kept / step) * step if step else kept).astype(np.float32), clipped, step
 
 

@@ -10,14 +10,14 @@ from siggen.sensing.spread import Spread
 
 
 class Recorder:
-    """Takes the acceleration of a channel in order and keeps it behind the gain as float32, 6e-8 of its size."""
+    """Takes the quantity of a channel in order and keeps it behind the gain as float32, 6e-8 of its size."""
 
     def __init__(self, samples: int, gain: float) -> None:
         self._kept = np.empty(samples, dtype=np.float32)
         self._gain, self._done = gain, 0
         self._spread = Spread()
 
-    def take(self, block_m_s2: FloatArray) -> None:
+    def take(self, block: FloatArray) -> None:
         """Take the next samples.
 
         Raises
@@ -25,9 +25,9 @@ class Recorder:
         ValueError
             If they are not finite.
         """
-        if not np.isfinite(block_m_s2).all():
-            raise ValueError("block_m_s2: received values that are not finite; allowed are finite accelerations")
-        amplified = self._gain * block_m_s2
+        if not np.isfinite(block).all():
+            raise ValueError("block: received values that are not finite; allowed are finite values")
+        amplified = self._gain * block
         self._kept[self._done : self._done + amplified.size] = amplified
         self._done += amplified.size
         self._spread.take(amplified)
@@ -35,26 +35,26 @@ class Recorder:
     def finish(
         self,
         *,
-        range_m_s2: float,
+        limit: float,
         bits: int | None,
         rng: np.random.Generator,
-        noise_floor_m_s2: float | None,
+        noise_floor: float | None,
     ) -> None:
         """Begin to convert what was taken; arguments as those of `measurement.measure`."""
-        self._range_m_s2, self._bits, self._rng = range_m_s2, bits, rng
+        self._limit, self._bits, self._rng = limit, bits, rng
         self._rms = self._spread.std
-        self._floor = noise_floor_m_s2
+        self._floor = noise_floor
         self._clipped, self._step, self._done = 0, 0.0, 0
 
-    def convert(self, count: int, added_m_s2: FloatArray | None) -> None:
+    def convert(self, count: int, added: FloatArray | None) -> None:
         """Convert the next samples with their white noise and what is added behind the gain (count,)."""
         part = self._kept[self._done : self._done + count]
         noisy = part.astype(np.float64)
         if self._floor is not None:
             noisy += self._floor * self._rng.standard_normal(count)
-        if added_m_s2 is not None:
-            noisy += added_m_s2
-        part[:], clipped, self._step = converted(noisy, self._range_m_s2, self._bits)
+        if added is not None:
+            noisy += added
+        part[:], clipped, self._step = converted(noisy, self._limit, self._bits)
         self._clipped += clipped
         self._done += count
 

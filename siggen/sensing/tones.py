@@ -21,33 +21,33 @@ class Lines:
     """Sinusoids a cos(2π f t + φ); arrays are (lines,)."""
 
     frequency_hz: FloatArray
-    amplitude_m_s2: FloatArray
+    amplitude: FloatArray
     phase_rad: FloatArray
 
     @property
-    def rms_m_s2(self) -> float:
+    def rms(self) -> float:
         """Root mean square of all lines together, of different frequencies."""
-        return float(np.sqrt(0.5 * (self.amplitude_m_s2**2).sum()))
+        return float(np.sqrt(0.5 * (self.amplitude**2).sum()))
 
 
-def harmonic_lines(fundamental_hz: float, amplitude_m_s2: float, harmonics: int, rng: np.random.Generator) -> Lines:
+def harmonic_lines(fundamental_hz: float, amplitude: float, harmonics: int, rng: np.random.Generator) -> Lines:
     """Return harmonics 1.. of amplitude 1/h, with random phases."""
     order = np.arange(1.0, harmonics + 1.0)
-    return Lines(fundamental_hz * order, amplitude_m_s2 / order, _phases(harmonics, rng))
+    return Lines(fundamental_hz * order, amplitude / order, _phases(harmonics, rng))
 
 
 def carrier_lines(
-    carrier_hz: float, modulation_hz: float, amplitude_m_s2: float, sidebands: int, rng: np.random.Generator
+    carrier_hz: float, modulation_hz: float, amplitude: float, sidebands: int, rng: np.random.Generator
 ) -> Lines:
     """Return a carrier with sidebands ±2 k modulation_hz of amplitude 1/(1 + k), with random phases."""
     order = np.arange(-sidebands, sidebands + 1.0)
     frequency = carrier_hz + 2.0 * modulation_hz * order
-    return Lines(np.abs(frequency), amplitude_m_s2 / (1.0 + np.abs(order)), _phases(order.size, rng))
+    return Lines(np.abs(frequency), amplitude / (1.0 + np.abs(order)), _phases(order.size, rng))
 
 
-def single_lines(frequency_hz: FloatArray, amplitude_m_s2: FloatArray, rng: np.random.Generator) -> Lines:
+def single_lines(frequency_hz: FloatArray, amplitude: FloatArray, rng: np.random.Generator) -> Lines:
     """Return tones with random phases."""
-    return Lines(frequency_hz, amplitude_m_s2, _phases(frequency_hz.size, rng))
+    return Lines(frequency_hz, amplitude, _phases(frequency_hz.size, rng))
 
 
 def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: int, first: int = 0) -> FloatArray:
@@ -56,7 +56,7 @@ def lines_signal(lines: Lines, response: ComplexArray, fs_hz: float, samples: in
     Lines from half the sampling rate on are left out, as the anti-aliasing filter of a recorder does.
     """
     signal = np.zeros(samples)
-    phasors = lines.amplitude_m_s2 * np.exp(1j * lines.phase_rad) * response
+    phasors = lines.amplitude * np.exp(1j * lines.phase_rad) * response
     for frequency, phasor in zip(lines.frequency_hz, phasors, strict=True):
         if frequency < 0.5 * fs_hz:
             step_rad = 2.0 * np.pi * frequency / fs_hz

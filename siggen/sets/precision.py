@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from siggen.columns.record import signal_column
+from siggen.columns.record import channels
 from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk, ChunkSimulation
 from siggen.dataset.manifest import PHYSICS, read_manifest
@@ -165,9 +165,9 @@ def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[
 def record_error(config: Config, delivered: Mapping[str, Any], again: Mapping[str, Any]) -> float:
     """Return the relative rms difference of the worst channel."""
     worst = 0.0
-    for channel in config.channels:
-        wanted = again[signal_column(channel)].astype(float)
-        apart = delivered[signal_column(channel)].astype(float) - wanted
+    for channel in channels(config):
+        wanted = again[channel.column].astype(float)
+        apart = delivered[channel.column].astype(float) - wanted
         worst = max(worst, float(np.sqrt(np.mean(apart**2) / max(np.mean(wanted**2), np.finfo(float).tiny))))
     return worst
 
@@ -186,7 +186,7 @@ def precision_lines(found: Precision) -> list[str]:
     stated = "none stated" if found.tolerance is None else f"tolerance {found.tolerance:g}"
     lines = [
         f"{len(found.records)} records integrated again ({found.reference}); "
-        f"relative rms error of the delivered acceleration before the converter, worst channel ({stated}):"
+        f"relative rms error of the delivered signals before the converter, worst channel ({stated}):"
     ]
     lines += [f"  {'state':<{width}}  records   median  largest"]
     lines += [f"  {s.state:<{width}}  {s.records:7d}  {s.median:7.1e}  {s.largest:7.1e}" for s in found.states]

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from siggen.columns.record import signal_column
 from siggen.dataset.chunk import ChunkResult
 from siggen.dataset.reading import as_internals, as_record
 from siggen.errors import counted
@@ -35,7 +34,7 @@ def result_difference(
 
 def difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, Any], *, exact: bool) -> str:
     """Return in what two versions of a record differ, or an empty string."""
-    steps = {} if exact else _steps_m_s2(config)
+    steps = {} if exact else _steps(config)
     if stored.keys() != again.keys():
         return f"it has other columns: {', '.join(sorted(stored.keys() ^ again.keys()))[:80]}"
     for name, before in stored.items():
@@ -76,13 +75,13 @@ def _same_label(before: object, now: object, *, exact: bool) -> bool:
     return before == now or abs(before - now) <= LABEL_TOLERANCE * max(1.0, abs(before))
 
 
-def _steps_m_s2(config: Config) -> dict[str, float]:
+def _steps(config: Config) -> dict[str, float]:
     """Return the converter's step of every signal column; without one, the rounding of float32 at full range."""
     from siggen.sensing.measurement import power_of_two_from
 
     steps: dict[str, float] = {}
     for sensor in config.sensors:
         bits = 24 if sensor.bits is None else sensor.bits
-        step = power_of_two_from(2.0 * sensor.range_m_s2 / 2.0**bits)
-        steps |= {signal_column(f"{sensor.name}_{axis}"): step for axis in sensor.axes}
+        step = power_of_two_from(2.0 * sensor.limit / 2.0**bits)
+        steps |= {sensor.quantity.column(name): step for name, _ in sensor.channels}
     return steps

@@ -26,6 +26,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
+from siggen.sensing.inputs import FORCE, MOTION, Input
 from siggen.specimen.background_numbers import (
     MESH_STIFFNESS_N_PER_UM_MM,
     BackgroundNumbers,
@@ -85,7 +86,7 @@ def specimen_background(
     config: Config,
     specimen: Specimen,
     section: BackgroundNumbers,
-    channels: Mapping[str, tuple[Mapping[str, float], ComplexArray | None, ComplexArray | None]],
+    channels: Mapping[str, tuple[Mapping[Input, float], ComplexArray | None, ComplexArray | None]],
     frequency_hz: FloatArray,
 ) -> SpecimenBackground:
     """Return the background of a specimen; the same for all of its states, operating points and repeats.
@@ -93,7 +94,7 @@ def specimen_background(
     Parameters
     ----------
     section : drawn
-    channels : name -> motions it sees with their weights, accelerances (bearing forces, k) and (ENTRIES, k), or None
+    channels : name -> what of the model it shows, accelerances (bearing forces, k) and (ENTRIES, k), or None
     frequency_hz : (k,)
     """
     pair = gear_pair(specimen.gears)
@@ -107,16 +108,16 @@ def specimen_background(
     shafts = _shafts(config.background, uniform)
     if not directions:
         return SpecimenBackground(section, shafts, (), {})
-    seen = tuple(dict.fromkeys(motion for motions, _, _ in channels.values() for motion in motions))
+    seen = tuple(dict.fromkeys(motion for shown, _, _ in channels.values() for motion in _motions(shown)))
     mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
     names, rows = tuple(directions), np.array(list(directions.values()))
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
     for first in range(0, frequency_hz.size, BLOCK):
         block = slice(first, first + BLOCK)
         forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block])
-        for name, (motions, *paths) in channels.items():
+        for name, (shown, *paths) in channels.items():
             own = (None if path is None else path[:, block] for path in paths)
-            responses[name][:, block] = _response(names, forced, motions, *own)
+            responses[name][:, block] = _response(names, forced, shown, *own)
     return SpecimenBackground(section, shafts, names, responses)
 
 
@@ -213,17 +214,21 @@ def _stand(assembled: Structure, shaft: str) -> FloatArray:
     return _on_base(assembled) if "x_b" in assembled.coordinates else _on_rotor(assembled, shaft)
 
 
+def _motions(shown: Mapping[Input, float]) -> tuple[str, ...]:
+    return tuple(one.name for one in shown if one.kind == MOTION)
+
+
 def _response(
     inputs: tuple[str, ...],
     forced: ForcedMotion,
-    motions: Mapping[str, float],
+    shown: Mapping[Input, float],
     accelerance: ComplexArray | None,
     entries: ComplexArray | None,
 ) -> ComplexArray:
     """Return the response (inputs, k) of one channel."""
     total = np.zeros_like(next(iter(forced.bearing_force.values())))
-    for motion, weight in motions.items():
-        total += weight * forced.acceleration[motion]
+    for one, weight in shown.items():
+        total += weight * (forced.bearing_force if one.kind == FORCE else forced.acceleration)[one.name]
     if accelerance is not None:
         for name, row in zip(INPUTS, accelerance, strict=True):
             total += row * forced.bearing_force[name]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,18 +12,10 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.keys.number import constant
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, limited
 from siggen.sensing.force_density import rising_floor, tabulated
+from siggen.sensing.inputs import Input
 from siggen.sensing.shaped_noise import FINER, least_phase
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background_numbers import FloorNumbers
-
-MOTION, FORCE, BACKGROUND, FLOOR = "motion", "force", "background", "floor"
-
-
-class Input(NamedTuple):
-    """What reaches channels: a motion of the model, a bearing force, a force or floor noise of the background."""
-
-    kind: str
-    name: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,6 @@ from siggen.keys.number import at
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modal_path import HousingModes, housing_modes, mode_shape
 
-DIRECTIONS = ("vertical", "horizontal", "axial")
-"""Directions along which a sensor on the casing may look."""
-
 
 @dataclass(frozen=True, slots=True)
 class SpecimenHousing:

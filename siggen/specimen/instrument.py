@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
-from math import cos, pi, sin
+from math import pi
 
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, MeasuredPath, ModalPath, Resonance, Sensor
+from siggen.config import Config, MeasuredPath, ModalPath, Sensor
 from siggen.dynamics.time.decimation import PASS_EDGE
-from siggen.keys.number import Number, at, constant
+from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BlockGrid, block_grid
+from siggen.sensing.inputs import BACKGROUND, FLOOR, FORCE, MOTION, Input
 from siggen.sensing.modal_path import modal_accelerance, modal_shares
-from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensing.spectral_filter import frequencies
+from siggen.sensors.sensor import AxisDraws
 from siggen.specimen.background import (
     ENTRIES,
     FLOOR_INPUTS,
@@ -28,17 +29,8 @@ from siggen.specimen.background import (
     specimen_background,
 )
 from siggen.specimen.background_numbers import FloorNumbers
-from siggen.specimen.block_responses import (
-    BACKGROUND,
-    FLOOR,
-    FORCE,
-    MOTION,
-    BlockResponses,
-    Input,
-    block_responses,
-    floor_response,
-)
-from siggen.specimen.housing import DIRECTIONS, SpecimenHousing, specimen_housing
+from siggen.specimen.block_responses import BlockResponses, block_responses, floor_response
+from siggen.specimen.housing import SpecimenHousing, specimen_housing
 from siggen.specimen.measured_path import INPUTS, decoded_response
 
 CHAIN_HISTORY_S = 0.02
@@ -54,9 +46,9 @@ class ChannelInstrument:
     Attributes
     ----------
     name, sensor, gain : of the channel
-    motions : place/axis of the model's motion -> factor on it; several with cross-axis sensitivity
+    seen : what of the model it shows -> factor on it; several with cross-axis sensitivity
     accelerance : (inputs, k) m/s² per N from the bearing forces, before the sensor; None without a path
-    sensor_response : (k,) of mounting, sensor and coupling, high_pass: (k,) of the coupling alone; None without
+    sensor_response : (k,) of mounting, sensor and coupling; None without
     path_modes, path_rms_m_s2_per_n : number of modes, and rms accelerance over inputs and band; 0 without a path
     path_number : which of several measured paths
     high_pass_hz : corner of the coupling, None without
@@ -65,10 +57,9 @@ class ChannelInstrument:
     name: str
     sensor: Sensor
     gain: float
-    motions: Mapping[str, float]
+    seen: Mapping[Input, float]
     accelerance: ComplexArray | None
     sensor_response: ComplexArray | None
-    high_pass: ComplexArray | None
     path_modes: int
     path_rms_m_s2_per_n: float
     path_number: int = 0
@@ -76,8 +67,13 @@ class ChannelInstrument:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it stores the motion of the model as it is."""
-        return self.accelerance is None and self.sensor_response is None and len(self.motions) == 1
+        """Whether it stores one quantity of the model as it is."""
+        return self.accelerance is None and self.sensor_response is None and [*self.seen.values()] == [1.0]
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """Names of the model's motions that it shows."""
+        return tuple(one.name for one in self.seen if one.kind == MOTION)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +101,6 @@ def history_s(config: Config) -> float:
     return max(settle_s(config), CHAIN_HISTORY_S)
 
 
-def needs_forces(config: Config) -> bool:
-    """Return whether a sensor has a path."""
-    return any(sensor.path is not None for sensor in config.sensors)
-
-
 def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
     section = drawn_background(config, specimen.specimen_id)
@@ -122,13 +113,12 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     paths = _paths(specimen, housing, grid)
     channels = []
     for sensor in specimen.sensors:
-        gains = sensor.gain if isinstance(sensor.gain, tuple) else (sensor.gain,) * len(sensor.axes)
-        for axis, gain in zip(sensor.axes, gains, strict=True):
-            draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
+        for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
+            draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}")
             channels.append(_channel(sensor, axis, constant(gain), draw, paths))
     background = None
     if section is not None:
-        ways = {c.name: (c.motions, c.accelerance, _entries(c, uniform, paths)) for c in channels}
+        ways = {c.name: (c.seen, c.accelerance, _entries(c, uniform, paths)) for c in channels}
         del paths  # as large as the responses of a channel
         background = specimen_background(config, specimen, section, ways, grid)
     found = Instrument(blocks.memory, config.fs_hz, tuple(channels), block_responses(blocks, {}), background)
@@ -157,7 +147,7 @@ def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArra
     if sensed is None:
         sensed = np.ones(instrument.length // 2 + 1, dtype=np.complex128)
     if not channel.is_plain:
-        ways |= {Input(MOTION, motion): weight * sensed for motion, weight in channel.motions.items()}
+        ways |= {one: weight * sensed for one, weight in channel.seen.items()}
     if channel.accelerance is not None:
         ways |= {Input(FORCE, n): row * sensed for n, row in zip(INPUTS, channel.accelerance, strict=True)}
     background = instrument.background
@@ -172,17 +162,6 @@ def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArra
 
 
 @dataclass(frozen=True, slots=True)
-class _Draw:
-    """Draws the numbers of one axis by their names."""
-
-    uniform: Callable[[str], float]
-    path: str
-
-    def __call__(self, number: Number, name: str) -> float:
-        return at(number, self.uniform(f"{self.path}.{name}"))
-
-
-@dataclass(frozen=True, slots=True)
 class _Paths:
     """A housing and a grid of frequencies (k,); what the modes do there (modes, k), if all paths share it."""
 
@@ -193,28 +172,26 @@ class _Paths:
 
 def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray) -> _Paths:
     """Return housing and grid, and what the modes do for all paths."""
-    modal = housing is not None and any(isinstance(sensor.path, ModalPath) for sensor in specimen.sensors)
+    modal = housing is not None and any(isinstance(sensor.through, ModalPath) for sensor in specimen.sensors)
     return _Paths(housing, grid, modal_shares(housing.modes, grid) if modal and housing is not None else None)
 
 
-def _channel(sensor: Sensor, axis: str, gain: float, draw: _Draw, paths: _Paths) -> ChannelInstrument:
+def _channel(sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths) -> ChannelInstrument:
     housing, grid = paths.housing, paths.grid
-    weights = _weights(sensor, axis, draw)
     accelerance = None
-    if sensor.path is not None:
+    if sensor.through is not None:
+        weights = sensor.weights(axis, draw)
         one_by_one = (weight * _accelerance(sensor, d, draw, paths) for d, weight in weights.items())
         accelerance = reduce(np.add, one_by_one)
-    seen = {d: w for d, w in weights.items() if sensor.sees_model and d != "axial"}
-    modal = isinstance(sensor.path, ModalPath) and housing is not None
+    modal = isinstance(sensor.through, ModalPath) and housing is not None
     return ChannelInstrument(
         name=f"{sensor.name}_{axis}",
         sensor=sensor,
         gain=gain,
-        motions={f"{sensor.motion_place}/{direction}": weight for direction, weight in seen.items()},
+        seen=sensor.shows(axis, draw),
         accelerance=accelerance,
-        sensor_response=_sensor_response(sensor, draw, grid),
-        high_pass=None if sensor.high_pass_hz is None else _high_pass(sensor, draw, grid),
-        high_pass_hz=None if sensor.high_pass_hz is None else draw(sensor.high_pass_hz, "high_pass_hz"),
+        sensor_response=sensor.response(draw, grid),
+        high_pass_hz=sensor.coupling_hz(draw),
         path_modes=housing.modes.frequency_hz.size if modal and housing is not None else 0,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
         path_number=path_number(sensor, draw.uniform),
@@ -223,26 +200,16 @@ def _channel(sensor: Sensor, axis: str, gain: float, draw: _Draw, paths: _Paths)
 
 def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
     """Return which file of a measured path a gearbox drew, from 0; sensors with as many files have the same."""
-    family = sensor.path.family if isinstance(sensor.path, MeasuredPath) else ()
+    family = sensor.through.family if isinstance(sensor.through, MeasuredPath) else ()
     return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
 
 
-def _weights(sensor: Sensor, axis: str, draw: _Draw) -> dict[str, float]:
-    """Return direction -> sensitivity: 1 along the axis, and what leaks in from across it at a drawn angle."""
-    leak = draw(sensor.cross_axis, "cross_axis")
-    if leak == 0.0:
-        return {axis: 1.0}
-    first, second = (direction for direction in DIRECTIONS if direction != axis)
-    angle = 2.0 * pi * draw.uniform(f"{draw.path}.cross_axis.angle")
-    return {axis: 1.0, first: leak * cos(angle), second: leak * sin(angle)}
-
-
 def _accelerance(
-    sensor: Sensor, direction: str, draw: _Draw, paths: _Paths, inputs: tuple[str, ...] = INPUTS
+    sensor: Sensor, direction: str, draw: AxisDraws, paths: _Paths, inputs: tuple[str, ...] = INPUTS
 ) -> ComplexArray:
     """Return the accelerance (inputs, k) from forces on the housing to one direction at a sensor."""
     housing, grid = paths.housing, paths.grid
-    match sensor.path:
+    match sensor.through:
         case ModalPath() as path if housing is not None:
             shape = housing.at_sensor(sensor, direction)
             found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid, paths.shares)
@@ -255,27 +222,11 @@ def _accelerance(
 def _entries(channel: ChannelInstrument, uniform: Callable[[str], float], paths: _Paths) -> ComplexArray | None:
     """Return the accelerance (entries, k) from what presses on the housing beside the bearings; None without modes."""
     sensor, axis = channel.sensor, channel.name.removeprefix(f"{channel.sensor.name}_")
-    if not isinstance(sensor.path, ModalPath):
+    if not isinstance(sensor.through, ModalPath):
         return None
-    draw = _Draw(uniform, f"sensors.{sensor.name}.{axis}")
-    weights = _weights(sensor, axis, draw)
+    draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}")
+    weights = sensor.weights(axis, draw)
     return reduce(np.add, (w * _accelerance(sensor, d, draw, paths, ENTRIES) for d, w in weights.items()))
-
-
-def _sensor_response(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray | None:
-    resonances = {"mounting": sensor.mounting, "resonance": sensor.resonance}
-    parts = [_resonance(section, draw, name, grid) for name, section in resonances.items() if section is not None]
-    parts += [] if sensor.high_pass_hz is None else [_high_pass(sensor, draw, grid)]
-    return np.prod(parts, axis=0) if parts else None
-
-
-def _resonance(section: Resonance, draw: _Draw, name: str, grid: FloatArray) -> ComplexArray:
-    natural_hz = draw(section.frequency_hz, f"{name}.frequency_hz")
-    return resonance_response(grid, natural_hz, draw(section.damping_ratio, f"{name}.damping_ratio"))
-
-
-def _high_pass(sensor: Sensor, draw: _Draw, grid: FloatArray) -> ComplexArray:
-    return high_pass_response(grid, draw(sensor.high_pass_hz or 0.0, "high_pass_hz"))
 
 
 def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:

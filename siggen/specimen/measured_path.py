@@ -102,9 +102,9 @@ def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if housing is None or fs_hz is None:
         return
     for index, sensor in sections.get("sensors", {}).items():
-        if isinstance(sensor.path, MeasuredPath):
-            for number, text in enumerate(sensor.path.family):
-                keys = (f"file.{number}", f"response.{number}") if sensor.path.is_family else ("file", "response")
+        if isinstance(sensor.through, MeasuredPath):
+            for number, text in enumerate(sensor.through.family):
+                keys = (f"file.{number}", f"response.{number}") if sensor.through.is_family else ("file", "response")
                 file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
                 yield from _text_problems(text, sensor.axes, (fs_hz, housing.settle_s), file, numbers)
 

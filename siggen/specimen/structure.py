@@ -109,7 +109,7 @@ def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sen
             places_m=tuple(_metres(place) for place in bolts.positions_mm),
         ),
         pinion_place_m=(0.5 * pair.working_centre_distance_m, 0.0),
-        sensor_places_m={s.name: _sensor_metres(s.position_mm) for s in sensors if s.position_mm is not None},
+        sensor_places_m={s.name: _sensor_metres(s.place_on_casing_mm) for s in sensors if s.place_on_casing_mm},
     )
 
 

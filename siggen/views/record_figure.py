@@ -40,13 +40,13 @@ def record_figure(record: Mapping[str, Any], channel: Channel, fs_hz: float) -> 
     figure = Figure(figsize=(11.0, 6.5), layout="constrained")
     figure.suptitle(_title(record, channel))
     parts = figure.subfigures(2, 1, squeeze=False)[:, 0]
-    _draw_waveform(parts[0].subplots(), signal, fs_hz)
+    _draw_waveform(parts[0].subplots(), signal, fs_hz, f"{channel.quantity} [{channel.shown_unit}]")
     if harmonics:
         frequency_hz, amplitude = amplitude_spectrum(signal, fs_hz)
         axes = parts[1].subplots(1, len(harmonics), squeeze=False)[0]
         for harmonic, ax in zip(harmonics, axes, strict=True):
             _draw_harmonic(ax, frequency_hz, amplitude, record, harmonic)
-        axes[0].set_ylabel(f"amplitude [{channel.unit.replace('^2', '²')}]")
+        axes[0].set_ylabel(f"amplitude [{channel.shown_unit}]")
         parts[1].legend(*axes[0].get_legend_handles_labels(), frameon=False, loc="outside lower center", ncols=3)
     return figure
 
@@ -63,10 +63,10 @@ def _title(record: Mapping[str, Any], channel: Channel) -> str:
     )
 
 
-def _draw_waveform(ax: Axes, signal: np.ndarray, fs_hz: float) -> None:
+def _draw_waveform(ax: Axes, signal: np.ndarray, fs_hz: float, label: str) -> None:
     ax.plot(np.arange(len(signal)) / fs_hz, signal, lw=0.5)
     ax.set_xlabel("time [s]")
-    ax.set_ylabel("acceleration [m/s²]")
+    ax.set_ylabel(label)
     ax.margins(x=0)
 
 

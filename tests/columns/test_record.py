@@ -47,7 +47,8 @@ def test_signals_are_fixed_size_lists_without_nulls_that_say_what_they_are() -> 
     assert not field.type.value_field.nullable
     assert field.metadata == {
         b"sensor": b"bearing",
-        b"place": b"pinion_bearing", b"axis": b"horizontal", b"unit": b"m/s^2", b"fs_hz": b"5120.0",
+        b"place": b"pinion_bearing", b"axis": b"horizontal", b"quantity": b"acceleration",
+        b"unit": b"m/s^2", b"fs_hz": b"5120.0",
     }  # fmt: skip
     assert not any(f.nullable for f in [*schema, *damage_schema(CONFIG)])
     assert schema.metadata[b"siggen.identity"].decode() == CONFIG.identity

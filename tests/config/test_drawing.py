@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.config import Dynamics, Gears, Sensor
+from siggen.config import Accelerometer, Dynamics, Gears
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Within, bounds
@@ -86,7 +86,7 @@ def test_equal_distributions_of_different_numbers_are_drawn_independently():
 
 
 def test_gain_is_drawn_per_axis_and_noise_is_left_to_the_record():
-    sensor = Sensor.model_validate(
+    sensor = Accelerometer.model_validate(
         {"name": "a", "axes": ["vertical", "horizontal"], "gain": SPREAD, "noise": {"floor_m_s2": SPREAD}}
     )
     gains = sensor.drawn(UNIFORM).gain

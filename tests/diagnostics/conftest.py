@@ -58,7 +58,7 @@ class MemoryDataset:
         return tuple(
             SimpleNamespace(
                 name=name, sensor="bearing", place="pinion_bearing", axis=name.split("_")[1], unit="m/s^2",
-                column=f"accel_{name}_m_s2",
+                column=f"accel_{name}_m_s2", quantity="acceleration", shown_unit="m/s²",
             )
             for name in CHANNELS
         )  # fmt: skip

@@ -15,10 +15,9 @@ from tests.house.source_tree import ROOT, imports, modules
 SIGGEN_ROOMS = (
     "errors", "sources", "seeding", "arrays", "compiled", "lanes", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
-    "faults", "config", "rig", "planning",
-    "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
-    "sensing", "specimen", "checks", "columns", "record", "dataset", "engines", "sets", "views",
-    "publication", "cli",
+    "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time", "sensing",
+    "faults", "noise", "sensors", "config", "rig", "planning", "specimen", "checks", "columns", "record",
+    "dataset", "engines", "sets", "views", "publication", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",

@@ -58,7 +58,7 @@ def test_every_reference_has_its_declaration_in_the_same_study(investigation: di
 def test_ranges_of_a_preset_are_texts_from_the_least_to_the_most(preset: str, tmp_path: Path) -> None:
     config = load_config(ROOT / f"configs/{preset}.yaml")
     facts = read_publication_facts(facts_file(tmp_path))
-    channels = [{"name": "a", "place": "casing", "axis": "vertical", "column": "accel_a_m_s2"}]
+    channels = [{"name": config.channels[0], "place": "casing", "axis": "vertical", "column": "accel_a_m_s2"}]
     found = isa_phm(config, facts, "text", channels, ["data/train-00000.parquet"])
     assert len(found["studies"]) == len(config.states)
     source = found["studies"][0]["materials"]["sources"][0]

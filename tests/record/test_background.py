@@ -22,10 +22,10 @@ from siggen.record.background_course import course_at
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.rubbing import RubbingForce, force_size_n
 from siggen.record.simulation import simulate, simulate_specimen
+from siggen.sensing.inputs import FLOOR
 from siggen.sensing.spectral_filter import frequencies
 from siggen.specimen.background import drawn_background
 from siggen.specimen.background_numbers import RubbingNumbers
-from siggen.specimen.block_responses import FLOOR
 from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.minimal import minimal
 

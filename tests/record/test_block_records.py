@@ -16,7 +16,7 @@ from siggen.planning.plan import planned_record
 from siggen.planning.specimen import draw_specimen
 from siggen.record.simulation import record_response, simulate, specimen_state
 from siggen.sensing.block_filter import AHEAD
-from siggen.specimen.block_responses import MOTION
+from siggen.sensing.inputs import MOTION
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.config import LineTable, NoiseModulation
-from siggen.record.measured_disturbance import Draws, NoiseStrength, TableLines
+from siggen.noise.line_table import TableLines
+from siggen.noise.source import Draws
+from siggen.noise.spectrum import NoiseStrength
 
 FS_HZ, SAMPLES, GEAR_ORDER = 10_000.0, 200_000, 18.0 / 47.0
 ANGLE_RAD = 2.0 * np.pi * 25.0 * np.arange(SAMPLES) / FS_HZ

@@ -47,7 +47,7 @@ def test_sums_over_a_record_do_not_depend_on_its_address() -> None:
         memory = np.empty(samples + 9)
         shifted = memory[shift : shift + samples]
         shifted[:] = values
-        stored = measured(shifted, 1, gain=1.1, range_m_s2=3.0, bits=16, noise_floor_m_s2=0.1)
+        stored = measured(shifted, 1, gain=1.1, limit=3.0, bits=16, noise_floor=0.1)
         labels.add((stored.snr_db, stored.clipped_share, float(np.std(shifted)), float(np.mean(shifted))))
     assert len(labels) == 1
 

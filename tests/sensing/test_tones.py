@@ -18,7 +18,7 @@ def test_lines_are_cosines_behind_a_filter() -> None:
     t = np.arange(51200) / FS
     expected = sum(
         (a * h * np.exp(1j * (2 * np.pi * f * t + p))).real
-        for f, a, p, h in zip(lines.frequency_hz, lines.amplitude_m_s2, lines.phase_rad, response, strict=True)
+        for f, a, p, h in zip(lines.frequency_hz, lines.amplitude, lines.phase_rad, response, strict=True)
     )
     np.testing.assert_allclose(lines_signal(lines, response, FS, 51200), expected, atol=1e-10)
 
@@ -27,7 +27,7 @@ def test_hum_has_harmonics_that_fall_with_their_number() -> None:
     lines = harmonic_lines(50.0, 0.3, 3, np.random.default_rng(2))
     spectrum = np.abs(np.fft.rfft(flat(lines))) * 2.0 / 51200
     np.testing.assert_allclose(spectrum[[50, 100, 150]], [0.3, 0.15, 0.1], rtol=1e-9)
-    assert flat(lines).std() == pytest.approx(lines.rms_m_s2, rel=1e-9)
+    assert flat(lines).std() == pytest.approx(lines.rms, rel=1e-9)
 
 
 def test_a_carrier_has_sidebands_at_twice_the_electrical_frequency() -> None:

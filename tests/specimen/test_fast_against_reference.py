@@ -12,7 +12,7 @@ from hypothesis import Phase, event, given, settings
 from hypothesis import strategies as st
 
 import siggen
-from siggen.columns.record import Record, signal_column
+from siggen.columns.record import Record
 from siggen.config import Config, by_reference
 from siggen.dynamics.time import transient
 from siggen.planning.plan import planned_record
@@ -122,4 +122,4 @@ def delivered_channels(config: Config, record_id: int) -> dict[str, np.ndarray]:
     """Return what reaches the converters in a record, by column."""
     (record,) = simulate(config, [record_id])
     assert isinstance(record, Record)
-    return {signal_column(name): samples for name, samples in record.channels.items()}
+    return {f"accel_{name}_m_s2": samples for name, samples in record.channels.items()}

@@ -38,7 +38,7 @@ Explore.showAverages = (section, row, channel, healthy) => {
   if (!view.averages) return void body.append(Explore.element("p", view.missing, { class: "note" }));
   const average = view.averages[place];
   if (!average) return void body.append(Explore.element("p", `The record holds no whole revolution of the ${Explore.shaft}.`, { class: "note" }));
-  Explore.drawAverages(body, row, average, Explore.healthyAverage(healthy, channel, place, average));
+  Explore.drawAverages(body, row, channel, average, Explore.healthyAverage(healthy, channel, place, average));
 };
 
 // The healthy record's average where it can be laid over: as many teeth, both counted from the same tooth; never that of
@@ -49,14 +49,14 @@ Explore.healthyAverage = (healthy, channel, place, own) => {
   return found && found.numbered && own.numbered ? Explore.values(found) : null;
 };
 
-Explore.drawAverages = (body, row, packed, base) => {
+Explore.drawAverages = (body, row, channel, packed, base) => {
   const steps = Explore.data.steps_per_tooth;
   const own = Explore.values(packed);
   const x = own.map((_, k) => k / steps);
   const both = (values) => (base ? [x, values(base), values(own)] : [x, values(own)]);
   const series = () => (base ? [Explore.line(Explore.otherName(), "healthy", { alpha: 0.75 }), Explore.line("record", "record")] : [Explore.line("record", "record")]);
   const marks = Explore.toothMarks(row, Explore.shaft, packed.numbered);
-  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : "teeth since the first pulse", y: "m/s²", range: [0, own.length / steps], marks, group: "teeth" };
+  const shared = { x: packed.numbered ? `tooth of the ${Explore.shaft}` : "teeth since the first pulse", y: Explore.held(channel).unit, range: [0, own.length / steps], marks, group: "teeth" };
   const mark = packed.numbered ? "Shaded: one pitch from where a damaged tooth enters contact; the structure rings on after it." : "The set does not say which gear tooth the first pulse meets, so that no tooth is marked.";
   Explore.chart(body, { ...shared, title: "Synchronous average", data: both((values) => values), series: series(), caption: `Mean over ${packed.turns} revolutions of the ${Explore.shaft}. ${mark}` });
   Explore.chart(body, { ...shared, title: "Without the mean tooth", height: 190, data: both((values) => Explore.withoutMeanTooth(values, steps)), series: series(), caption: "Average minus the mean of all its teeth: all mesh harmonics are gone, what differs from tooth to tooth stays." });

@@ -32,7 +32,7 @@ Explore.showSpectrum = (section, row, channel, healthy) => {
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const shared = { x: "pinion order", range, marks: Explore.spectrumMarks(row), group: "orders" };
   Explore.chart(body, {
-    ...shared, title: "Order spectrum", y: "dB over 1 m/s²", series, data: base ? [x, own, base] : [x, own],
+    ...shared, title: "Order spectrum", y: `dB over 1 ${Explore.held(channel).unit}`, series, data: base ? [x, own, base] : [x, own],
     summary: `Strongest line at order ${Explore.number(x[top])} with ${Explore.number(own[top])} dB.`,
     caption: "Hann amplitude over whole pinion revolutions; a point is the largest line near it. Zoom to a mesh line for its sidebands: pinion, and nearer still the gear.",
   });
@@ -64,7 +64,7 @@ Explore.showEnvelope = (section, row, channel, healthy) => {
   if (base) series.push(Explore.line(Explore.otherName(), "healthy", { alpha: 0.6 }));
   const top = own.reduce((found, value, k) => (value !== null && value > own[found] ? k : found), 1);
   Explore.chart(body, {
-    title: "Envelope spectrum", x: "pinion order", y: "amplitude [m/s²]", series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
+    title: "Envelope spectrum", x: "pinion order", y: `amplitude [${Explore.held(channel).unit}]`, series, data: base ? [x, own, base] : [x, own], range: [0, x[x.length - 1]], marks: Explore.envelopeMarks(row),
     summary: `Strongest line at order ${Explore.number(x[top])}.`,
     caption: "Envelope of everything above half the mesh order. A local fault repeats once per revolution of its shaft: lines at its order and multiples.",
   });

@@ -47,6 +47,9 @@ Explore.revolutions = (samples, pulses) => {
   });
 };
 
+// What a channel holds: its word and unit.
+Explore.held = (channel) => Explore.data.held[channel];
+
 Explore.view = (row, channel) => {
   const signals = Explore.data.signals[row];
   return { missing: signals.missing, pulses: Explore.floats(signals.pulses), ...signals.channels[channel] };

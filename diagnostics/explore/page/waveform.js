@@ -87,8 +87,8 @@ Explore.showWaveform = (section, row, channel, healthy) => {
   const whole = own.fine[1] - own.fine[0] >= Explore.data.samples;
   const kept = whole ? "Every sample is here." : `Whole record: smallest and largest sample of each stretch, at their own places. Every sample from ${Explore.number(own.fine[0] / Explore.data.fs_hz)} to ${Explore.number(own.fine[1] / Explore.data.fs_hz)} s; ${Explore.data.served ? "the others are on their way." : "--full keeps all."}`;
   const plot = Explore.chart(body, {
-    title: "Signal", x: Explore.angleLabel(own), y: "acceleration [m/s²]", ...Explore.overlaid(own, other), group: "turns",
-    range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} m/s².`,
+    title: "Signal", x: Explore.angleLabel(own), y: `${Explore.held(channel).word} [${Explore.held(channel).unit}]`, ...Explore.overlaid(own, other), group: "turns",
+    range: [own.x[0], own.x[own.x.length - 1]], marks: Explore.waveMarks(row, own.turning), summary: `Largest magnitude ${Explore.number(peak)} ${Explore.held(channel).unit}.`,
     caption: `${kept} Dashed: revolutions; thin: tooth passages (when near enough); shaded: a damaged tooth enters contact.`,
   });
   const end = Math.min(own.from + own.fine[1] - own.fine[0] - 1, own.x.length - 1);

@@ -34,7 +34,10 @@ class PlantedSet:
 
     @property
     def channels(self) -> tuple[SimpleNamespace, ...]:
-        return tuple(SimpleNamespace(name=name, column=f"accel_{name}_m_s2") for name in CHANNELS)
+        return tuple(
+            SimpleNamespace(name=name, column=f"accel_{name}_m_s2", quantity="acceleration", shown_unit="m/s²")
+            for name in CHANNELS
+        )
 
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         return self.table if columns is None else self.table.select(list(columns))

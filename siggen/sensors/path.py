@@ -13,6 +13,9 @@ from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
+DIRECTIONS = ("vertical", "horizontal", "axial")
+"""Directions along which a sensor on the casing may look."""
+
 
 class ModalPath(Section):
     """Bearing forces reach the sensor through the flexible modes of `housing`."""

@@ -1,25 +1,31 @@
-"""Section `sensors`: where accelerations are measured, and what the instrument does to them."""
+"""Accelerometers: where accelerations are measured, and what the instrument does to them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Annotated, Literal
+from collections.abc import Callable, Iterator, Mapping
+from math import cos, pi, sin
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Field
 
-from siggen.config.density import LineTable, SensorDensity
-from siggen.config.instrument import Inverter, Mains, PinkNoise, Resonance, Tones
-from siggen.config.path import PATH, ModalPath, TransferPath
+from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within, at
-from siggen.keys.problems import received_text, refusal
-from siggen.keys.section import Real, Section, Whole
+from siggen.keys.problems import received_text
+from siggen.keys.section import Real, Section
 from siggen.keys.wording import AllowedText
+from siggen.noise.registry import SourceKeys
+from siggen.sensing.inputs import FORCE, MOTION, Input
+from siggen.sensing.sensor_response import high_pass_response, resonance_response
+from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath, ModalPath, TransferPath
+from siggen.sensors.quantity import ACCELERATION, Quantity
+from siggen.sensors.resonance import Resonance
+from siggen.sensors.sensor import AxisDraws, Sensor
 
 POSITION = AllowedText(
     "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"
 )
-SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 
 
 class NoiseFloor(Section):
@@ -28,7 +34,7 @@ class NoiseFloor(Section):
     floor_m_s2: Annotated[Number, Within(least=0)] = Field(description="standard deviation of the noise")
 
 
-class Sensor(Section):
+class Accelerometer(SourceKeys, Sensor):
     """An accelerometer with up to three axes.
 
     Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a
@@ -36,9 +42,12 @@ class Sensor(Section):
     Axial is along the shafts, where only a transfer path leads.
     """
 
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
-        description="part of the channel's name"
-    )
+    quantity: ClassVar[Quantity] = ACCELERATION
+    noun: ClassVar[str] = "accelerometer"
+    plausible: ClassVar[tuple[float, float, str]] = (1.0, 1e5, "is it in m/s², not g?")
+    understood_kind: ClassVar[bool] = True
+
+    kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
     place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
         default="pinion_bearing",
         description="where it is mounted; casing needs the model casing or a path, rims the model torsional",
@@ -51,18 +60,11 @@ class Sensor(Section):
     axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="directions it measures, one channel each"
     )
-    gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
-        default=1.0,
-        description="reading per true acceleration, drawn per specimen and axis; a list: one number per axis",
-    )
     noise: Annotated[NoiseFloor | None, AllowedText("null, or a mapping with floor_m_s2")] = Field(
         default=None, description="added before clipping and quantisation"
     )
     range_m_s2: Annotated[Real, Field(gt=0)] = Field(
         default=500.0, description="readings are clipped at plus and minus this"
-    )
-    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=16, description="of the converter; null: not quantised"
     )
     path: Annotated[Annotated[TransferPath, Field(discriminator="kind")] | None, PATH] = Field(
         default=None,
@@ -76,33 +78,8 @@ class Sensor(Section):
     cross_axis: Annotated[Number, Within(least=0, most=0.2)] = Field(
         default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
     )
-    pink_noise: PinkNoise | None = Field(default=None, description="of the electronics; null: none")
-    noise_spectrum: SensorDensity | None = Field(
-        default=None, description="noise of any density beside the white and the pink one; null: none"
-    )
-    lines: LineTable | None = Field(
-        default=None, description="lines of given orders or frequencies, such as those found in recordings; null: none"
-    )
-    mains: Mains | None = Field(default=None, description="null: none")
-    tones: Tones | None = Field(default=None, description="null: none")
-    inverter: Inverter | None = Field(default=None, description="null: none")
 
-    @model_validator(mode="after")
-    def _axes_agree(self) -> Sensor:
-        problems = []
-        if len(set(self.axes)) < len(self.axes):
-            problems.append(Problem("axes", ", ".join(self.axes), "allowed: each axis once"))
-        if isinstance(self.gain, tuple) and len(self.gain) != len(self.axes):
-            received = received_text(self.gain)
-            problems.append(
-                Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
-            )
-        problems += self._place_problems()
-        if problems:
-            raise refusal(problems)
-        return self
-
-    def _place_problems(self) -> Iterator[Problem]:
+    def own_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
         on_casing = self.place == "casing"
         if self.position_mm is not None and (isinstance(self.position_mm, float) or len(self.position_mm) != 2):
@@ -128,6 +105,18 @@ class Sensor(Section):
             with_path = "; axial with a path" if on_casing and self.path is None else ""
             yield Problem("axes", ", ".join(self.axes), f"allowed: {axes} at place {self.place}{with_path}")
 
+    def model_problems(self, model: str) -> Iterator[Problem]:
+        """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
+        if self.path is None or model == "torsional":
+            yield from super().model_problems(model)
+            return
+        if isinstance(self.path, MeasuredPath) and self.cross_axis != 0.0:
+            allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
+            yield Problem("cross_axis", str(self.cross_axis), allowed)
+        if self.sees_model and model != "casing":
+            allowed = f"allowed: false (dynamics.model: {model} has no casing that moves)"
+            yield Problem("path.rigid", "true", allowed)
+
     @property
     def sees_model(self) -> bool:
         """Whether it sees the motion of the model itself, alone or beside what a path adds."""
@@ -138,14 +127,78 @@ class Sensor(Section):
         """Name of the motion that it measures: its place, with its own name where it stands on the casing."""
         return f"casing_{self.name}" if self.place == "casing" else self.place
 
-    def drawn(self, uniform: Callable[[str], float]) -> Sensor:
+    @property
+    def reads(self) -> frozenset[str]:
+        """Motions of the model, and bearing forces where they come through a path."""
+        return frozenset(({MOTION} if self.sees_model else set()) | ({FORCE} if self.path is not None else set()))
+
+    @property
+    def limit(self) -> float:
+        """Its range [m/s²]."""
+        return self.range_m_s2
+
+    @property
+    def limit_key(self) -> str:
+        """The key of its range."""
+        return "range_m_s2"
+
+    @property
+    def noise_floor(self) -> Number | None:
+        """Standard deviation of its white noise [m/s²]."""
+        return None if self.noise is None else self.noise.floor_m_s2
+
+    @property
+    def through(self) -> TransferPath | None:
+        """The path from the bearing forces through the housing to it."""
+        return self.path
+
+    @property
+    def place_on_casing_mm(self) -> tuple[Number, ...]:
+        """Its position."""
+        return self.position_mm or ()
+
+    @property
+    def fitted(self) -> bool:
+        """Whether lines or paths are those of recordings."""
+        return super().fitted or (isinstance(self.path, MeasuredPath) and self.path.is_family)
+
+    def drawn(self, uniform: Callable[[str], float]) -> Self:
         """Return the sensor of one specimen: gains and position are drawn, what belongs to records is left."""
-        gains = self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
-        drawn = (
-            at(gain, uniform(f"sensors.{self.name}.{axis}.gain")) for gain, axis in zip(gains, self.axes, strict=True)
-        )
         place = self.position_mm
         if place is not None:
             path = f"sensors.{self.name}.position_mm"
             place = tuple(at(number, uniform(f"{path}.{i}")) for i, number in enumerate(place))
-        return self.model_copy(update={"gain": tuple(drawn), "position_mm": place})
+        return super().drawn(uniform).model_copy(update={"position_mm": place})
+
+    def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:
+        """Return the motions of the model that a channel sees; several with cross-axis sensitivity."""
+        seen = {d: w for d, w in self.weights(axis, draw).items() if self.sees_model and d != "axial"}
+        return {Input(MOTION, f"{self.motion_place}/{direction}"): weight for direction, weight in seen.items()}
+
+    def weights(self, axis: str, draw: AxisDraws) -> dict[str, float]:
+        """Return direction -> sensitivity: 1 along the axis, and what leaks in from across it at a drawn angle."""
+        leak = draw(self.cross_axis, "cross_axis")
+        if leak == 0.0:
+            return {axis: 1.0}
+        first, second = (direction for direction in DIRECTIONS if direction != axis)
+        angle = 2.0 * pi * draw.uniform(f"{draw.path}.cross_axis.angle")
+        return {axis: 1.0, first: leak * cos(angle), second: leak * sin(angle)}
+
+    def response(self, draw: AxisDraws, frequency_hz: FloatArray) -> ComplexArray | None:
+        """Return what mounting, sensor and coupling do at frequencies (k,)."""
+        parts = [
+            resonance_response(
+                frequency_hz,
+                draw(section.frequency_hz, f"{name}.frequency_hz"),
+                draw(section.damping_ratio, f"{name}.damping_ratio"),
+            )
+            for name, section in (("mounting", self.mounting), ("resonance", self.resonance))
+            if section is not None
+        ]
+        corner_hz = self.coupling_hz(draw)
+        parts += [] if corner_hz is None else [high_pass_response(frequency_hz, corner_hz)]
+        return np.prod(parts, axis=0) if parts else None
+
+    def coupling_hz(self, draw: AxisDraws) -> float | None:
+        """Return the corner of its coupling capacitor."""
+        return None if self.high_pass_hz is None else draw(self.high_pass_hz, "high_pass_hz")

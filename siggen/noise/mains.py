@@ -1,0 +1,34 @@
+"""Hum of the power line."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from siggen.keys.number import Number, Within, at
+from siggen.keys.section import Whole
+from siggen.noise.lines import LinesPart
+from siggen.noise.source import Draws, NoisyChannel, Part, Source
+from siggen.sensing.tones import harmonic_lines
+
+
+class Mains(Source):
+    """Hum of the power line at the mains frequency and its harmonics, as it is stored."""
+
+    key: ClassVar[str] = "mains"
+    about: ClassVar[str] = ""
+    meaning: ClassVar[str] = "RMS of mains hum in"
+
+    amplitude_m_s2: Annotated[Number, Within(least=0)] = Field(
+        description="of the fundamental, drawn per record and axis; harmonic h has 1/h of it"
+    )
+    frequency_hz: Annotated[Number, Within(above=0)] = Field(default=50.0, description="drawn per gearbox")
+    harmonics: Annotated[Whole, Field(ge=1, le=40)] = Field(default=3, description="highest harmonic")
+
+    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+        """Return its lines."""
+        rng = draws.record(self.key)
+        amplitude = at(self.amplitude_m_s2, draws.level("mains.amplitude_m_s2", rng))
+        fundamental_hz = at(self.frequency_hz, draws.specimen("mains.frequency_hz"))
+        return LinesPart(harmonic_lines(fundamental_hz, amplitude, self.harmonics, rng), channel, sensed=False)

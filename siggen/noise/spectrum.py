@@ -1,0 +1,102 @@
+"""Noise of a given density, as it is stored; its strength may follow the turning shafts and chance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.keys.number import Number, Within, at
+from siggen.keys.section import Section
+from siggen.noise.density import Density
+from siggen.noise.source import Draws, MeasuredPart, NoisyChannel, Part, Source
+from siggen.sensing.force_density import tabulated
+from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
+from siggen.sensing.sensor_response import high_pass_response
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+
+SPECTRUM_TAPS = 16_384
+"""Of the filter of a sensor's noise: at 25.6 kHz densities are smoothed over 1.6 Hz."""
+
+
+class NoiseModulation(Section):
+    """Strength over time M = G exp(s U - s²/2) of noise: by the turning shafts, and by chance; of mean 1."""
+
+    pinion_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(
+        default=0.0, description="of the power, once per turn of the pinion; 1/√2 and 1/√3 of it twice and three times"
+    )
+    gear_depth: Annotated[Number, Within(least=0, most=1.5)] = Field(default=0.0, description="the same of the gear")
+    level_std: Annotated[Number, Within(least=0, most=2)] = Field(
+        default=0.0, description="s of the random level; kurtosis of the noise 3 exp(s²)"
+    )
+    level_time_ms: Annotated[Number, Within(least=0.1, most=1000)] = Field(
+        default=3.0, description="correlation time of the level"
+    )
+
+
+class SensorDensity(Density, Source):
+    """Noise of a sensor and its electronics in m/s²/√Hz, such as its data sheet or a measurement at rest gives."""
+
+    key: ClassVar[str] = "noise_spectrum"
+    about: ClassVar[str] = "noise of any density beside the white and the pink one; "
+    meaning: ClassVar[str] = "RMS of the noise of given density in"
+    broad: ClassVar[bool] = True
+    file_columns: ClassVar[tuple[str, ...]] = ("frequency_hz", "density")
+
+    factor: Annotated[Number, Within(least=0, most=1_000_000)] = Field(
+        default=1.0, description="on the whole density, drawn per record and axis; with `background` per gearbox"
+    )
+    modulation: NoiseModulation | None = Field(default=None, description="null: none")
+
+    @property
+    def follows_angle(self) -> bool:
+        """Whether its strength follows the shafts."""
+        return self.modulation is not None
+
+    def part(self, channel: NoisyChannel, draws: Draws) -> Part:
+        """Return its noise behind the coupling."""
+        rng = draws.record(self.key)
+        factor = at(self.factor, draws.level("noise_spectrum.factor", rng))
+        noise = self._shaped(factor, channel, rng)
+        if self.modulation is None:
+            return MeasuredPart(lambda _, angle: noise(angle.size))
+        strength = NoiseStrength(self.modulation, draws, channel.gear_order, channel.fs_hz)
+        return MeasuredPart(lambda _, angle: noise(angle.size) * np.sqrt(strength.take(angle)))
+
+    def _shaped(self, factor: float, channel: NoisyChannel, rng: np.random.Generator) -> Callable[[int], FloatArray]:
+        def density(frequency_hz: FloatArray) -> FloatArray:
+            found = tabulated(frequency_hz, self.frequency_hz, self.density)
+            if channel.coupling_hz is None:
+                return found
+            # no logarithm of nothing: at frequency 0 as at the first one above
+            over_zero = np.maximum(frequency_hz, frequency_hz[1])
+            return np.asarray(found * np.abs(high_pass_response(over_zero, channel.coupling_hz)))
+
+        taps = factor * shape_taps(density, SPECTRUM_TAPS, channel.fs_hz)
+        return ShapedNoise(taps, channel.fs_hz, rng).take
+
+
+class NoiseStrength:
+    """M of mean 1, part after part; the phases of the shafts belong to the gearbox, what chance does to the record."""
+
+    def __init__(self, section: NoiseModulation, draws: Draws, gear_order: float, fs_hz: float) -> None:
+        rng = draws.record("noise_spectrum.modulation")
+        numbers = {
+            name: at(getattr(section, name), draws.level(f"noise_spectrum.modulation.{name}", rng))
+            for name in ("pinion_depth", "gear_depth", "level_std", "level_time_ms")
+        }
+        self._phasors = []
+        for shaft, order in (("pinion", 1.0), ("gear", gear_order)):
+            uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
+            self._phasors.append((order, shaft_phasors(numbers[f"{shaft}_depth"], 2.0 * pi * np.array(uniforms))))
+        self._level = LevelCourse(numbers["level_std"], 1e-3 * numbers["level_time_ms"] * fs_hz, rng)
+
+    def take(self, angle_rad: FloatArray) -> FloatArray:
+        """Return M (k,) at the next samples, whose pinion angles (k,) are given."""
+        lines = [harmonic_sum(turns_of(angle_rad, order), phasors) for order, phasors in self._phasors]
+        return np.asarray(shaft_course(lines) * self._level.take(angle_rad.size))

@@ -1,0 +1,37 @@
+"""Quantity: what a channel holds, in words and as names and units of columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What a kind of sensor measures.
+
+    Attributes
+    ----------
+    word : such as "acceleration", for cards, axes and messages
+    stem : how the names of its signal columns begin
+    unit : as metadata and tables have it, such as "m/s^2"
+    suffix : the unit as names end with it, such as "m_s2"
+    measurement : what is measured by it, in lists of measurements; the word unless it says otherwise
+    """
+
+    word: str
+    stem: str
+    unit: str
+    suffix: str
+    measurement: str = ""
+
+    def column(self, channel: str) -> str:
+        """Return the name of the column that holds a channel's signal."""
+        return f"{self.stem}_{channel}_{self.suffix}"
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit as pages and pictures show it."""
+        return self.unit.replace("^2", "²").replace("^3", "³")
+
+
+ACCELERATION = Quantity("acceleration", "accel", "m/s^2", "m_s2", "vibration")

@@ -1,0 +1,196 @@
+"""What the rest of siggen asks a kind of sensor: the common part of all sections of sensors.
+
+A kind is one module here: its section with the answers below. The registry names the kind; nothing else knows kinds.
+Where it reads what the model does not give yet, the model gives a new kind of `Input`.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Self, get_args
+
+from pydantic import Field, model_validator
+
+from siggen.arrays import ComplexArray, FloatArray
+from siggen.errors import Problem
+from siggen.keys.number import Number, Within, at
+from siggen.keys.problems import BRANCHES, received_text, refusal
+from siggen.keys.section import Section, Whole
+from siggen.keys.wording import AllowedText
+from siggen.noise.source import Source
+from siggen.sensing.inputs import FORCE, Input
+from siggen.sensors.path import TransferPath
+from siggen.sensors.quantity import Quantity
+
+PLACES = {
+    "torsional": ("pinion_rim", "gear_rim"),
+    "6dof": ("pinion_bearing", "gear_bearing"),
+    "8dof": ("pinion_bearing", "gear_bearing"),
+    "casing": ("casing", "pinion_bearing", "gear_bearing"),
+}
+"""Places whose motion a model has."""
+SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
+
+
+@dataclass(frozen=True, slots=True)
+class AxisDraws:
+    """Draws the numbers of one axis of one gearbox by their names."""
+
+    uniform: Callable[[str], float]
+    path: str
+
+    def __call__(self, number: Number, name: str) -> float:
+        """Return the value of a number of the section."""
+        return at(number, self.uniform(f"{self.path}.{name}"))
+
+
+class Sensor(Section):
+    """Base of the sections of sensors; its field `kind` is a Literal of one word.
+
+    Numbers of the sensor belong to the gearbox, those of noise to the record. A kind names its range and the sizes of
+    its noise with the suffix of its unit.
+    """
+
+    quantity: ClassVar[Quantity]
+    """What its channels hold."""
+
+    noun: ClassVar[str]
+    """What it is called, such as "accelerometer"."""
+
+    acts: ClassVar[str] = ""
+    """A sentence of the card on how it reads the model, where that needs one."""
+
+    plausible: ClassVar[tuple[float, float, str]] = (0.0, float("inf"), "")
+    """Range that nobody wonders about, and what to ask beyond it."""
+
+    kind: str
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
+        description="part of the channel's name"
+    )
+    place: str = Field(description="where it is mounted")
+    axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(
+        description="directions it measures, one channel each"
+    )
+    gain: Annotated[Number | tuple[Number, ...], Within(above=0, many=True)] = Field(
+        default=1.0,
+        description="reading per true value, drawn per specimen and axis; a list: one number per axis",
+    )
+    bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
+        default=16, description="of the converter; null: not quantised"
+    )
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Make the kind known to the messages, in whose paths it is no key."""
+        if words := get_args(cls.model_fields["kind"].annotation):
+            BRANCHES.add(str(words[0]))
+
+    @classmethod
+    def kind_word(cls) -> str:
+        """Return the word of its `kind:`."""
+        return str(get_args(cls.model_fields["kind"].annotation)[0])
+
+    @abstractmethod
+    def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:
+        """Return what of the model a channel shows, with factors, in its unit; what a path adds comes by itself."""
+
+    @property
+    @abstractmethod
+    def reads(self) -> frozenset[str]:
+        """Kinds of `Input` that it needs."""
+
+    @property
+    @abstractmethod
+    def limit(self) -> float:
+        """Its range: readings are clipped at plus and minus this, in its unit."""
+
+    @property
+    @abstractmethod
+    def limit_key(self) -> str:
+        """The key of its range."""
+
+    @property
+    def noise_floor(self) -> Number | None:
+        """Standard deviation of its white noise, in its unit, drawn per record and axis; None without."""
+        return None
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """What is added to its channels beside the white noise; `SourceKeys` has a key for each."""
+        return ()
+
+    @property
+    def through(self) -> TransferPath | None:
+        """The path from the bearing forces through the housing to it."""
+        return None
+
+    @property
+    def place_on_casing_mm(self) -> tuple[Number, ...]:
+        """Horizontal and vertical distance from the casing's centre of gravity; nothing unless it needs them."""
+        return ()
+
+    @property
+    def fitted(self) -> bool:
+        """Whether it holds what was fitted to recordings."""
+        return any(source.fitted for source in self.sources)
+
+    def response(self, draw: AxisDraws, frequency_hz: FloatArray) -> ComplexArray | None:  # noqa: ARG002
+        """Return what the sensor itself does to its quantity at frequencies (k,); None for nothing."""
+        return None
+
+    def coupling_hz(self, draw: AxisDraws) -> float | None:  # noqa: ARG002
+        """Return the corner of the capacitor that couples it, None without."""
+        return None
+
+    def weights(self, axis: str, draw: AxisDraws) -> dict[str, float]:  # noqa: ARG002
+        """Return direction -> sensitivity of a channel."""
+        return {axis: 1.0}
+
+    def own_problems(self) -> Iterator[Problem]:
+        """Yield what cannot be within the section, beside axes and gains."""
+        yield from ()
+
+    def model_problems(self, model: str) -> Iterator[Problem]:
+        """Yield what does not go with `dynamics.model`: a place that it has not."""
+        places = PLACES[model]
+        if self.place not in places:
+            allowed = f"allowed: one of {', '.join(places)} (dynamics.model: {model})"
+            yield Problem("place", f"'{self.place}'", allowed)
+
+    @property
+    def channels(self) -> tuple[tuple[str, str], ...]:
+        """Channel name and axis of each channel."""
+        return tuple((f"{self.name}_{axis}", axis) for axis in self.axes)
+
+    @property
+    def gains(self) -> tuple[Number, ...]:
+        """The gain of each axis."""
+        return self.gain if isinstance(self.gain, tuple) else (self.gain,) * len(self.axes)
+
+    def drawn(self, uniform: Callable[[str], float]) -> Self:
+        """Return the sensor of one specimen: gains are drawn, what belongs to records is left."""
+        axes = zip(self.gains, self.axes, strict=True)
+        drawn = (at(gain, uniform(f"sensors.{self.name}.{axis}.gain")) for gain, axis in axes)
+        return self.model_copy(update={"gain": tuple(drawn)})
+
+    @model_validator(mode="after")
+    def _axes_agree(self) -> Self:
+        problems = []
+        if len(set(self.axes)) < len(self.axes):
+            problems.append(Problem("axes", ", ".join(self.axes), "allowed: each axis once"))
+        if isinstance(self.gain, tuple) and len(self.gain) != len(self.axes):
+            received = received_text(self.gain)
+            problems.append(
+                Problem("gain", received, f"allowed: one number, or a list of {len(self.axes)} (one per axis)")
+            )
+        problems += self.own_problems()
+        if problems:
+            raise refusal(problems)
+        return self
+
+
+def needs_forces(sensors: tuple[Sensor, ...]) -> bool:
+    """Return whether a sensor shows bearing forces, or what a path makes of them."""
+    return any(FORCE in sensor.reads for sensor in sensors)

@@ -1,0 +1,165 @@
+"""Somebody adds a kind of sensor, a module and a line: every program knows it, with its quantity and unit."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import siggen
+from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.measured_recording import RecordingFacts, read_recording
+from siggen.config import parse
+from siggen.errors import UsageError
+from tests.house.source_tree import ROOT
+from tests.publication.conftest import facts_file
+
+CONFIG = """
+extends: quickstart
+name: toy
+specimens: 10
+duration_s: 0.4
+repeats: 1
+splits: {train: 10, validation: 5, test: 5}
+states:
+  - {name: healthy}
+  - {name: slight, damage: {kind: spall, face_length_mm: 4, profile_length_mm: 1, depth_mm: 0.1}}
+  - {name: severe, damage: {kind: spall, face_length_mm: 12, profile_length_mm: 2, depth_mm: 0.2}}
+sensors:
+  - {kind: toy_force_washer, name: washer, range_n: 5000, floor_n: {kind: uniform, low: 0.5, high: 2}}
+"""
+CLEAN = "internals: {quantities: [bearing_force_pinion_bearing_vertical_n]}"
+SIGNAL = "force_washer_vertical_n"
+OTHER_QUANTITY = re.compile(r"accelerat\w*|accelerometer|(?<!m)m/s(²|\^?2)|m_s2", re.IGNORECASE)
+
+
+def command(folder: Path, *words: str, code: int = 0) -> str:
+    """Run a program with the toy registered, in a fresh process."""
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.sensors.with_toys", *words],
+        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "COLUMNS": "160"},
+        capture_output=True, text=True, timeout=500, check=False,
+    )  # fmt: skip
+    said = done.stdout + done.stderr
+    assert done.returncode == code, said
+    assert "Traceback" not in said
+    return said
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("toy")
+    (folder / "toy.yaml").write_text(CONFIG)
+    command(folder, "siggen", "generate", "toy.yaml", "--out", "set", "--engine", "serial")
+    return folder
+
+
+def words_of(page: Path) -> str:
+    """Return what a reader of a page sees: its words, and the titles and axes that its scripts hold."""
+    source = re.sub(r"(?s)<style\b.*?</style>|[A-Za-z0-9+/]{200,}", " ", page.read_text(encoding="utf-8"))
+    return html.unescape(re.sub(r"<[^>]+>", " ", source))
+
+
+def test_its_channel_holds_its_quantity_with_its_own_noise(folder: Path) -> None:
+    dataset = siggen.open(folder / "set")
+    (channel,) = dataset.channels
+    assert (channel.name, channel.quantity, channel.unit) == ("washer_vertical", "bearing force", "N")
+    assert channel.column == SIGNAL
+    assert dataset.manifest["channels"][0]["quantity"] == "bearing force"
+    assert 0.5 <= dataset.record(0)["noise_floor_washer_vertical_n"] <= 2.0
+
+
+def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
+    doubted = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", "sensors.0.range_n=5")
+    assert "washer_vertical" in doubted
+    assert "range [N]" in doubted
+    changes = {
+        "sensors.0.range_n=0.5": "allowed: at least 1",
+        "sensors.0.kind=encoder": "allowed: one of accelerometer, toy_force_washer",
+        "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
+    }
+    for change, allowed in changes.items():
+        said = command(folder, "siggen", "plan", "toy.yaml", "--trial", "0", "--set", change, code=2)
+        assert allowed in " ".join(said.split()), said
+
+
+def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> None:
+    facts_file(folder)
+    command(folder, "siggen", "publish", "set", "--facts", "publication.yaml", "--to", "published")
+    for card in ("set/README.md", "published/README.md"):
+        text = (folder / card).read_text(encoding="utf-8")
+        assert "labelled bearing force records" in text
+        assert "Toy washers show the force of a bearing" in text
+        assert not OTHER_QUANTITY.search(text)
+    for file in ("croissant.json", "datacite.json", "i_investigation.json"):
+        text = json.dumps(json.loads((folder / "published" / file).read_text()))
+        assert not OTHER_QUANTITY.search(text), file
+
+
+def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path) -> None:
+    lid = "  - {name: lid, place: casing, position_mm: [60, 50], noise: {floor_m_s2: 0.01}}\n"
+    washer = CONFIG.partition("sensors:\n")[2]
+    for name, sensors in (("alone", lid), ("both", washer + lid)):
+        own = CONFIG.replace("specimens: 10", f"specimens: 1\nbackground: null\n{CLEAN}").replace(washer, sensors)
+        (folder / f"{name}.yaml").write_text(own)
+        command(folder, "siggen", "generate", f"{name}.yaml", "--out", name, "--engine", "serial")
+    alone, both = (siggen.open(folder / name) for name in ("alone", "both"))
+    record = both.record(0)
+    assert record["accel_lid_vertical_m_s2"].tobytes() == alone.record(0)["accel_lid_vertical_m_s2"].tobytes()
+    inner = next(row for batch in both.internals() for row in batch.to_pylist() if row["record_id"] == 0)
+    noise = record[SIGNAL] - np.array(inner["bearing_force_pinion_bearing_vertical_n"])
+    assert np.std(noise) == pytest.approx(record["noise_floor_washer_vertical_n"], rel=0.05)
+    assert abs(noise.mean()) < 0.1 * record["noise_floor_washer_vertical_n"]
+    card = (folder / "both" / "README.md").read_text(encoding="utf-8")
+    assert "labelled bearing force and acceleration records" in card
+    assert "`washer_vertical` (pinion_bearing, vertical), in N; `lid_vertical` (casing, vertical), in m/s^2" in card
+
+
+def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:
+    command(folder, "siggen-diagnostics", "explore", "set", "--out", "explorer.html")
+    assert '"washer_vertical":{"word":"bearing force","unit":"N"}' in (folder / "explorer.html").read_text("utf-8")
+    said = words_of(folder / "explorer.html")
+    assert "RMS [N]" in said
+    assert not OTHER_QUANTITY.search(said)
+
+
+def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
+    command(folder, "siggen", "simulate", "toy.yaml", "--record", "0", "--signals", "--out", "one.parquet")
+    found = read_columns(folder / "one.parquet")
+    assert found.own == {"washer_vertical": SIGNAL}
+    assert found.units == {SIGNAL: "N"}
+    with pytest.raises(UsageError, match="states the unit 'N'"):
+        read_recording(folder / "one.parquet", ("washer_vertical",), RecordingFacts())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["report", "audit"])
+def test_report_and_audit_name_its_unit_and_no_other(folder: Path, what: str) -> None:
+    options = ("--no-cnn",) if what == "report" else ()
+    command(folder, "siggen-diagnostics", what, "set", *options, "--out", what)
+    said = words_of(folder / what / f"{what}.html")
+    assert not OTHER_QUANTITY.search(said)
+
+
+def test_an_entry_without_a_kind_is_an_accelerometer_and_the_identity_stays() -> None:
+    raw = {
+        "name": "small", "seed": 1, "specimens": 1,
+        "gears": {"module_mm": 2.0, "face_width_mm": 20.0, "pressure_angle_deg": 20.0,
+                  "pinion": {"teeth": 20, "bore_radius_mm": 5.0},
+                  "gear": {"teeth": 40, "bore_radius_mm": 5.0}},
+        "operating_points": [{"speed_hz": 10.0, "torque_nm": 10.0}],
+        "states": [{"name": "healthy"}],
+    }  # fmt: skip
+    found = [parse({**raw, "sensors": [{"name": "a", **kind}]}) for kind in ({}, {"kind": "accelerometer"})]
+    first, second = (one.config for one in found)
+    assert first is not None, found[0].problems
+    assert second is not None
+    assert first.sensors[0].kind == "accelerometer"
+    assert first.identity == second.identity
