@@ -77,7 +77,7 @@ def _irregular(state: dict[str, Any]) -> bool:
 
 def parallel(raw: dict[str, Any]) -> dict[str, Any]:
     """Return a configuration with the edges of all irregular spalls parallel to the axis."""
-    straight = dict.fromkeys(("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm", "waviness"), 0.0)
+    straight = {"skew_mm_per_10mm": 0.0, "waviness": 0.0}
     states = [
         {**state, "damage": {**state["damage"], **straight}}
         if state["name"].startswith(("face_", "through_"))
@@ -92,9 +92,8 @@ def edges(gearboxes: int) -> dict[str, Any]:
     damaged = []
     for share in SHARES:
         for skew in SKEWS_MM:
-            slopes = dict.fromkeys(("leading_skew_mm_per_10mm", "trailing_skew_mm_per_10mm"), 0.5 * skew)
             name = f"share_{100 * share:03.0f}_skew_{100 * skew:03.0f}"
-            damage = {**SPALL, **slopes, "face_share": share}
+            damage = {**SPALL, "skew_mm_per_10mm": 0.5 * skew, "face_share": share}
             damaged.append({"name": name, "severity": "severe", "grows_from": "none", "damage": damage})
     raw = preset("bench", gearboxes, STATES[:2])
     return {**raw, "name": "edges", "states": [*raw["states"], *damaged]}

@@ -35,7 +35,6 @@ outline, so both of their axes grow with the module; an edge rises by the same s
 Length = Annotated[Number, Within(above=0), Grows(MODULE)]
 OptionalLength = Annotated[Number | None, Within(above=0, words=(None,)), Grows(MODULE)]
 LengthAcross = Annotated[Number, Within(above=0), Grows(FACE_WIDTH)]
-OptionalLengthAcross = Annotated[Number | None, Within(above=0, words=(None,)), Grows(FACE_WIDTH)]
 Height = Annotated[Number | Literal["pitch"], Within(least=0, words=("pitch",)), Grows(MODULE)]
 PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FACE_WIDTH)]
 

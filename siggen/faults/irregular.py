@@ -32,7 +32,6 @@ from siggen.faults.flank_place import (
     HeightReading,
     Length,
     OptionalLength,
-    OptionalLengthAcross,
     PlaceOnFace,
     allowed_text,
     axial_heights_m,
@@ -52,21 +51,20 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds, constant, number_text
-from siggen.keys.problems import MISSING, refusal
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 
 PER_10MM = 0.1
 """mm of arc per 10 mm of face as a slope."""
 WAVE_SHARE = 0.1
-"""Correlation length of the waves over the face width, where none is given; assumed."""
-STRIPS_PER_WAVE = 4
-"""Strips in a correlation length, at least: straight pieces then follow a wave."""
+"""Distance across the face, over its width, in which the correlation of the waves falls to 1/e; assumed."""
+DEPTH_SHARE = 0.05
+"""Depth over the root of profile length x face length, where none is given; assumed."""
 
 START: Literal["below_pitch"] = "below_pitch"
 Middle = Annotated[Number | Literal["below_pitch", "pitch"], Within(least=0, words=(START, "pitch")), Grows(MODULE)]
 Skew = Annotated[Number, Within(least=-5, most=5), Grows(SKEW)]
-Share = Annotated[Number | None, Within(above=0, most=1, words=(None,))]
+Share = Annotated[Number, Within(above=0, most=1)]
 
 
 class IrregularSpalls(Fault):
@@ -87,52 +85,27 @@ class IrregularSpalls(Fault):
     )
     height_reading: HeightReading = Field(default="arc", description=READING)
     profile_length_mm: Length = Field(description=PROFILE_LENGTH)
-    face_length_mm: OptionalLengthAcross = Field(default=None, description="length across the face; or face_share")
-    face_share: Share = Field(default=None, description="length across the face over the face width; or face_length_mm")
+    face_share: Share = Field(description="length across the face over the face width")
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
-    leading_skew_mm_per_10mm: Skew = Field(
+    skew_mm_per_10mm: Skew = Field(
         default=Uniform(low=-0.15, high=0.15),
-        description="rise of the edge that the contact reaches first (lower on the pinion, upper on the gear) towards "
-        "the tip over 10 mm of face, in mm of arc; the default is assumed",
-    )
-    trailing_skew_mm_per_10mm: Skew = Field(
-        default=Uniform(low=-0.15, high=0.15), description="the same of the other edge; the default is assumed"
+        description="rise of an edge towards the tip over 10 mm of face, in mm of arc, drawn for each edge by itself; "
+        "the default is assumed",
     )
     waviness: Annotated[Number, Within(least=0, most=0.2)] = Field(
         default=0.1, description="rms of either edge's waves over the profile length; the default is assumed"
-    )
-    waviness_length_mm: OptionalLength = Field(
-        default=None,
-        description="distance across the face over which the waves' correlation falls to 1/e; null: a tenth of the "
-        "face width, assumed",
     )
     edge_radius_mm: Annotated[Number, Within(least=0, most=1), Grows(MODULE)] = Field(
         default=Uniform(low=0.02, high=0.2), description="radius of the edges; the default is assumed"
     )
     depth_mm: OptionalLength = Field(
-        default=None, description="depth normal to the tooth's middle plane; null: grows with the area (depth_share)"
-    )
-    depth_share: Annotated[Number, Within(above=0, most=0.5)] = Field(
-        default=0.05, description="depth over the root of profile length x face length; the default is assumed"
+        default=None,
+        description="depth normal to the tooth's middle plane; null: 0.05 of the root of its two lengths, assumed",
     )
     floor: FloorShape = Field(default="dish", description=FLOOR)
     floor_roughness: Annotated[Number, Within(least=0, most=0.5)] = Field(
         default=0.15, description="rms of the depth from strip to strip across the face, over it; assumed"
     )
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> IrregularSpalls:
-        lengths = {"face_length_mm": self.face_length_mm, "face_share": self.face_share}
-        given = [key for key, value in lengths.items() if value is not None]
-        if not given:
-            allowed = "an irregular spall needs face_length_mm or face_share"
-            raise refusal([Problem("face_length_mm", MISSING, allowed)])
-        if len(given) == 2:
-            raise refusal([Problem("face_share", "a value, beside face_length_mm", "allowed: one of the two")])
-        if self.depth_mm is not None and self.depth_share != 0.05:
-            allowed = "allowed: nothing beside depth_mm, which it would compute"
-            raise refusal([Problem("depth_share", "a value", allowed)])
-        return self
 
     @model_validator(mode="after")
     def _a_stage_for_each_tooth(self) -> IrregularSpalls:
@@ -149,7 +122,7 @@ class IrregularSpalls(Fault):
 
     def widest(self, pair: GearPair) -> Damage:
         """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
-        gear, across = pair.member(self.gear), MM * _face_lengths_mm(self, pair.face_width_m / MM)[1]
+        gear, across = pair.member(self.gear), MM * _longest_face_mm(self, pair.face_width_m / MM)
         middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else MM * bounds(self.face_centre_mm)[0]
         along = read_m(gear, _heights_m(pair, self)[0], self.height_reading)
         half = 0.5 * MM * bounds(self.profile_length_mm)[1]
@@ -161,15 +134,13 @@ class IrregularSpalls(Fault):
         """Each has an edge radius of its own."""
         return True
 
-    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:
+    def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:  # noqa: ARG002 - its share is given
         """Return whether nothing bends its edges, and whether it then may go through the face."""
         straight = all(bounds(number) == (0.0, 0.0) for number in self._bending())
-        share = None if self.face_share is None else bounds(self.face_share)[1] * face_width_mm
-        length = share if self.face_length_mm is None else bounds(self.face_length_mm)[1]
-        return straight, straight and length is not None and length >= face_width_mm
+        return straight, straight and bounds(self.face_share)[1] >= 1.0
 
     def _bending(self) -> Iterator[Number]:
-        yield from (self.leading_skew_mm_per_10mm, self.trailing_skew_mm_per_10mm, self.waviness)
+        yield from (self.skew_mm_per_10mm, self.waviness)
 
 
 def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) -> IrregularSpall:
@@ -177,13 +148,17 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
     uniform = growth.place(model.gear, IrregularSpalls)
     size = _staged(draw(model, uniform, name), at(stage_of(model.stages, index), uniform(f"{name}.stages")))
     gear, width = pair.member(model.gear), pair.face_width_m
-    length, across = MM * constant(size.profile_length_mm), _face_length_m(size, width)
+    length, across = MM * constant(size.profile_length_mm), width * constant(size.face_share)
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
     milder = _milder(growth, model.gear, tooth)
     face = stations_across(width, middle - 0.5 * across, middle + 0.5 * across, milder)
     along = read_m(gear, _middle_height_m(pair, size), size.height_reading)
+
+    def slope(edge: str) -> float:
+        return PER_10MM * at(model.skew_mm_per_10mm, uniform(f"{name}.{edge}_skew_mm_per_10mm"))
+
     arcs = [
-        along + side * (0.5 * length) + _bend_m(size, growth, name, edge, face, middle)
+        along + side * (0.5 * length) + (slope(edge) * (face - middle) + _waves_m(size, growth, f"{name}.{edge}", face))
         for side, edge in zip((-1.0, 1.0), _edges(model.gear), strict=True)
     ]
     edges = [axial_heights_m(gear, arc, size.height_reading) for arc in arcs]
@@ -201,7 +176,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
 
 def _staged(size: IrregularSpalls, stage: float) -> IrregularSpalls:
     """Return drawn sizes at a stage: all lengths shrink alike, and the depth that follows from them."""
-    lengths = ("profile_length_mm", "face_length_mm", "face_share", "depth_mm")
+    lengths = ("profile_length_mm", "face_share", "depth_mm")
     given = {key: value for key in lengths if (value := getattr(size, key)) is not None}
     return size if stage == 1.0 else size.model_copy(update={key: stage * constant(v) for key, v in given.items()})
 
@@ -216,12 +191,6 @@ def _edges(gear: str) -> tuple[str, str]:
     return ("leading", "trailing") if gear == "pinion" else ("trailing", "leading")
 
 
-def _face_length_m(size: IrregularSpalls, face_width_m: float) -> float:
-    if size.face_length_mm is not None:
-        return MM * constant(size.face_length_mm)
-    return face_width_m * constant(size.face_share or 0.0)
-
-
 def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
     centre = size.centre_height_mm
     if centre == "below_pitch":
@@ -229,25 +198,17 @@ def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
     return height_m_of(pair, size.gear, centre if isinstance(centre, str) else constant(centre), size.height_reading)
 
 
-def _bend_m(
-    size: IrregularSpalls, growth: Growth, name: str, edge: str, face_m: FloatArray, middle_m: float
-) -> FloatArray:
-    """Return how far an edge lies above its straight line, at stations (k,) [m]."""
-    skew = constant(size.leading_skew_mm_per_10mm if edge == "leading" else size.trailing_skew_mm_per_10mm)
-    waves = drawn_waves(growth.shape(size.gear, IrregularSpalls, f"{name}.{edge}"))
+def _waves_m(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray) -> FloatArray:
+    """Return how far an edge lies above its straight line by its waves, at stations (k,) [m]."""
+    waves = drawn_waves(growth.shape(size.gear, IrregularSpalls, name))
     rms = constant(size.waviness) * MM * constant(size.profile_length_mm)
-    wave_m = MM * constant(_wave_length_mm(size, growth.pair.face_width_m / MM))
-    return PER_10MM * skew * (face_m - middle_m) + rms * waves(face_m, wave_m)
-
-
-def _wave_length_mm(size: IrregularSpalls, face_width_mm: float) -> Number:
-    return WAVE_SHARE * face_width_mm if size.waviness_length_mm is None else size.waviness_length_mm
+    return rms * waves(face_m, WAVE_SHARE * growth.pair.face_width_m)
 
 
 def _depth_m(size: IrregularSpalls, length_m: float, across_m: float) -> float:
     if size.depth_mm is not None:
         return MM * constant(size.depth_mm)
-    return constant(size.depth_share) * sqrt(length_m * across_m)
+    return DEPTH_SHARE * sqrt(length_m * across_m)
 
 
 def _rough(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray, width_m: float) -> FloatArray:
@@ -264,44 +225,37 @@ def _problems(pair: GearPair, size: IrregularSpalls) -> Iterator[Problem]:
     """
     width_mm = pair.face_width_m / MM
     yield from _face_problems(size, width_mm)
-    shortest_mm, least_mm = bounds(_wave_length_mm(size, width_mm))[0], STRIPS_PER_WAVE * width_mm / STRIPS
-    if shortest_mm < least_mm and bounds(size.waviness)[1] > 0.0:
-        allowed = f"allowed: at least {least_mm:.6g} mm, {STRIPS_PER_WAVE} strips of the face"
-        yield Problem("waviness_length_mm", f"{shortest_mm:.6g} mm", allowed)
     yield from _edge_problems(pair, size, width_mm)
 
 
-def _face_lengths_mm(size: IrregularSpalls, width_mm: float) -> tuple[str, float]:
-    """Return the key of the length across the face and its largest value [mm]."""
-    if size.face_length_mm is not None:
-        return "face_length_mm", bounds(size.face_length_mm)[1]
-    return "face_share", width_mm * bounds(size.face_share or 0.0)[1]
+def _longest_face_mm(size: IrregularSpalls, width_mm: float) -> float:
+    """Return the largest length across the face [mm]."""
+    return width_mm * bounds(size.face_share)[1]
 
 
 def _face_problems(size: IrregularSpalls, width_mm: float) -> Iterator[Problem]:
-    key, length_mm = _face_lengths_mm(size, width_mm)
+    length_mm = _longest_face_mm(size, width_mm)
     for centre_mm in (0.5 * width_mm,) if size.face_centre_mm is None else bounds(size.face_centre_mm):
         low, high = centre_mm - 0.5 * length_mm, centre_mm + 0.5 * length_mm
         if low < -1e-9 * width_mm or high > width_mm * (1.0 + 1e-9):
             received = f"{length_mm:.6g} mm about {centre_mm:.6g} mm, from {low:.6g} to {high:.6g} mm across the face"
-            yield Problem(key, received, f"allowed: on the face, 0 to {width_mm:.6g} mm")
+            yield Problem("face_share", received, f"allowed: on the face, 0 to {width_mm:.6g} mm")
             return
 
 
 def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> Iterator[Problem]:
-    across_mm = _face_lengths_mm(size, width_mm)[1]
+    across_mm = _longest_face_mm(size, width_mm)
     shortest, longest = bounds(size.profile_length_mm)
     waves = WAVE_LIMIT * bounds(size.waviness)[1]
-    skews = bounds(size.leading_skew_mm_per_10mm), bounds(size.trailing_skew_mm_per_10mm)
-    apart = max(abs(one - two) for one in skews[0] for two in skews[1])
+    least, most = bounds(size.skew_mm_per_10mm)
+    apart = most - least
     room = 2.0 * shortest * (1.0 - 2.0 * waves) / (PER_10MM * across_mm)
     if apart >= room:
-        received = f"{number_text(size.leading_skew_mm_per_10mm)}, with trailing_skew_mm_per_10mm "
-        received += f"{number_text(size.trailing_skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
-        allowed = f"allowed: skews less than {room:.6g} mm per 10 mm apart, at {across_mm:.6g} mm across the face"
-        yield Problem("leading_skew_mm_per_10mm", received, allowed)
+        received = f"{number_text(size.skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
+        allowed = f"allowed: a range of less than {room:.6g} mm per 10 mm, at {across_mm:.6g} mm across the face"
+        yield Problem("skew_mm_per_10mm", received, allowed)
         return
-    reach = 0.5 * PER_10MM * across_mm * max(abs(skew) for pair_of in skews for skew in pair_of) + waves * longest
+    reach = 0.5 * PER_10MM * across_mm * max(abs(least), abs(most)) + waves * longest
     yield from _height_problems(pair, size, MM * (0.5 * longest + reach))
 
 
@@ -327,8 +281,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
         spall = Spall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
         for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
-                key = "depth_share" if size.depth_mm is None else "depth_mm"
-                yield Problem(key, in_mm(problem.received), allowed_text(problem.allowed))
+                yield Problem("depth_mm", in_mm(problem.received), allowed_text(problem.allowed))
 
 
 def _heights_m(pair: GearPair, size: IrregularSpalls) -> list[float]:
@@ -341,5 +294,5 @@ def _deepest_m(pair: GearPair, size: IrregularSpalls) -> float:
     rough = 1.0 + sqrt(3.0) * bounds(size.floor_roughness)[1]
     if size.depth_mm is not None:
         return MM * bounds(size.depth_mm)[1] * rough
-    area = bounds(size.profile_length_mm)[1] * _face_lengths_mm(size, pair.face_width_m / MM)[1]
-    return MM * bounds(size.depth_share)[1] * sqrt(area) * rough
+    area = bounds(size.profile_length_mm)[1] * _longest_face_mm(size, pair.face_width_m / MM)
+    return MM * DEPTH_SHARE * sqrt(area) * rough

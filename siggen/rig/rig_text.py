@@ -150,8 +150,7 @@ states:                       # on one tooth of the pinion; sizes grow with the 
       profile_length_mm: {0.2 * m:.3g}
       face_share: 0.25
       edge_radius_mm: {radius}
-      leading_skew_mm_per_10mm: {skews}
-      trailing_skew_mm_per_10mm: {skews}
+      skew_mm_per_10mm: {skews}
   - name: moderate
     damage: {{<<: *spall, profile_length_mm: {0.33 * m:.3g}, face_share: 0.6}}
   - name: severe

@@ -12,7 +12,7 @@ from tests.faults.test_damage import PIT, config_with
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2}
 PART = {**BOX, "face_length_mm": 8.0}
 SKEWED: dict[str, Any] = {"kind": "irregular", "face_share": 1.0, "profile_length_mm": 1.0}
-STRAIGHT = {**SKEWED, "waviness": 0.0, "leading_skew_mm_per_10mm": 0.0, "trailing_skew_mm_per_10mm": 0.0}
+STRAIGHT = {**SKEWED, "waviness": 0.0, "skew_mm_per_10mm": 0.0}
 CLUSTER = {"kind": "clustered", "count": 3, "spread_profile_mm": 0.3, **PIT}
 LISTED = {"kind": "list", "spalls": [{**{k: v for k, v in BOX.items() if k != "kind"}}]}
 
