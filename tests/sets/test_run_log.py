@@ -176,7 +176,8 @@ def test_the_report_names_every_stage_and_refuses_a_folder_without_one(tmp_path:
     result = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set")])
     assert "30 records, 0 failed in " in result.stdout
     assert all(f"\n{name} " in result.stdout for name in ("planning", "writing", "closing", "rows", "sum"))
-    assert CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set"), "--json"]).stdout.startswith('{\n "')
+    shown = CliRunner().invoke(app, ["inspect", "run", str(tmp_path / "set"), "--json"]).stdout
+    assert json.loads(shown) == unsealed("run.json", (tmp_path / "set" / "run.json").read_bytes())
     with pytest.raises(DatasetError, match=r"has no run\.json"):
         read_run(tmp_path)
 

@@ -143,7 +143,9 @@ def test_kurtosis_alone_that_separates_slight_is_found(clean: MeasuredSet) -> No
     assert traps(replace(clean, values={**clean.values, "kurtosis": kurtosis})) == ["slight_separable_by_kurtosis"]
 
 
-@pytest.mark.parametrize(("gain_db", "expected"), [(9.5, ["slight_separable_by_rms"]), (1.0, [])])
+@pytest.mark.parametrize(
+    ("gain_db", "expected"), [(9.5, ["slight_separable_by_rms"]), pytest.param(1.0, [], marks=pytest.mark.slow)]
+)
 def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(gain_db: float, expected: list[str]) -> None:
     """Levels of gearboxes are spread over 40 dB, so that no threshold on the rms alone tells a gain of three."""
     clean = measured(Plant(points=1, repeats=2))

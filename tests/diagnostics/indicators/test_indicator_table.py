@@ -95,6 +95,7 @@ def test_number_of_workers_changes_nothing(small: Any, table: IndicatorTable) ->
 WITHOUT_TACHO = IndicatorSettings(speed_range_hz=(25.0, 36.0))
 
 
+@pytest.mark.slow  # searches the speed of every record
 def test_angle_from_the_lines_gives_nearly_the_same_average_or_the_record_is_refused(small: Any) -> None:
     judged = set()
     for record in recordings(small):

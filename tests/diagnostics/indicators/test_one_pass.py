@@ -153,6 +153,7 @@ def test_a_chosen_channel_reads_the_table_of_all(folder: Path, monkeypatch: pyte
     assert one.names() == tuple(name for name in whole.names() if name.endswith(f"__{whole.channels[0]}"))
 
 
+@pytest.mark.slow  # trains, audits and reports; a walk takes an own indicator through a ranking and a table
 def test_an_own_indicator_goes_through_features_training_audit_report_and_prediction(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

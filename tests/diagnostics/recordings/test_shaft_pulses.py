@@ -40,7 +40,7 @@ def test_a_dozen_lines_are_enough_in_a_range_without_half_and_twice_the_speed(sp
 
 
 @pytest.mark.parametrize("speed_hz", [24.0, 33.0, 45.0])
-@pytest.mark.parametrize("limits", [(20.0, 50.0), (14.0, 70.0)])
+@pytest.mark.parametrize("limits", [(20.0, 50.0), pytest.param((14.0, 70.0), marks=pytest.mark.slow)])
 def test_where_a_dozen_lines_fit_half_the_speed_as_well_it_is_refused_and_never_guessed(
     speed_hz: float, limits: tuple[float, float]
 ) -> None:
@@ -135,6 +135,7 @@ def test_without_tacho_and_range_and_with_too_few_turns_the_file_is_named() -> N
         shaft_pulses(recording(30.0), TEETH, (40.0, 30.0))
 
 
+@pytest.mark.slow  # simulates a recording, and searches it twice
 def test_a_second_stage_louder_than_the_mesh_lines_does_not_pass_for_them() -> None:
     """Its lines lead in every part of the range that is wide enough to hold both; the shaft's own lines decide."""
     channels, pulses = hidden_record()

@@ -28,7 +28,7 @@ def drawn(count: int, sharpening: float) -> Predictions:
     rng = np.random.default_rng(3)
     honest = rng.dirichlet(np.ones(3), size=count)
     truth = np.array([rng.choice(3, p=row) for row in honest])
-    return Predictions(CLASSES, truth, tempered(honest, 1.0 / sharpening), np.arange(count))
+    return Predictions(CLASSES, truth, tempered(honest, 1.0 / sharpening), np.arange(count) // 10)
 
 
 @pytest.mark.parametrize("sharpening", [0.5, 1.0, 3.0])

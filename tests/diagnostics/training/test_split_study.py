@@ -129,6 +129,7 @@ def test_rows_by_channel_keep_values_and_labels(make_dataset: Any) -> None:
     )
 
 
+@pytest.mark.slow  # a whole curve
 def test_more_training_specimens_raise_the_score(features: pa.Table) -> None:
     matrix = feature_matrix(features)
     curve = learning_curve(matrix, specimen_split(matrix.labels), seed=0)

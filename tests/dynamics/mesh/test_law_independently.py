@@ -36,7 +36,7 @@ from siggen.dynamics.mesh.two_springs import EXACT_CHANGE, SMOOTH_CHANGE
 from tests.dynamics.mesh.test_lane_forces import spalled
 
 SCRIPT = Path(__file__).resolve().parents[3] / "docs" / "scripts" / "exported_law.py"
-STATES = 400
+STATES = 160
 STATE = (NODE_APPROACH, NODE_RATE, NODE_SLIDING_0, NODE_SLIDING_1, NODE_TILT, NODE_TILT_RATE)
 SUMS = (NODE_NORMAL, NODE_FRICTION, NODE_ARM, NODE_MOMENT, NODE_TURN)
 FORCE_N, MOMENT_N_M = 1200.0, 12.0
@@ -98,8 +98,8 @@ def test_forces_of_a_state_are_those_of_the_equations(script: Any, name: str) ->
         np.testing.assert_allclose(found[:2], expected[:2], rtol=0.0, atol=1e-8 * scale)
         np.testing.assert_allclose(found[2:], expected[2:], rtol=0.0, atol=1e-8 * scale * MOMENT_N_M / FORCE_N)
         seen += [expected[0] == 0.0, expected[0] < 0.0, expected[0] > 0.0, expected[3] != 0.0]
-    assert (seen[:3] > 10).all()
-    assert (seen[3] > 100) == ("tilt" in name or "asperity" in name)
+    assert (seen[:3] > 5).all()
+    assert (seen[3] > STATES // 4) == ("tilt" in name or "asperity" in name)
 
 
 @pytest.mark.parametrize("name", [name for name in LAWS if "asperity" not in name])
