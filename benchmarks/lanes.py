@@ -48,7 +48,7 @@ def _at(table: FloatArray, place: int) -> float:
 
 @njit(error_model="numpy")
 def _one_by_one(table: FloatArray, approach: FloatArray, column: FloatArray, force: FloatArray) -> None:
-    """Write the forces (records,), one record after the other, with the branches of `contact_spring`."""
+    """Write the forces (records,), one record after the other: a plain spring by branches, as of `contact_spring`."""
     unit = REACH_M / ((NODES - 1.0) * (NODES - 1.0))
     for i in range(approach.size):
         depth = approach[i]

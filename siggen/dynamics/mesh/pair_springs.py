@@ -171,11 +171,14 @@ def _write(pairs: FloatArray, i: int, spring: Spring) -> None:
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _write_two(law: PairLaw, pairs: FloatArray, i: int, j: int, back: int, settled: float) -> bool:
-    """Write the springs of two drive flanks on one gear body, i entered later; return whether that is settled."""
+def _write_two(law: PairLaw, pairs: FloatArray, i: int, j: int, offset: int, settled: float) -> bool:
+    """Write the springs of two drive flanks on one gear body, i entered later; return whether that is settled.
+
+    The state before stands `offset` rows on.
+    """
     away = int(pairs[i, PAIR] - pairs[j, PAIR])
     c = pairs[i, COUPLED + away - 1] if away <= min(law.places[layout.APART], MOST_APART) else 0.0
-    before = _before(pairs, i, i + back), _before(pairs, j, j + back)
+    before = _before(pairs, i, i + offset), _before(pairs, j, j + offset)
     spring_i, spring_j, near = two_springs(law, c, pairs[i, TILT], settled, _place(pairs, i), _place(pairs, j), before)
     if near:
         pairs[i, PENETRATION], pairs[j, PENETRATION] = spring_i.penetration, spring_j.penetration
