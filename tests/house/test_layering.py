@@ -16,7 +16,7 @@ SIGGEN_ROOMS = (
     "errors", "sources", "seeding", "arrays", "compiled", "lanes", "stage_times", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
     "faults", "config", "rig", "planning",
-    "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
+    "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
     "sensing", "specimen", "checks", "columns", "record", "dataset", "engines", "sets", "views",
     "publication", "cli",
 )  # fmt: skip
