@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks.housing import solid_comparison
+from benchmarks.housing import library, limits, solid_comparison
 
-TABLES = {"solid": solid_comparison.solid_table, "refinement": solid_comparison.refinement_table}
+TABLES = {
+    "solid": solid_comparison.solid_table,
+    "refinement": solid_comparison.refinement_table,
+    "reach": limits.reach_table,
+    "limits": limits.limits_table,
+    "library": library.library_table,
+}
 
 
 def main() -> None:

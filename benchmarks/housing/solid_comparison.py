@@ -113,13 +113,16 @@ def refinement_table() -> Iterator[str]:
     frequency = lines_hz(centres_hz(50.0, 5000.0))
     levels: dict[float, list[np.ndarray]] = {}
     for waves in (WAVES, 1.4 * WAVES, 2.0 * WAVES):
-        levels[waves] = [_levels(box, housing_modes(box, 1.5 * HIGHEST_HZ, waves), frequency) for box in five_boxes()]
+        levels[waves] = [
+            refinement_levels(box, housing_modes(box, 1.5 * HIGHEST_HZ, waves), frequency) for box in five_boxes()
+        ]
     for waves in list(levels)[:-1]:
         one, other = (np.concatenate([found.ravel() for found in levels[w]]) for w in (waves, 2.0 * WAVES))
         yield f"{waves:.1f} | {distance(one, other).text}"
 
 
-def _levels(box: Box, modes: HousingModes, frequency_hz: np.ndarray) -> np.ndarray:
+def refinement_levels(box: Box, modes: HousingModes, frequency_hz: np.ndarray) -> np.ndarray:
+    """Return third octaves at all sensors and seats under all forces."""
     motions = box_motions(box, modes.halves)
     inputs = [motions[f"{shaft}/{wall}/{axis.name.lower()}"] for shaft, wall, axis in FORCES]
     outputs = [*sensors(box, modes), *inputs]

@@ -1,8 +1,9 @@
-"""lowest_modes: the lowest modes of K φ = ω² M φ, the same to the last bit for any number of numeric threads.
+"""lowest_modes: the lowest modes of K φ = ω² M φ, the same to the last bit on any processor.
 
 K = UᵀU (Cholesky). U^-T M U^-1 is made tridiagonal by reflections (Householder); its largest eigenvalues 1/ω² and their
-vectors come by bisection and inverse iteration (reference: standard literature). Low modes are then exact to the
-rounding of K alone. Library routines for the first two steps sum in an order that depends on threads and processor.
+vectors come by inverse iteration (reference: standard literature). Low modes are then exact to the rounding of K alone.
+Library routines for these steps sum in an order that depends on threads and processor; those of the eigenvalues alone
+do not.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal, eigvalsh_tridiagonal
+from scipy.linalg import eigvalsh_tridiagonal
 
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
@@ -53,11 +54,10 @@ LEAST = 3
 
 def _largest(diagonal: FloatArray, beside: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
     """Return the eigenvalues (m,) above `least`, descending, and their vectors (n, m)."""
-    values = eigvalsh_tridiagonal(diagonal, beside, lapack_driver="sterf")
+    values = eigvalsh_tridiagonal(diagonal, beside, lapack_driver="sterf")[::-1]
     count = max(LEAST, int((values > least).sum()))
-    last = (diagonal.size - count, diagonal.size - 1)
-    found, vectors = eigh_tridiagonal(diagonal, beside, select="i", select_range=last, lapack_driver="stebz")
-    return found[::-1], np.ascontiguousarray(vectors[:, ::-1])
+    found = np.ascontiguousarray(values[:count])
+    return found, np.ascontiguousarray(tridiagonal_vectors(diagonal, beside, found).T)
 
 
 @njit(cache=True)
@@ -154,6 +154,72 @@ def tridiagonal(matrix: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray,
             moved[k] = product[k] - inner * v[k]
     diagonal[n - 1] = a[n - 1, n - 1]
     return diagonal, beside, vectors, scales
+
+
+NEAR = 1e-6
+"""Eigenvalues nearer than this share of the largest get vectors that are made orthogonal."""
+PASSES = 3
+
+
+@njit(cache=True)
+def tridiagonal_vectors(diagonal: FloatArray, beside: FloatArray, values: FloatArray) -> FloatArray:
+    """Return unit vectors (m, n) of a symmetric tridiagonal matrix to its eigenvalues (m,), in descending order."""
+    n, count = diagonal.size, values.size
+    vectors = np.zeros((count, n))
+    tiny = 2.3e-16 * abs(values[0])
+    for r in range(count):
+        x = vectors[r]
+        for i in range(n):
+            x[i] = 1.0 + 0.5 * ((i * 7 + 3) % 11) / 11.0
+        for _ in range(PASSES):
+            _inverse_step(diagonal, beside, values[r], tiny, x)
+            for other in range(r - 1, -1, -1):
+                if values[other] - values[r] > NEAR * abs(values[0]):
+                    break
+                inner = 0.0
+                for i in range(n):
+                    inner += x[i] * vectors[other, i]
+                for i in range(n):
+                    x[i] -= inner * vectors[other, i]
+            length = 0.0
+            for i in range(n):
+                length += x[i] * x[i]
+            length = np.sqrt(length)
+            for i in range(n):
+                x[i] /= length
+    return vectors
+
+
+@njit(cache=True)
+def _inverse_step(diagonal: FloatArray, beside: FloatArray, value: float, tiny: float, x: FloatArray) -> None:
+    """Solve (T - value) y = x in place, scaled; rows are exchanged where the one below has the larger entry."""
+    n = x.size
+    pivot, first, second = np.zeros(n), np.zeros(n), np.zeros(n)
+    a, b = diagonal[0] - value, beside[0]
+    for i in range(n - 1):
+        below, right = beside[i], diagonal[i + 1] - value
+        after = beside[i + 1] if i < n - 2 else 0.0
+        if abs(below) > abs(a):
+            pivot[i], first[i], second[i] = below, right, after
+            factor = a / below
+            x[i], x[i + 1] = x[i + 1], x[i] - factor * x[i + 1]
+            a, b = b - factor * right, -factor * after
+        else:
+            pivot[i], first[i] = a if abs(a) > tiny else tiny, b
+            factor = below / pivot[i]
+            x[i + 1] -= factor * x[i]
+            a, b = right - factor * b, after
+    pivot[n - 1] = a if abs(a) > tiny else tiny
+    largest = 0.0
+    for i in range(n - 1, -1, -1):
+        if i < n - 1:
+            x[i] -= first[i] * x[i + 1]
+        if i < n - 2:
+            x[i] -= second[i] * x[i + 2]
+        x[i] /= pivot[i]
+        largest = max(largest, abs(x[i]))
+    for i in range(n):
+        x[i] /= largest
 
 
 @njit(cache=True)
