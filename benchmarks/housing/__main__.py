@@ -8,6 +8,7 @@ from benchmarks.housing import library, limits, solid_comparison
 
 TABLES = {
     "solid": solid_comparison.solid_table,
+    "ten_more": solid_comparison.ten_more_table,
     "refinement": solid_comparison.refinement_table,
     "reach": limits.reach_table,
     "limits": limits.limits_table,

@@ -118,8 +118,9 @@ def _add_rib(box: Box, half: HalfFunctions, rib: Rib, energies: Energies) -> Non
 
 
 def _bolts(box: Box, half: HalfFunctions) -> FloatArray:
-    total = np.zeros((half.shared.coordinates, half.shared.coordinates))
-    for bolt in box.bolts:
-        for row, stiffness in zip(bolt_rows(bolt, half).values(), bolt.stiffness_n_per_m, strict=True):
-            total += 2.0 * stiffness * np.outer(row, row)
-    return total
+    rows = [
+        np.sqrt(2.0 * stiffness) * row
+        for bolt in box.bolts
+        for row, stiffness in zip(bolt_rows(bolt, half).values(), bolt.stiffness_n_per_m, strict=True)
+    ]
+    return own_squares(np.array(rows).reshape(-1, half.shared.coordinates))

@@ -32,13 +32,15 @@ from siggen.dynamics.housing.stiff_pencil import LowestModes, lowest_modes, solv
 WAVES = 8.5
 """Bubbles along a length over its share of the root of three neighbouring plates' area: 300 coordinates a half."""
 """Bubbles of motion in the plane: polynomials of degree 5."""
-FINER = 4
+FINER = 6
 """More bubbles on the walls with bearings: bosses are far stiffer than the wall around them."""
 IN_PLANE = 1
 """Bubbles of motion in the plane, polynomials of degree 4."""
 LEAST_BUBBLES = 4
-BEYOND = 1.5
-"""Modes are kept up to so many times the resolved frequency; those above are in the residual."""
+REACH = 2.0
+"""95 % of third octaves hold within 6 dB up to so many times `resolved_hz` (`python -m benchmarks.housing reach`)."""
+BEYOND = 3.0
+"""Modes are kept up to so many times the resolved frequency: they serve as a statistical tail."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,16 +111,18 @@ def mixed_damping(modes: HousingModes, of_walls: FloatArray | float, of_bolts: f
     return np.asarray(of_walls + (of_bolts - of_walls) * modes.bolt_share, dtype=np.float64)
 
 
-def housing_modes(box: Box, highest_hz: float | None = None, waves: float = WAVES) -> HousingModes:
-    """Return the modes of a box below `highest_hz` (None: 1.5 times the resolved frequency), at least six.
+def housing_modes(box: Box, highest_hz: float | None = None, waves: float | None = None) -> HousingModes:
+    """Return the modes of a box below `highest_hz` (None: three times the resolved frequency), at least six.
 
-    More `waves` resolve higher frequencies; the cost grows with their sixth power.
+    More `waves` resolve higher frequencies, in proportion to their square; the cost grows with their fifth power. None
+    takes as many as `highest_hz` needs, within limits.
 
     Raises
     ------
     ValueError
         If the bolts leave the box free to move.
     """
+    waves = waves_for(box, highest_hz) if waves is None else waves
     resolved = resolved_hz(box, waves)
     highest = BEYOND * resolved if highest_hz is None else highest_hz
     halves = tuple(HalfFunctions(box.size_m, degrees(box, waves), odd) for odd in (False, True))
@@ -138,6 +142,13 @@ def housing_modes(box: Box, highest_hz: float | None = None, waves: float = WAVE
         order=order,
         resolved_hz=resolved,
     )
+
+
+def waves_for(box: Box, highest_hz: float | None) -> float:
+    """Return how many waves resolve a frequency [Hz]; at least `WAVES`, at most twice as many."""
+    if highest_hz is None:
+        return WAVES
+    return WAVES * min(max(1.0, sqrt(highest_hz / (REACH * resolved_hz(box)))), 2.0)
 
 
 def degrees(box: Box, waves: float = WAVES) -> Degrees:

@@ -7,7 +7,14 @@ import pytest
 
 from benchmarks.housing.third_octaves import bands_db, centres_hz, distance, lines_hz
 from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, Thicknesses
-from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes, mixed_damping
+from siggen.dynamics.housing.housing_modes import (
+    WAVES,
+    HousingModes,
+    housing_modes,
+    mixed_damping,
+    resolved_hz,
+    waves_for,
+)
 from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, box_motions, motion_at
 from siggen.dynamics.housing.plate_energy import sheet
 from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
@@ -137,6 +144,13 @@ def test_finer_shapes_change_third_octaves_little() -> None:
     apart = distance(*levels)
     assert apart.within_6_db >= 0.95
     assert apart.median < 0.5
+
+
+def test_higher_frequencies_take_more_waves_within_limits() -> None:
+    box = iron_box()
+    assert waves_for(box, None) == waves_for(box, 3000.0) == WAVES
+    assert resolved_hz(box, waves_for(box, 24_000.0)) == pytest.approx(12_000.0)
+    assert waves_for(box, 1e6) == 2.0 * WAVES
 
 
 def test_a_larger_box_has_lower_modes_in_proportion() -> None:
