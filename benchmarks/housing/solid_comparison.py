@@ -131,7 +131,7 @@ def refinement_table() -> Iterator[str]:
     levels: dict[float, list[np.ndarray]] = {}
     for waves in (WAVES, 1.4 * WAVES, 2.0 * WAVES):
         levels[waves] = [
-            refinement_levels(box, housing_modes(box, 1.5 * HIGHEST_HZ, waves), frequency) for box in five_boxes()
+            refinement_levels(box, housing_modes(box, 1.5 * HIGHEST_HZ, waves), frequency) for box in apart_boxes(*FIVE)
         ]
     for waves in list(levels)[:-1]:
         one, other = (np.concatenate([found.ravel() for found in levels[w]]) for w in (waves, 2.0 * WAVES))

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from math import pi
+from itertools import combinations
+from math import acos, hypot, pi, sqrt
 
 
 class Axis(IntEnum):
@@ -165,6 +166,10 @@ class Box:
         for seat in self.seats.values():
             ring = pi * (seat.boss_radius_m**2 - seat.bore_radius_m**2) * seat.boss_thickness_m
             volume += 2.0 * (ring - pi * seat.boss_radius_m**2 * self.thickness.walls_m)
+        for a, b in combinations(self.seats.values(), 2):
+            # Where bosses meet, both rings were counted.
+            more = 0.5 * (a.boss_thickness_m + b.boss_thickness_m) - self.thickness.walls_m
+            volume -= 2.0 * common_area_m2(a, b) * more
         for strip in self.strips:
             area = (strip.first_m[1] - strip.first_m[0]) * (strip.second_m[1] - strip.second_m[0])
             volume += copies(strip, self.size_m[2]) * area * (strip.thickness_m - self.thickness.of(strip.plate))
@@ -175,6 +180,18 @@ class Box:
         """Return the area of a plate between middle surfaces [m^2]."""
         first, second = plane_axes(SIDES[plate][0])
         return self.size_m[first] * self.size_m[second]
+
+
+def common_area_m2(a: Seat, b: Seat) -> float:
+    """Return the area that the bosses of two seats share [m^2] (two circles: reference: standard literature)."""
+    r, s, apart = a.boss_radius_m, b.boss_radius_m, hypot(a.x_m - b.x_m, a.y_m - b.y_m)
+    if apart >= r + s:
+        return 0.0
+    if apart <= abs(r - s):
+        return pi * min(r, s) ** 2
+    along = 0.5 * (apart + (r * r - s * s) / apart)
+    height = sqrt(r * r - along * along)
+    return r * r * acos(along / r) + s * s * acos((apart - along) / s) - apart * height
 
 
 def copies(strip: Strip, width_m: float) -> int:

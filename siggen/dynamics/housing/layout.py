@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import hypot
+from itertools import combinations
 
-from siggen.dynamics.housing.box import Bolt, Box, Material, Rib, Seat, Thicknesses
+from siggen.dynamics.housing.box import Bolt, Box, Material, Rib, Seat, Thicknesses, common_area_m2
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +89,4 @@ def _ribs(seats: Iterable[Seat], p: Proportions) -> tuple[Rib, ...]:
 
 def bosses_meet(box: Box) -> bool:
     """Return whether bosses of different shafts overlap."""
-    seats = list(box.seats.values())
-    return any(
-        hypot(a.x_m - b.x_m, a.y_m - b.y_m) < a.boss_radius_m + b.boss_radius_m
-        for a in seats
-        for b in seats
-        if a is not b
-    )
+    return any(common_area_m2(a, b) > 0.0 for a, b in combinations(box.seats.values(), 2))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from siggen.dynamics.housing.box import SIDES, Axis, plane_axes
+from siggen.dynamics.housing.box import SIDES, Axis, Box, Rib, Strip, plane_axes
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.line_functions import VALUE
 from siggen.dynamics.housing.plate_energy import Energies, add_even_plate, sheet
@@ -63,8 +63,8 @@ def test_a_free_box_moves_and_turns_without_energy(odd: bool) -> None:
     assert np.abs(values[:3]).max() < 1e-9 * values[3]
 
 
-def test_kinetic_energy_of_a_translation_is_that_of_the_mass() -> None:
-    box = iron_box()
+def translation_kg(box: Box) -> float:
+    """Twice the kinetic energy of a housing that moves along x at 1 m/s."""
     half = halves_of(box)[0]
     energies, _ = box_energy(box, half)
     moved = np.zeros(half.shared.coordinates)
@@ -75,8 +75,62 @@ def test_kinetic_energy_of_a_translation_is_that_of_the_mass() -> None:
             for axis, f in zip(plane_axes(SIDES[plate][0]), (own.first, own.second), strict=True)
         ]
         moved[own.coordinate[(kinds[0] == VALUE) & (kinds[1] == VALUE)]] = 1.0
-    # Rotary terms add nothing in a translation of plates in their planes; end walls move normally, evenly.
-    assert moved @ energies.mass @ moved == pytest.approx(box.mass_kg, rel=1e-9)
+    return float(moved @ energies.mass @ moved)
+
+
+STRIPS = (Strip("lid", (0.0, 0.32), (0.0, 0.02), 0.014), Strip("gear_end", (0.0, 0.03), (0.02, 0.12), 0.02),
+          Strip("front", (0.0, 0.05), (0.0, 0.24), 0.012))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "tolerance"),
+    [
+        ({}, 1e-9),
+        ({"strips": STRIPS}, 1e-9),
+        ({"ribs": (Rib(0.11, (0.006, 0.07), 0.008, 0.03),)}, 1e-9),
+        # Points of a boss lie in another boss or not: 64 of them.
+        ({"seats": {n: replace(s, boss_radius_m=0.06) for n, s in iron_box().seats.items()}}, 0.01),
+    ],
+    ids=["bosses", "strips", "ribs", "bosses that meet"],
+)
+def test_kinetic_energy_of_a_translation_is_that_of_the_mass(changes: dict, tolerance: float) -> None:
+    box = iron_box(**changes)
+    assert translation_kg(box) == pytest.approx(box.mass_kg, rel=tolerance)
+    assert box.mass_kg != pytest.approx(iron_box(seats={}).mass_kg, rel=1e-3)
+
+
+def test_a_strip_over_a_whole_plate_is_a_thicker_plate() -> None:
+    box = iron_box(strips=(Strip("lid", (0.0, 0.32), (0.0, 0.14), 0.011),))
+    thicker = iron_box(thickness=replace(box.thickness, lid_m=0.011))
+    half = halves_of(box)[1]
+    (found, _), (expected, _) = box_energy(box, half), box_energy(thicker, half)
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
+    with pytest.raises(ValueError, match="strip"):
+        iron_box(strips=(Strip("lid", (0.0, 0.32), (0.05, 0.12), 0.011),))
+
+
+def test_ribs_stiffen_the_wall_by_what_a_bar_on_a_plate_does() -> None:
+    box = iron_box(seats={})
+    ribbed = replace(box, ribs=(Rib(0.16, (0.0, 0.24), 0.008, 0.02),))
+    half = halves_of(box)[0]
+    bent = []
+    for one in (box, ribbed):
+        energies, _ = box_energy(one, half)
+        own = half.component("front", Axis.Z)
+        # Cylindrical bending between the first bubbles: curvature along y alone, w = f(y) at every x.
+        names_x, names_y = half.lines[0].names, half.lines[1].names
+        across = [names_x.find(VALUE, end, -1) for end in (0, 1)]
+        bubble = names_y.order.index(1)
+        chosen = own.coordinate[np.isin(own.first, across) & (own.second == bubble)]
+        moved = np.zeros(half.shared.coordinates)
+        moved[chosen] = 1.0
+        bent.append(moved @ energies.stiffness @ moved)
+    curved = half.integrals[1][2, 2, bubble, bubble]
+    inner, outer = 0.004, 0.024
+    bar = IRON.youngs_modulus_pa * 0.008 * (outer**3 - inner**3) / 3.0
+    # Two walls; the bar stands on the middle surface's strain: E b (z_2³ - z_1³)/3 by two points of Gauss's rule.
+    assert bent[1] - bent[0] == pytest.approx(2.0 * bar * curved, rel=1e-6)
 
 
 def test_plates_share_displacement_and_rotation_at_an_edge() -> None:
