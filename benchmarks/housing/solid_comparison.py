@@ -18,8 +18,8 @@ from siggen.dynamics.housing.layout import bosses_meet
 from siggen.dynamics.housing.motion import Motion, Place, box_motions, motion_at
 
 FIVE = (20, 5)
-TEN_MORE = (21, 10)
-"""Seed and number of boxes; numbers of functions were settled with the five, the ten were looked at afterwards."""
+TEN_MORE = (22, 10)
+"""Seed and number of boxes; the ten were looked at after the numbers of functions were settled."""
 ELEMENT_M = 0.012
 HIGHEST_HZ = 8000.0
 FORCES = (("gear", "front", Axis.X), ("gear", "front", Axis.Y), ("pinion", "back", Axis.X), ("pinion", "back", Axis.Y))
