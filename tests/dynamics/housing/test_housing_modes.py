@@ -1,0 +1,221 @@
+"""A whole housing: limits, reciprocity, residuals, what cancels and what infinite plates do."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.housing.third_octaves import bands_db, centres_hz, distance, lines_hz
+from siggen.dynamics.housing.box import SIDES, Axis, Box, Material, Thicknesses
+from siggen.dynamics.housing.housing_modes import (
+    WAVES,
+    HousingModes,
+    housing_modes,
+    mixed_damping,
+    resolved_hz,
+    waves_for,
+)
+from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, box_motions, motion_at
+from siggen.dynamics.housing.plate_energy import sheet
+from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, iron_box
+from tests.dynamics.housing.rigid_body import rigid_box_hz
+from tests.dynamics.housing.timoshenko_beam import free_bending_hz
+
+
+@pytest.fixture(scope="module")
+def iron() -> HousingModes:
+    return housing_modes(iron_box())
+
+
+def damped(modes: HousingModes, ratio: float = 0.02) -> np.ndarray:
+    return np.full(modes.frequency_hz.size, ratio)
+
+
+def lid(box: Box, modes: HousingModes, shares: tuple[float, float] = (0.6, 0.3)):
+    return motion_at(modes.halves, Place("lid", shares[0] * box.size_m[0], shares[1] * box.size_m[2], Axis.Y))
+
+
+def test_a_very_stiff_box_is_a_rigid_body_on_its_bolts() -> None:
+    stiff = iron_box(material=replace(IRON, youngs_modulus_pa=1e4 * IRON.youngs_modulus_pa))
+    found = housing_modes(stiff, 3000.0).frequency_hz[:6]
+    # 1 %: the inertia that stands for shear of thick plates also counts in a rotation.
+    np.testing.assert_allclose(found, rigid_box_hz(stiff), rtol=0.01)
+
+
+def test_thick_walls_come_near_the_rigid_body() -> None:
+    thick = iron_box(material=STEEL, thickness=Thicknesses(0.032, 0.02, 0.02, 0.02))
+    found = housing_modes(thick, 3000.0).frequency_hz
+    np.testing.assert_allclose(found[:6], rigid_box_hz(thick), rtol=0.06)  # floors give way by some per cent
+    assert found[6] > 2.0 * found[5]
+
+
+def test_a_closed_square_tube_bends_like_a_timoshenko_beam() -> None:
+    tube = Box((1.19, 0.09, 0.09), STEEL, Thicknesses(0.01, 0.01, 0.01, 0.01), {}, _soft_bolts())
+    found = housing_modes(tube, 2000.0, waves=14.0).frequency_hz
+    assert found[5] < 20.0
+    expected = free_bending_hz(1.19, 0.09, 0.01, STEEL)
+    # 3 %: the section gives way in its plane, which a beam does not.
+    assert found[6] == pytest.approx(expected, rel=0.03)
+    assert found[7] == pytest.approx(found[6], rel=1e-3)  # both planes of the square alike
+
+
+def _soft_bolts():
+    return tuple(replace(bolt, x_m=x, z_m=0.02, patch_m=0.02, stiffness_n_per_m=(1e3, 1e3, 1e3)) for bolt, x in
+                 zip(BOLTS, (0.2, 0.99), strict=True))  # fmt: skip
+
+
+def test_forces_and_motions_are_reciprocal(iron: HousingModes) -> None:
+    box = iron_box()
+    sides = [box_motions(box, iron.halves)["gear/front/y"], lid(box, iron)]
+    found = iron.accelerance(sides, sides, np.geomspace(50.0, 5000.0, 40), damped(iron))
+    np.testing.assert_allclose(found[0, 1], found[1, 0], rtol=1e-8)
+
+
+def test_modal_masses_are_one_and_shares_of_energy_are_shares(iron: HousingModes) -> None:
+    assert (np.diff(iron.frequency_hz) >= 0.0).all()
+    assert ((iron.bolt_share > 0.0) & (iron.bolt_share < 1.0)).all()
+    assert iron.bolt_share[:6].mean() > 10.0 * iron.bolt_share[12:].mean()
+    assert mixed_damping(iron, 0.01, 0.05)[0] == pytest.approx(0.01 + 0.04 * iron.bolt_share[0])
+
+
+def test_the_residual_stands_for_all_higher_modes(iron: HousingModes) -> None:
+    box = iron_box()
+    few = housing_modes(box, 2000.0)
+    for name in ("gear/front/x", "gear/front/y"):
+        both = [(box_motions(box, found.halves)[name], lid(box, found)) for found in (iron, few)]
+        frequency = np.linspace(50.0, 700.0, 50)
+        full, short = (
+            found.accelerance(sides, sides, frequency, damped(found))
+            for found, sides in zip((iron, few), both, strict=True)
+        )
+        # At a third of the last kept mode the dropped ones are quasi-static to (1/3)² of their share.
+        assert np.abs(full - short).max() < 0.02 * np.abs(full).max()
+    static = few.static_flexibility(both[1], both[1])
+    np.testing.assert_allclose(static, iron.static_flexibility(both[0], both[0]), rtol=1e-9)
+    slow = few.accelerance(both[1], both[1], np.array([0.5]), np.zeros(few.frequency_hz.size))
+    np.testing.assert_allclose(slow[:, :, 0].real / -((2 * np.pi * 0.5) ** 2), static, rtol=1e-4)
+
+
+def test_seats_of_a_shaft_give_way_less_than_its_bearings(iron: HousingModes) -> None:
+    box = iron_box()
+    seats = [on_both_walls(box, iron, shaft, axis) for shaft in box.seats for axis in "xy"]
+    # Without the six modes that are the box on its bolts.
+    beyond = iron.flexibility_beyond(6, seats, seats)
+    # Both ball bearings of a shaft under some kN: 2 to 3e8 N/m.
+    assert (1.0 / np.diag(beyond)).min() > 3.0 * 3e8
+
+
+def on_both_walls(box: Box, modes: HousingModes, shaft: str, axis: str) -> Motion:
+    """Half a force on either seat of a shaft."""
+    motions = box_motions(box, modes.halves)
+    front, back = (motions[f"{shaft}/{wall}/{axis}"] for wall in ("front", "back"))
+    return Motion(0.5 * (front.even + back.even), 0.5 * (front.odd + back.odd))
+
+
+def test_opposed_forces_of_both_shafts_cancel_below_1_khz(iron: HousingModes) -> None:
+    box, frequency = iron_box(), np.geomspace(50.0, 1000.0, 400)
+    for axis in "xy":
+        gear, pinion = (on_both_walls(box, iron, shaft, axis) for shaft in ("gear", "pinion"))
+        found = iron.accelerance([lid(box, iron)], [gear, pinion, gear.plus(pinion, -1.0)], frequency, damped(iron))[0]
+        power = (np.abs(found) ** 2).mean(axis=1)
+        assert 10.0 * np.log10(power[2] / (power[0] + power[1])) < -6.0
+
+
+def test_the_lid_has_the_mean_conductance_of_an_infinite_plate() -> None:
+    box = iron_box()
+    modes = housing_modes(box, 14000.0, waves=13.0)
+    frequency = np.linspace(2000.0, 9000.0, 3000)
+    rng = np.random.default_rng(5)
+    own = sheet(IRON, 0.007)
+    found = []
+    for shares in rng.uniform(0.15, 0.85, (8, 2)):
+        place = lid(box, modes, (float(shares[0]), float(shares[1])))
+        mobility = modes.accelerance([place], [place], frequency, damped(modes))[0, 0] / (2j * np.pi * frequency)
+        found.append(mobility.real.mean())
+    assert 0.7 < np.mean(found) * 8.0 * np.sqrt(own.bending * own.mass) < 1.4
+
+
+def test_finer_shapes_change_third_octaves_little() -> None:
+    box, frequency, levels = iron_box(), lines_hz(centres_hz(50.0, 5000.0)), []
+    for waves in (8.5, 15.0):
+        found = housing_modes(box, 9000.0, waves)
+        sides = [box_motions(box, found.halves)["gear/front/y"], lid(box, found)]
+        levels.append(bands_db(found.accelerance(sides, sides, frequency, damped(found))))
+    apart = distance(*levels)
+    assert apart.within_6_db >= 0.95
+    assert apart.median < 0.5
+
+
+def test_higher_frequencies_take_more_waves_within_limits() -> None:
+    box = iron_box()
+    assert waves_for(box, None) == waves_for(box, 3000.0) == WAVES
+    assert resolved_hz(box, waves_for(box, 24_000.0)) == pytest.approx(12_000.0)
+    assert waves_for(box, 1e6) == 2.0 * WAVES
+
+
+def test_a_larger_box_has_lower_modes_in_proportion() -> None:
+    box, scale = iron_box(), 2.5
+    seats = {
+        name: replace(seat, **{key: scale * getattr(seat, key) for key in seat.__slots__})
+        for name, seat in box.seats.items()
+    }
+    bolts = tuple(
+        replace(
+            bolt, x_m=scale * bolt.x_m, z_m=scale * bolt.z_m, patch_m=scale * bolt.patch_m,
+            stiffness_n_per_m=tuple(scale * k for k in bolt.stiffness_n_per_m),
+        )
+        for bolt in box.bolts
+    )  # fmt: skip
+    thickness = Thicknesses(*(scale * getattr(box.thickness, key) for key in box.thickness.__slots__))
+    large = replace(box, size_m=tuple(scale * s for s in box.size_m), seats=seats, bolts=bolts, thickness=thickness)
+    small_modes, large_modes = housing_modes(box, 2500.0), housing_modes(large, 1000.0)
+    np.testing.assert_allclose(large_modes.frequency_hz * scale, small_modes.frequency_hz, rtol=1e-8)
+    shapes = [np.abs(found.shapes([lid(one, found)])) for one, found in ((box, small_modes), (large, large_modes))]
+    np.testing.assert_allclose(shapes[1] * scale**1.5, shapes[0], rtol=1e-4, atol=1e-6)
+
+
+def test_bolts_carry_the_weight_of_a_static_force(iron: HousingModes) -> None:
+    box = iron_box()
+    sides = [
+        motion for bolt in box.bolts for name, motion in bolt_motions(iron.halves, bolt).items() if name[-1] == "y"
+    ]
+    force = box_motions(box, iron.halves)["gear/front/y"]
+    pressed = 1.5e8 * iron.static_flexibility(sides, [force])[:, 0]
+    assert pressed.sum() == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_place_beyond_the_plate_is_refused(iron: HousingModes) -> None:
+    with pytest.raises(ValueError, match="lid"):
+        motion_at(iron.halves, Place("lid", 0.4, 0.05, Axis.Y))
+
+
+def test_a_box_is_refused_by_name() -> None:
+    box = iron_box()
+    with pytest.raises(ValueError, match="seat gear"):
+        replace(box, seats={"gear": replace(box.seats["gear"], x_m=0.01)})
+    with pytest.raises(ValueError, match="bolt"):
+        replace(box, bolts=(replace(BOLTS[0], z_m=0.1),))
+    with pytest.raises(ValueError, match="free"):
+        housing_modes(iron_box(bolts=()))
+
+
+def test_every_plate_of_the_box_has_places(iron: HousingModes) -> None:
+    for plate, (normal, _) in SIDES.items():
+        place = Place(plate, 0.05, 0.06, normal)
+        assert np.abs(iron.shapes([motion_at(iron.halves, place)])).max() > 0.0
+
+
+def test_walls_opposite_each_other_move_as_their_half_says(iron: HousingModes) -> None:
+    box = iron_box()
+    motions = box_motions(box, iron.halves)
+    front, back = iron.shapes([motions["gear/front/x"], motions["gear/back/x"]])
+    assert np.allclose(np.abs(front), np.abs(back))
+    assert 0.3 < (np.sign(front) == np.sign(back)).mean() < 0.7
+
+
+def test_softer_material_lowers_flexible_modes_only_with_its_root() -> None:
+    soft = Material(0.5 * IRON.youngs_modulus_pa, IRON.poisson_ratio, IRON.density_kg_m3)
+    half_bolts = tuple(replace(b, stiffness_n_per_m=tuple(0.5 * k for k in b.stiffness_n_per_m)) for b in BOLTS)
+    found = housing_modes(iron_box(material=soft, bolts=half_bolts), 2000.0).frequency_hz
+    full = housing_modes(iron_box(), 2000.0 * np.sqrt(2.0)).frequency_hz
+    np.testing.assert_allclose(found, full[: found.size] / np.sqrt(2.0), rtol=1e-9)
