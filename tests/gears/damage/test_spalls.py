@@ -235,6 +235,19 @@ def test_kinks_leave_smooth_pieces(layout):
     assert coarse == pytest.approx(halved, rel=1e-4)
 
 
+def test_where_a_dish_is_as_deep_as_a_flat_floor_sections_have_kinks():
+    # 0.4 sqrt(1 - r^2) = 0.2 on the ellipse r = sqrt(3/4); it leaves the rectangle through both of its sides.
+    dish, flat = pit(2.0, 9.0, 2.0, 0.8, 0.4, "dish"), box(1.6, 2.6, 7.5, 10.5, 0.2)
+    along = 0.8 * sqrt(0.75) * sqrt(1.0 - (1.5 / (2.0 * sqrt(0.75))) ** 2)
+    found = section_kinks(pit_rows((dish, flat)), WIDTH) / MM
+    for height in (2.0 - along, 2.0 + along):
+        assert np.abs(found - height).min() < 1e-9
+    # inside a wide rectangle it ends by itself
+    wide = section_kinks(pit_rows((dish, box(0.9, 3.1, 5.0, 13.0, 0.2))), WIDTH) / MM
+    for height in (2.0 - 0.8 * sqrt(0.75), 2.0 + 0.8 * sqrt(0.75)):
+        assert np.abs(wide - height).min() < 1e-9
+
+
 def test_spalls_are_clipped_to_face_and_flank():
     tip = float(GEAR.height_m(GEAR.tip_roll_rad)) / MM
     beyond, inside = box(4.0, 9.0, -3.0, 2.0), box(4.0, tip, 0.0, 2.0)
