@@ -238,6 +238,7 @@ def _quiet(mine: Path, block: Block, duration_s: float, gearbox: int) -> dict[st
     """Return a configuration at the recording's speed, without noise, converter and variation of the speed."""
     config = siggen.load_config(mine).canonical()
     off = {"noise_spectrum": None, "lines": None, "bits": None, "range_m_s2": 1e6}
+    _refuse_other_kinds(mine, config["sensors"], off)
     return {
         **config,
         "name": "difference",
@@ -248,6 +249,16 @@ def _quiet(mine: Path, block: Block, duration_s: float, gearbox: int) -> dict[st
         "sensors": [{**sensor, **off} for sensor in config["sensors"]],
         "operating_points": [{**config["operating_points"][0], "speed_hz": block.speed_hz}],
     }
+
+
+def _refuse_other_kinds(mine: Path, sensors: Sequence[Mapping[str, Any]], off: Mapping[str, Any]) -> None:
+    for sensor in sensors:
+        if lacking := [key for key in off if key not in sensor]:
+            raise UsageError(
+                f"{mine}: sensor {sensor['name']}: received kind {sensor.get('kind')}, which has no "
+                f"{', '.join(lacking)}; allowed: accelerometers, whose noise is taken off before damage is injected. "
+                "Leave this sensor and its recordings out"
+            )
 
 
 def injected(block: Block, difference: Difference, start_turn: int) -> dict[str, np.ndarray]:

@@ -74,10 +74,10 @@ def predict(
         loaded = load_model(model, load_indicators(indicator))
     path, row = _one(file)
     pair = _teeth(path, teeth, loaded.facts.teeth)
-    facts, names = recording.facts(), loaded.facts.channels
-    read = read_recording(path, names, replace(facts, row=row))
+    facts, names, units = recording.facts(), loaded.facts.channels, loaded.facts.units
+    read = read_recording(path, names, replace(facts, row=row), units)
     references = tuple(
-        read_recording(path, names, _reference_facts(facts, path, number, healthy.reference_fs))
+        read_recording(path, names, _reference_facts(facts, path, number, healthy.reference_fs), units)
         for said in healthy.reference or ()
         for path, number in file_rows(said)
     )

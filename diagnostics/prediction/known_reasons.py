@@ -14,6 +14,7 @@ import numpy as np
 
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.record_pieces import RecordPieces
+from diagnostics.recordings.channel_factor import ACCELERATION_UNIT
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.state_classes import HEALTHY
@@ -87,6 +88,22 @@ def known_reasons(
     if not 0.99 * low <= pulses.speed_hz <= 1.01 * high:  # a mean speed scatters by less than one per cent
         found.append(f"the pinion speed is {pulses.speed_hz:.4g} Hz, training covers {low:.4g} to {high:.4g} Hz")
     return found + _length_reasons(facts, pieces)
+
+
+def check_units(facts: ModelFacts, recording: MeasuredRecording) -> None:
+    """Refuse a recording with a channel in another unit than in training.
+
+    Raises
+    ------
+    UsageError
+        Naming the channel, both units and the way out.
+    """
+    for name, unit in zip(facts.channels, facts.units, strict=True):
+        if (found := recording.units.get(name, ACCELERATION_UNIT)) != unit:
+            raise UsageError(
+                f"{recording.path}: channel {name} is in {found}; allowed: {unit}, as in training. Give a recording of "
+                f"the same quantity, or a model trained on {found}"
+            )
 
 
 def _rate_reasons(facts: ModelFacts, recording: MeasuredRecording) -> list[str]:

@@ -33,7 +33,9 @@ MODEL_FILES = (
 
 DIGEST = "digest"
 
-FORMAT = "siggen-diagnostics model 4"
+FORMAT = "siggen-diagnostics model 5"
+SINGLE_UNIT_FORMAT = "siggen-diagnostics model 4"
+"""Written when all channels had one unit; read."""
 UNHASHED_FORMAT = "siggen-diagnostics model 3"
 """Written before files had hashes; read, and said to have none."""
 
@@ -102,8 +104,8 @@ class ModelFacts:
         every file).
     classes, channels : tuple of str
         States and channel names, in the models' order.
-    unit : str
-        Unit of every channel.
+    units : tuple of str
+        Unit of each channel.
     fs_hz, duration_s : float
         Rate and length of the training records.
     teeth : tuple of (int, int)
@@ -122,7 +124,7 @@ class ModelFacts:
     manifest_digest: str
     classes: tuple[str, ...]
     channels: tuple[str, ...]
-    unit: str
+    units: tuple[str, ...]
     fs_hz: float
     duration_s: float
     teeth: tuple[tuple[int, int], ...]
@@ -165,7 +167,7 @@ def model_facts(dataset: Dataset, table: pa.Table, classes: tuple[str, ...]) -> 
         manifest_digest=manifest_digest(dataset.manifest),
         classes=classes,
         channels=tuple(channel.name for channel in dataset.channels),
-        unit=dataset.channels[0].unit,
+        units=tuple(channel.unit for channel in dataset.channels),
         fs_hz=float(dataset.fs_hz),
         duration_s=float(dataset.duration_s),
         teeth=tuple(sorted(pairs)),
@@ -206,6 +208,8 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
     try:
         content = _content(path)
         facts = {name: _tuples(value) for name, value in content["facts"].items()}
+        if content["format"] != FORMAT:
+            facts["units"] = (facts.pop("unit"),) * len(facts["channels"])
         referenced = content["referenced_distance"]
         return (
             ModelFacts(**facts),
@@ -255,8 +259,9 @@ def _content(path: Path) -> dict[str, Any]:
     found = content.get("format")
     if found == UNHASHED_FORMAT:
         return content
-    if found != FORMAT:
-        raise ValueError(f"received format {found!r}; allowed are {FORMAT!r} and {UNHASHED_FORMAT!r}")
+    if found not in {FORMAT, SINGLE_UNIT_FORMAT}:
+        allowed = ", ".join(map(repr, (FORMAT, SINGLE_UNIT_FORMAT, UNHASHED_FORMAT)))
+        raise ValueError(f"received format {found!r}; allowed are {allowed}")
     return unsealed_text(text)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.prediction.known_reasons import OwnState, known_reasons, own_state, reference_reasons
+from diagnostics.prediction.known_reasons import OwnState, check_units, known_reasons, own_state, reference_reasons
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.prediction.training_distance import TrainingDistance
@@ -164,8 +164,11 @@ def predict_recording(
     Raises
     ------
     UsageError
-        If pulses cannot be found, references were given to a model without the variant, or one is the recording itself.
+        If a channel is in another unit than in training, pulses cannot be found, references were given to a model
+        without the variant, or one is the recording itself.
     """
+    for one in (recording, *references):
+        check_units(model.facts, one)
     if references:
         _check_variant(model)
         _check_references(recording, references)

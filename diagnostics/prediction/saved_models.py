@@ -44,7 +44,7 @@ def model_card(training: Training, dataset: Dataset) -> str:
         "## Data",
         _data(training, dataset),
         "## Files",
-        _files(training),
+        _files(training, dataset),
         "## Scores on test specimens",
         _scores(training),
         _probabilities(training),
@@ -79,7 +79,7 @@ def class_text(split: SpecimenSplit) -> str:
     return f"classes: {', '.join(split.classes)} ({held})"
 
 
-def _files(training: Training) -> str:
+def _files(training: Training, dataset: Dataset) -> str:
     lines = [
         f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
         f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
@@ -90,10 +90,12 @@ def _files(training: Training) -> str:
     if training.network:
         facts = training.network.facts
         windows = facts.windows
+        units = {channel.name: channel.unit for channel in dataset.channels}
+        listed = ", ".join(dict.fromkeys(units[name] for name in facts.channels))
         lines += [
             f"* `cnn.safetensors`: 1-D network with a wide first layer. A window has {windows.revolutions} pinion "
             f"revolutions with {windows.samples_per_revolution} samples each, resampled to equal angles. The input is "
-            f"(batch, {len(facts.channels)}, {windows.samples}) in m/s^2. The network normalises it.",
+            f"(batch, {len(facts.channels)}, {windows.samples}) in {listed}. The network normalises it.",
             "* `cnn.onnx`: the same network, input `windows`, output `logits`. Average the class probabilities over "
             f"the windows of a record. Windows are {windows.hop_revolutions} revolutions apart.",
         ]

@@ -1,10 +1,11 @@
-"""What a channel is multiplied by to be in m/s^2: by the unit that the file states, or that the user says.
+"""What a channel is multiplied by to be in the unit that is wanted: by the unit that the file states, or the user says.
 
-Units a recording may come in, and the factor that turns them into m/s^2.
+Accelerations and voltages of accelerometers are turned into m/s^2. Any other quantity is taken as it is, or not at all.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from siggen.errors import UsageError
@@ -20,6 +21,8 @@ ACCELERATIONS = {
 VOLTAGES_MV = {"mV": 1.0, "V": 1000.0}
 
 ASSUMED = "m/s2"
+ACCELERATION_UNIT = "m/s^2"
+"""How sets and models write it."""
 SPELLINGS = {
     "m/s²": "m/s2",
     "m/s^2": "m/s2",
@@ -33,6 +36,11 @@ SPELLINGS = {
 }
 """Other spellings of known units, as recorders write them."""
 KNOWN = ("m/s2", "mm/s2", "g", "mg", "mV", "V")
+OTHER_QUANTITY = re.compile(
+    r"[kMmcduµn]?(N|Pa|bar|N[ *·]?m|m/s|m|rad|rad/s|A|W|s|Hz|K)|lbf|psi|in|in/s|ips|rpm|1/min|°|deg|(°|deg ?)[CF]",
+    re.IGNORECASE,
+)
+"""Units that are certainly not of an acceleration, nor of an accelerometer's voltage."""
 
 
 def factor_to_m_s2(unit: str, sensitivity_mv_per_g: float | None = None) -> float:
@@ -65,7 +73,14 @@ def factor_to_m_s2(unit: str, sensitivity_mv_per_g: float | None = None) -> floa
     return VOLTAGES_MV[unit] / sensitivity_mv_per_g * STANDARD_GRAVITY_M_S2
 
 
-def channel_factor(path: Path, column: str, stated: str | None, said: str | None, mv_per_g: float | None) -> float:
+def channel_factor(
+    path: Path,
+    column: str,
+    stated: str | None,
+    said: str | None,
+    mv_per_g: float | None,
+    wanted: str = ACCELERATION_UNIT,
+) -> float:
     """Return the factor.
 
     Parameters
@@ -78,13 +93,24 @@ def channel_factor(path: Path, column: str, stated: str | None, said: str | None
         Unit of the user; m/s2 is assumed where nobody names one.
     mv_per_g : float, optional
         Sensitivity, for voltages.
+    wanted : str, optional
+        Unit that the values are wanted in; only accelerations are converted.
 
     Raises
     ------
     UsageError
-        If file and user name different units, the file an unknown one and the user none, or as of `factor_to_m_s2`.
+        If file and user name different units, the file an unknown one and the user none, or one of another quantity
+        than is wanted, or as of `factor_to_m_s2`.
     """
     stated, said = (SPELLINGS.get(unit.strip(), unit.strip()) if unit else None for unit in (stated, said))
+    if wanted != ACCELERATION_UNIT:
+        _check_same(path, column, stated or said, wanted)
+        return 1.0
+    if stated and stated not in KNOWN and OTHER_QUANTITY.fullmatch(stated):
+        raise UsageError(
+            f"{path}: states the unit {stated[:40]!r} of {column}, which is no acceleration; allowed are "
+            f"{', '.join(KNOWN)}. Name a column of an accelerometer (--channel NAME=COLUMN), or correct the file"
+        )
     if stated in KNOWN and said and said != stated:
         raise UsageError(
             f"{path}: states the unit {stated} of {column}, received --unit {said}; leave --unit out or "
@@ -96,3 +122,14 @@ def channel_factor(path: Path, column: str, stated: str | None, said: str | None
             "are, e.g. --unit g"
         )
     return factor_to_m_s2(said or stated or ASSUMED, mv_per_g)
+
+
+def _check_same(path: Path, column: str, found: str | None, wanted: str) -> None:
+    """Refuse another unit than the one wanted, or none at all."""
+    if found == wanted:
+        return
+    received = f"the unit {found[:40]!r}" if found else "no unit"
+    way_out = f"Name a column in {wanted} (--channel NAME=COLUMN), or take a model of other channels"
+    if not found:
+        way_out = f"If the file holds {wanted}, say so: --unit {wanted}"
+    raise UsageError(f"{path}: {column}: received {received}; allowed: {wanted}, as it is. {way_out}")

@@ -1,4 +1,4 @@
-"""A recording in m/s^2 with channels under the model's names, from a file and what the user says about it.
+"""A recording with channels under the model's names and in its units, from a file and what the user says about it.
 
 Times of a tacho's pulses from its sampled waveform. Source: standard literature (level crossing with hysteresis).
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.recordings.channel_factor import ASSUMED, channel_factor
+from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, ASSUMED, channel_factor
 from diagnostics.recordings.columns import read_columns, signal_problem
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
 from siggen.errors import UsageError
@@ -85,9 +85,9 @@ class RecordingFacts:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredRecording:
-    """Channels (n,) [m/s^2] by the model's names, rate, and pulse times [s] of the pinion where there is a tacho.
+    """Channels (n,) by the model's names, rate, and pulse times [s] of the pinion where there is a tacho.
 
-    `simulated`: whether the file says that siggen wrote it.
+    `simulated`: whether the file says that siggen wrote it. `units`: of channels that are not in m/s^2.
     """
 
     path: Path
@@ -95,6 +95,7 @@ class MeasuredRecording:
     fs_hz: float
     tacho_s: np.ndarray | None
     simulated: bool = False
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def duration_s(self) -> float:
@@ -102,7 +103,9 @@ class MeasuredRecording:
         return next(iter(self.channels.values())).size / self.fs_hz
 
 
-def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) -> MeasuredRecording:
+def read_recording(
+    path: Path, names: tuple[str, ...], facts: RecordingFacts, units: tuple[str, ...] = ()
+) -> MeasuredRecording:
     """Read the named channels of a file.
 
     Parameters
@@ -113,12 +116,14 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
         Channels that the model takes.
     facts : RecordingFacts
         Rate, columns, unit, tacho.
+    units : tuple of str, optional
+        Units that the channels are wanted in; m/s^2 without.
 
     Raises
     ------
     UsageError
         Naming the file and the way out: unreadable, unknown rate, columns that are not there, signals that are not
-        finite, constant or clipped.
+        finite, constant, clipped or of another quantity than is wanted.
     """
     found = read_columns(path, facts.row)
     fs_hz = _rate(path, found, facts.fs_hz)
@@ -132,9 +137,11 @@ def read_recording(path: Path, names: tuple[str, ...], facts: RecordingFacts) ->
         listed = ", ".join(f"{name} {signal.size}" for name, signal in signals.items())
         raise UsageError(f"{path}: channels differ in their number of samples ({listed}); record them together")
     scale = _full_scale(path, found, facts)
-    factors = {name: scale * _factor(path, found, column, facts) for name, column in mapping.items()}
+    wanted = dict(zip(names, units or (ACCELERATION_UNIT,) * len(names), strict=True))
+    factors = {name: scale * _factor(path, found, column, facts, wanted[name]) for name, column in mapping.items()}
     channels = {name: factors[name] * signal for name, signal in signals.items()}
-    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts), found.simulated)
+    others = {name: unit for name, unit in wanted.items() if unit != ACCELERATION_UNIT}
+    return MeasuredRecording(path, channels, fs_hz, _tacho(path, found, fs_hz, facts), found.simulated, others)
 
 
 def _rate(path: Path, found: Columns, said: float | None) -> float:
@@ -185,8 +192,8 @@ def _column(found: Columns, name: str, said: str | None) -> str | None:
     return None
 
 
-def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts) -> float:
-    return channel_factor(path, column, found.units.get(column), facts.unit, facts.sensitivity_mv_per_g)
+def _factor(path: Path, found: Columns, column: str, facts: RecordingFacts, wanted: str) -> float:
+    return channel_factor(path, column, found.units.get(column), facts.unit, facts.sensitivity_mv_per_g, wanted)
 
 
 def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:

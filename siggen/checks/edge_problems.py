@@ -28,9 +28,9 @@ def edge_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Ite
     most_mm = 1e3 * LARGEST_SHARE * min(_pitch_radius_m(pair) for pair in pairs)
     damages = {i: s.damage for i, s in sections.get("states", {}).items() if s.damage is not None}
     radii: dict[str, Number] = {
-        f"states.{index}.damage.edge_radius_mm": damage.edge_radius_mm
+        f"states.{index}.damage.{own[0]}": own[1]
         for index, damage in damages.items()
-        if damage.drawn_edges
+        if (own := damage.own_edge_radius) is not None
     }
     if len(radii) < len(damages):
         radii["dynamics.mesh.pit_edge_radius_mm"] = dynamics.mesh.pit_edge_radius_mm

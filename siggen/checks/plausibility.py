@@ -10,13 +10,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from siggen.config import Config, Sensor
+from siggen.config import Config
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
 from siggen.keys.number import Number, bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.plan import SPLITS, split_of
+from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.structure import disc_inertia_kg_m2, disc_mass_kg
 

@@ -37,7 +37,7 @@ DAMAGE_COLUMNS = (
         "polygon_face_mm",
         list_of(pa.float64()),
         MILLIMETRE,
-        "corners (rectangle, v, polygon) across the face; else empty",
+        "corners (rectangle, polygon) across the face; else empty",
     ),
     Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
@@ -62,4 +62,4 @@ def damage_columns(config: Config) -> tuple[Column, ...]:
 
 def has_drawn_edges(config: Config) -> bool:
     """Tell whether damage of a set has edges of its own, so that its rows have `EDGE_COLUMNS`."""
-    return any(state.damage is not None and state.damage.drawn_edges for state in config.states)
+    return any(state.damage is not None and state.damage.own_edge_radius is not None for state in config.states)

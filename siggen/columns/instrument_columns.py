@@ -10,7 +10,8 @@ import pyarrow as pa
 from siggen.columns.column import Column
 
 if TYPE_CHECKING:
-    from siggen.config import Config, Sensor
+    from siggen.config import Config
+    from siggen.sensors.sensor import Sensor
 
 FORCE_NOISE_COLUMN = Column(
     "force_noise_n_per_sqrt_hz", pa.float64(), "N/sqrt(Hz)", "noise on each bearing force, below its corner"

@@ -20,22 +20,10 @@ from siggen.config.states import State
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariation, Variation
 from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
-from siggen.noise.density import Density
-from siggen.noise.inverter import Inverter
-from siggen.noise.line_table import LineTable
-from siggen.noise.mains import Mains
-from siggen.noise.pink import PinkNoise
-from siggen.noise.spectrum import NoiseModulation, SensorDensity
-from siggen.noise.tones import Tones
-from siggen.sensors.accelerometer import Accelerometer, NoiseFloor
-from siggen.sensors.path import MeasuredPath, ModalPath, TransferPath
-from siggen.sensors.resonance import Resonance
-from siggen.sensors.sensor import Sensor
 
 __all__ = [
     "BLOCK",
     "STORED_NUMBERS",
-    "Accelerometer",
     "Background",
     "Base",
     "BearingTones",
@@ -44,7 +32,6 @@ __all__ = [
     "Casing",
     "Config",
     "Coupling",
-    "Density",
     "Dynamics",
     "Floor",
     "ForceNoise",
@@ -53,23 +40,12 @@ __all__ = [
     "Gears",
     "Housing",
     "Internals",
-    "Inverter",
-    "LineTable",
-    "Mains",
     "Manufacture",
-    "MeasuredPath",
     "Mesh",
-    "ModalPath",
-    "NoiseFloor",
-    "NoiseModulation",
     "OperatingRange",
     "ParsedConfig",
-    "PinkNoise",
-    "Resonance",
     "Rotor",
     "Rubbing",
-    "Sensor",
-    "SensorDensity",
     "Shaft",
     "ShaftLines",
     "Shafts",
@@ -77,9 +53,7 @@ __all__ = [
     "Splits",
     "State",
     "Stiffness",
-    "Tones",
     "TorqueVariation",
-    "TransferPath",
     "Unbalance",
     "Variation",
     "Wheel",

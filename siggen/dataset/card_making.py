@@ -201,8 +201,9 @@ def _sensors(config: Config) -> str:
 
 def force_noise_text(config: Config) -> str:
     """Say whether the bearing forces carry noise on their way to the sensors."""
-    has_path = any(sensor.through is not None for sensor in config.sensors)
-    if config.housing is None or config.housing.force_noise is None or not has_path:
+    from siggen.sensors.sensor import needs_forces  # as `oils_of`
+
+    if config.housing is None or config.housing.force_noise is None or not needs_forces(config.sensors):
         return ""
     return "Broad-band noise is added to the bearing forces (`housing.force_noise`). "
 

@@ -14,6 +14,7 @@ from siggen.errors import Problem
 from siggen.faults.growth import Growth
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.number import Number
 from siggen.keys.problems import BRANCHES
 from siggen.keys.section import Section
 from siggen.keys.teeth import TeethValue
@@ -43,7 +44,17 @@ class Fault(Section):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Make the kind known to the messages, in whose paths it is no key."""
+        """Make the kind known to the messages, in whose paths it is no key.
+
+        Raises
+        ------
+        TypeError
+            If it does not say what a state with it may be called.
+        """
+        if not cls.words:
+            raise TypeError(
+                f"{cls.__name__}.words: received (); allowed: what a state with it may be called, one at least"
+            )
         BRANCHES.add(cls.kind_word())
 
     @classmethod
@@ -77,9 +88,9 @@ class Fault(Section):
         return self.words
 
     @property
-    def drawn_edges(self) -> bool:
-        """Whether each damage has an edge radius of its own; else all have that of the section dynamics."""
-        return False
+    def own_edge_radius(self) -> tuple[str, Number] | None:
+        """Key and number of the radius [mm] if each damage draws one; else all have that of the section dynamics."""
+        return None
 
     def hit_teeth(self) -> HitTeeth:
         """Yield what names teeth; as it stands, for damage on neighbouring teeth of one gear."""

@@ -130,9 +130,9 @@ class IrregularSpalls(Fault):
         return (Spall(self.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
 
     @property
-    def drawn_edges(self) -> bool:
-        """Each has an edge radius of its own."""
-        return True
+    def own_edge_radius(self) -> tuple[str, Number]:
+        """Each has one."""
+        return "edge_radius_mm", self.edge_radius_mm
 
     def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:  # noqa: ARG002 - its share is given
         """Return whether nothing bends its edges, and whether it then may go through the face."""
@@ -281,7 +281,15 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
         spall = Spall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
         for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
-                yield Problem("depth_mm", in_mm(problem.received), allowed_text(problem.allowed))
+                yield _depth_problem(size, in_mm(problem.received), allowed_text(problem.allowed))
+                return
+
+
+def _depth_problem(size: IrregularSpalls, received: str, allowed: str) -> Problem:
+    if size.depth_mm is not None:
+        return Problem("depth_mm", received, allowed)
+    follows = f"a depth of {received} follows from profile and face length ({DEPTH_SHARE:g} of the root of both)"
+    return Problem("profile_length_mm", f"{number_text(size.profile_length_mm)} mm: {follows}", f"depth {allowed}")
 
 
 def _heights_m(pair: GearPair, size: IrregularSpalls) -> list[float]:

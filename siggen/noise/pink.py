@@ -21,6 +21,7 @@ class PinkNoise(Source):
     key: ClassVar[str] = "pink_noise"
     about: ClassVar[str] = "of the electronics; "
     meaning: ClassVar[str] = "density of the 1/f noise at 100 Hz, in"
+    broad: ClassVar[bool] = True
     per: ClassVar[tuple[str, str]] = ("_per_sqrt_hz", "/sqrt(Hz)")
 
     density_m_s2_per_sqrt_hz: Annotated[Number, Within(least=0)] = Field(

@@ -40,7 +40,7 @@ class NoiseModulation(Section):
 
 
 class SensorDensity(Density, Source):
-    """Noise of a sensor and its electronics in m/s²/√Hz, such as its data sheet or a measurement at rest gives."""
+    """Noise of a sensor and its electronics in the channel's unit/√Hz, as of a data sheet or a measurement at rest."""
 
     key: ClassVar[str] = "noise_spectrum"
     about: ClassVar[str] = "noise of any density beside the white and the pink one; "

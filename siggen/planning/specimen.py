@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from siggen.config import Config, Dynamics, Gears, Sensor, Stiffness
+from siggen.config import Config, Dynamics, Gears, Stiffness
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
 from siggen.seeding import Stage, named_uniforms
+from siggen.sensors.sensor import Sensor
 
 
 @dataclass(frozen=True, slots=True)

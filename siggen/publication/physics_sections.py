@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from siggen.dataset.card_making import drive_text, friction_text
 from siggen.keys.section import Section
+from siggen.sensors.sensor import needs_forces
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -23,7 +24,7 @@ def physics_section(config: Config) -> str:
 def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     dynamics, mesh, made = config.dynamics, config.dynamics.mesh, config.manufacture
     paths = [sensor for sensor in config.sensors if sensor.through is not None]
-    housing = config.housing
+    forces = config.housing is not None and config.housing.force_noise is not None and needs_forces(config.sensors)
     yield (
         "manufacturing errors of the teeth",
         made is not None,
@@ -42,7 +43,7 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     )
     yield "variation within a record", config.variation != type(config.variation)(), drive_text(config)
     yield "transfer path to the sensors", bool(paths), f"{len(paths)} of {len(config.sensors)} sensors"
-    yield "noise on the bearing forces", bool(housing and housing.force_noise and paths), "`housing.force_noise`"
+    yield "noise on the bearing forces", forces, "`housing.force_noise`"
     yield "background of a healthy machine", config.background is not None, "`background`"
 
 

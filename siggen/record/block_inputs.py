@@ -12,8 +12,9 @@ from siggen.dynamics.time.response_stream import Pieces
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background import BackgroundBlocks
-from siggen.record.motion_blocks import MotionBlocks
+from siggen.record.motion_blocks import MotionBlocks, delivered
 from siggen.sensing.block_filter import AHEAD, TOGETHER
+from siggen.sensing.inputs import Input
 from siggen.specimen.block_responses import BlockResponses, block_responses
 from siggen.specimen.instrument import Instrument, instrument_ways
 
@@ -26,6 +27,7 @@ class BlockInputs:
     ) -> None:
         self._samples, self._grid = config.samples, instrument.blocks.grid
         back, background = self._grid.back, instrument.background
+        _refuse_undelivered(instrument, delivered(response))
         self._motions = MotionBlocks(config, specimen, record, response, back)
         self._background: BackgroundBlocks | None = None
         self._filters = instrument.blocks.filters
@@ -84,6 +86,18 @@ class BlockInputs:
         """Yield the spectrum of every input that a filter sees; others are shown as they are."""
         for k in range(0, len(self._felt), TOGETHER):
             yield from np.fft.rfft(self._values[k : min(k + TOGETHER, len(self._felt))])
+
+
+def _refuse_undelivered(instrument: Instrument, delivered: tuple[Input, ...]) -> None:
+    """Raise where a sensor shows what the model does not give: its channel would be nothing, in silence."""
+    for channel in instrument.channels:
+        for one in channel.seen:
+            if one not in delivered:
+                given = ", ".join(f"{kind} {name}" for kind, name in delivered)
+                raise ValueError(
+                    f"sensor {channel.sensor.name}: shows {one.kind} {one.name}, which the model does not give "
+                    f"(it gives {given})"
+                )
 
 
 def _with_floor(instrument: Instrument, background: BackgroundBlocks) -> BlockResponses:

@@ -7,13 +7,14 @@ from functools import partial
 
 import numpy as np
 
-from siggen.config import Config, MeasuredPath
+from siggen.config import Config
 from siggen.keys.number import at
 from siggen.noise.source import Draws
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import noise_levels
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.measurement import Measurement
+from siggen.sensors.path import MeasuredPath
 from siggen.specimen.drive import record_owner
 from siggen.specimen.instrument import ChannelInstrument
 

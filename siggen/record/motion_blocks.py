@@ -17,6 +17,12 @@ ROLL_OFF_TAPS = 1024
 """Of the filter of force noise that rolls off."""
 
 
+def delivered(response: Pieces) -> tuple[Input, ...]:
+    """Return what a response holds, as inputs."""
+    kinds = ((MOTION, response.motions), (FORCE, response.places))
+    return tuple(Input(kind, name) for kind, names in kinds for name in names)
+
+
 class MotionBlocks:
     """Values from sample -`back` on, about the mean of the history, with noise on forces; 0 before the history.
 
@@ -24,11 +30,7 @@ class MotionBlocks:
     """
 
     def __init__(self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, back: int) -> None:
-        self.inputs = tuple(
-            Input(kind, name)
-            for kind, names in ((MOTION, response.motions), (FORCE, response.places))
-            for name in names
-        )
+        self.inputs = delivered(response)
         noise = force_noise(config, specimen, record)
         self.labels = noise.labels
         self._noise = [_noise(config, record, noise, one) for one in self.inputs]

@@ -14,6 +14,7 @@ from siggen.config.pairs import Pair
 from siggen.faults.flank_place import FACE_WIDTH, MODULE, SKEW
 from siggen.keys.scaling import grown, multiplied, scaled
 from siggen.rig.pair_scales import PairScales, pair_scales
+from siggen.sensors.sensor import SIZE
 
 
 def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
@@ -34,7 +35,9 @@ def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
     }
     for name, factors in _factors(scales).items():
         if sections.get(name) is not None:
-            found[name] = _each(sections[name], factors) if name == "sensors" else scaled(sections[name], factors)
+            found[name] = scaled(sections[name], factors)
+    if sections.get("sensors") is not None:
+        found["sensors"] = _grown(sections["sensors"], {SIZE: scales.size})
     if sections.get("states") is not None:
         found["states"] = _damaged(sections["states"], scales)
     return found
@@ -43,9 +46,13 @@ def carried_over(sections: Mapping[str, Any], pair: Pair) -> dict[str, Any]:
 def _damaged(states: Any, scales: PairScales) -> Any:
     """Return states whose damage takes the same share of the other flanks."""
     factors = {MODULE: scales.module, FACE_WIDTH: scales.face_width, SKEW: scales.module / scales.face_width}
-    if isinstance(states, Mapping):
-        return {index: grown(state, factors) for index, state in states.items()}
-    return tuple(grown(state, factors) for state in states)
+    return _grown(states, factors)
+
+
+def _grown(entries: Any, factors: Mapping[str, float]) -> Any:
+    if isinstance(entries, Mapping):
+        return {index: grown(entry, factors) for index, entry in entries.items()}
+    return tuple(grown(entry, factors) for entry in entries)
 
 
 def _each(entries: Any, factors: Mapping[str, float]) -> Any:
@@ -74,7 +81,6 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
     mass = scales.size**3
     return {
         "dynamics": _dynamics(scales),
-        "sensors": {"position_mm": scales.size},
         "manufacture": {
             "lead_misalignment_um": scales.face_width,
             "crowning_um": scales.face_width,

@@ -1,1 +1,1 @@
-"""From acceleration to what a data logger stores."""
+"""From what the model gives to what a data logger stores."""

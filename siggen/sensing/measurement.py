@@ -12,9 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-MAX_BITS = 24
-"""Most bits whose codes, times a power of two, are exact in float32."""
-
 
 @dataclass(frozen=True, slots=True)
 class Measurement:

@@ -13,15 +13,16 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.errors import Problem
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import received_text
+from siggen.keys.scaling import Grows
 from siggen.keys.section import Real, Section
 from siggen.keys.wording import AllowedText
 from siggen.noise.registry import SourceKeys
-from siggen.sensing.inputs import FORCE, MOTION, Input
+from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath, ModalPath, TransferPath
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.resonance import Resonance
-from siggen.sensors.sensor import AxisDraws, Sensor
+from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
 
 POSITION = AllowedText(
     "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"
@@ -52,7 +53,7 @@ class Accelerometer(SourceKeys, Sensor):
         default="pinion_bearing",
         description="where it is mounted; casing needs the model casing or a path, rims the model torsional",
     )
-    position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION] = Field(
+    position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
         description="horizontal and vertical distance from the casing's centre of gravity (place: casing); needed "
         "where the motion of the rigid casing is measured",
@@ -126,11 +127,6 @@ class Accelerometer(SourceKeys, Sensor):
     def motion_place(self) -> str:
         """Name of the motion that it measures: its place, with its own name where it stands on the casing."""
         return f"casing_{self.name}" if self.place == "casing" else self.place
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """Motions of the model, and bearing forces where they come through a path."""
-        return frozenset(({MOTION} if self.sees_model else set()) | ({FORCE} if self.path is not None else set()))
 
     @property
     def limit(self) -> float:

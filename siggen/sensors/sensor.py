@@ -34,6 +34,10 @@ PLACES = {
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
 
 
+SIZE = "size"
+"""What `Grows` says of lengths that follow the gearbox, such as a position on its casing."""
+
+
 @dataclass(frozen=True, slots=True)
 class AxisDraws:
     """Draws the numbers of one axis of one gearbox by their names."""
@@ -98,11 +102,6 @@ class Sensor(Section):
 
     @property
     @abstractmethod
-    def reads(self) -> frozenset[str]:
-        """Kinds of `Input` that it needs."""
-
-    @property
-    @abstractmethod
     def limit(self) -> float:
         """Its range: readings are clipped at plus and minus this, in its unit."""
 
@@ -125,6 +124,13 @@ class Sensor(Section):
     def through(self) -> TransferPath | None:
         """The path from the bearing forces through the housing to it."""
         return None
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Kinds of `Input` that it needs: those that it shows, and forces where they come through a path."""
+        middle = AxisDraws(lambda _: 0.5, "")
+        shown = {one.kind for axis in self.axes for one in self.shows(axis, middle)}
+        return frozenset(shown | (set() if self.through is None else {FORCE}))
 
     @property
     def place_on_casing_mm(self) -> tuple[Number, ...]:

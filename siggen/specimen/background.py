@@ -117,7 +117,10 @@ def specimen_background(
         forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block])
         for name, (shown, *paths) in channels.items():
             own = (None if path is None else path[:, block] for path in paths)
-            responses[name][:, block] = _response(names, forced, shown, *own)
+            try:
+                responses[name][:, block] = _response(names, forced, shown, *own)
+            except KeyError as error:
+                raise ValueError(f"sensor of {name}: shows {error}, which the background does not reach") from error
     return SpecimenBackground(section, shafts, names, responses)
 
 

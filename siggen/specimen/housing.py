@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Housing, Sensor
+from siggen.config import Config, Housing
 from siggen.keys.number import at
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modal_path import HousingModes, housing_modes, mode_shape
+from siggen.sensors.sensor import Sensor
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Config, MeasuredPath, ModalPath, Sensor
+from siggen.config import Config
 from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
@@ -19,7 +19,8 @@ from siggen.sensing.block_filter import BlockGrid, block_grid
 from siggen.sensing.inputs import BACKGROUND, FLOOR, FORCE, MOTION, Input
 from siggen.sensing.modal_path import modal_accelerance, modal_shares
 from siggen.sensing.spectral_filter import frequencies
-from siggen.sensors.sensor import AxisDraws
+from siggen.sensors.path import MeasuredPath, ModalPath
+from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.specimen.background import (
     ENTRIES,
     FLOOR_INPUTS,
@@ -149,7 +150,9 @@ def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArra
     if not channel.is_plain:
         ways |= {one: weight * sensed for one, weight in channel.seen.items()}
     if channel.accelerance is not None:
-        ways |= {Input(FORCE, n): row * sensed for n, row in zip(INPUTS, channel.accelerance, strict=True)}
+        for name, row in zip(INPUTS, channel.accelerance, strict=True):
+            force, through = Input(FORCE, name), row * sensed
+            ways[force] = ways[force] + through if force in ways else through
     background = instrument.background
     if background is None or not background.inputs:
         return ways

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.config import MeasuredPath
 from siggen.config.data_file import data_file_bytes, shortened_path
 from siggen.errors import Problem
 from siggen.keys.problems import received_text
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
+from siggen.sensors.path import MeasuredPath
 
 UNIT = "m_s2_per_n"
 UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}

@@ -7,7 +7,7 @@ from math import pi
 
 from siggen.config import Casing as CasingSection
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Rotor, Sensor
+from siggen.config import Dynamics, Rotor
 from siggen.config import Shaft as ShaftSection
 from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
@@ -17,6 +17,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import Number, constant
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
+from siggen.sensors.sensor import Sensor
 
 CASING_GYRATION = 1.15
 """Radius of gyration of a casing over its centre distance: a box of even wall round the gears (derived)."""

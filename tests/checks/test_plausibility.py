@@ -59,6 +59,11 @@ def test_idealised_sets_say_what_they_lack() -> None:
     assert "no noise at all" in found
 
 
+def test_pink_noise_alone_is_noise() -> None:
+    pink = "sensors.0.pink_noise={density_m_s2_per_sqrt_hz: 0.001}"
+    assert "no noise at all" not in "\n".join(implausible(load_config("ideal", [pink])))
+
+
 def test_one_gear_pair_cannot_be_split_by_pairs_and_all_can() -> None:
     told = [implausible(load_config("families", [f"gears.pairs.count={count}"])) for count in (1, 60)]
     assert ["no records" in " ".join(sentences) for sentences in told] == [True, False]

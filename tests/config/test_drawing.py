@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.config import Accelerometer, Dynamics, Gears
+from siggen.config import Dynamics, Gears
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Within, bounds
 from siggen.keys.section import Section
 from siggen.seeding import Stage, named_uniforms
+from siggen.sensors.accelerometer import Accelerometer
 from tests.config.minimal import config
 
 SPREAD = {"kind": "uniform", "low": 0.05, "high": 0.10}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -216,6 +217,16 @@ def test_impossible_spalls_are_refused_by_key_value_and_range(changes: dict[str,
         config_with({**SPALL, **changes})
     assert f"states.1.damage.{key}: received" in str(refused.value)
     assert said in str(refused.value)
+
+
+def test_a_depth_that_follows_from_the_lengths_is_blamed_on_them() -> None:
+    config = config_with({**SPALL, **STRAIGHT, "face_share": 1.0})
+    damage, pair = config.states[1].damage, gear_pair(draw_specimen(config, 0).gears)
+    assert damage is not None
+    (problem,) = damage.place_problems(replace(pair, face_width_m=20.0))
+    assert problem.path == "profile_length_mm"
+    assert "follows from profile and face length" in problem.received
+    assert problem.allowed.startswith("depth allowed: below the half tooth thickness")
 
 
 def test_through_the_face_needs_a_contact_that_can_lose_its_length() -> None:

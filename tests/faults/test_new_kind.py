@@ -9,10 +9,12 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
 import siggen
+from siggen.faults.fault import Fault
 from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file
 
@@ -100,3 +102,10 @@ def test_report_and_audit_name_no_other(folder: Path, what: str) -> None:
     said = words_of(folder / what / f"{what}.html")
     assert ("crack" in said) == (what == "report")
     assert not OTHER_KINDS.search(said)
+
+
+def test_a_kind_without_words_is_refused_when_it_is_made() -> None:
+    with pytest.raises(TypeError, match=r"Nameless\.words: received \(\)"):
+
+        class Nameless(Fault):
+            kind: Literal["nameless"] = "nameless"

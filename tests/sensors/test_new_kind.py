@@ -135,8 +135,16 @@ def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
     found = read_columns(folder / "one.parquet")
     assert found.own == {"washer_vertical": SIGNAL}
     assert found.units == {SIGNAL: "N"}
-    with pytest.raises(UsageError, match="states the unit 'N'"):
-        read_recording(folder / "one.parquet", ("washer_vertical",), RecordingFacts())
+    file, names = folder / "one.parquet", ("washer_vertical",)
+    for said in (None, "g", "N"):
+        with pytest.raises(UsageError, match=r"states the unit 'N' .* no acceleration") as refused:
+            read_recording(file, names, RecordingFacts(unit=said))
+        assert "--unit g" not in str(refused.value)
+    read = read_recording(file, names, RecordingFacts(), ("N",))
+    assert read.units == {"washer_vertical": "N"}
+    np.testing.assert_array_equal(read.channels["washer_vertical"], read_columns(file).values[SIGNAL])
+    with pytest.raises(UsageError, match="received the unit 'N'; allowed: kN"):
+        read_recording(file, names, RecordingFacts(), ("kN",))
 
 
 @pytest.mark.slow

@@ -30,10 +30,6 @@ class ToyForceWasher(Sensor):
     floor_n: Annotated[Number, Within(least=0)] = 0.0
 
     @property
-    def reads(self) -> frozenset[str]:
-        return frozenset({FORCE})
-
-    @property
     def limit(self) -> float:
         return self.range_n
 

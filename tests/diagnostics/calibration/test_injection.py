@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -56,6 +57,15 @@ def simulated(mine: Path) -> tuple[Block, Difference]:
     channels = {name: rng.standard_normal(round(0.6 * FS_HZ)) for name in ("lid_vertical", "side_horizontal")}
     block = Block("run", channels, FS_HZ, pulses)
     return block, next(simulated_differences(mine, block, 0))
+
+
+def test_a_sensor_of_another_kind_is_refused_before_anything_is_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
+    washer = {"kind": "force_washer", "name": "washer", "bits": 16}
+    config = SimpleNamespace(canonical=lambda: {"sensors": [washer]})
+    monkeypatch.setattr(siggen, "load_config", lambda _: config)
+    block: Any = SimpleNamespace(pulses_s=np.arange(3.0), speed_hz=1.0, fs_hz=100.0)
+    with pytest.raises(UsageError, match=r"sensor washer: received kind force_washer, which has no noise_spectrum"):
+        next(simulated_differences(Path("mine.yaml"), block, 0))
 
 
 def test_the_difference_is_that_of_one_gearbox_at_one_course(simulated: tuple[Block, Difference]) -> None:

@@ -148,5 +148,8 @@ def test_features_in_another_order_are_refused_by_the_hash(folder: Path) -> None
 def test_a_model_from_before_the_hashes_is_read_and_said_to_have_none(folder: Path) -> None:
     content = json.loads((folder / "model.json").read_text())
     old = {name: value for name, value in content.items() if name not in ("files", "digest")}
-    (folder / "model.json").write_text(json.dumps(old | {"format": "siggen-diagnostics model 3"}))
-    assert "no hashes of its files" in load_model(folder).note
+    facts = {name: value for name, value in old["facts"].items() if name != "units"} | {"unit": "m/s^2"}
+    (folder / "model.json").write_text(json.dumps(old | {"format": "siggen-diagnostics model 3", "facts": facts}))
+    model = load_model(folder)
+    assert "no hashes of its files" in model.note
+    assert model.facts.units == ("m/s^2",) * len(model.facts.channels)

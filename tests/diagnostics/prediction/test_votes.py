@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,12 @@ def predicted(model: ReleasedModel, signals: dict[str, np.ndarray]) -> Predictio
     return predict_recording(
         model, MeasuredRecording(Path("run.npz"), signals, FS_HZ, None, True), (18, 47), (20.0, 50.0)
     )
+
+
+def test_a_model_of_forces_takes_no_acceleration(model: ReleasedModel, signals: dict[str, np.ndarray]) -> None:
+    of_forces = replace(model, facts=replace(model.facts, units=("m/s^2", "N")))
+    with pytest.raises(UsageError, match=r"channel bearing_horizontal is in m/s\^2; allowed: N, as in training"):
+        predicted(of_forces, signals)
 
 
 def with_network(monkeypatch: pytest.MonkeyPatch, probability: tuple[float, ...]) -> None:

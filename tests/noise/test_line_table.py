@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.config import LineTable, NoiseModulation
-from siggen.noise.line_table import TableLines
+from siggen.noise.line_table import LineTable, TableLines
 from siggen.noise.source import Draws
-from siggen.noise.spectrum import NoiseStrength
+from siggen.noise.spectrum import NoiseModulation, NoiseStrength
 
 FS_HZ, SAMPLES, GEAR_ORDER = 10_000.0, 200_000, 18.0 / 47.0
 ANGLE_RAD = 2.0 * np.pi * 25.0 * np.arange(SAMPLES) / FS_HZ

@@ -1,0 +1,38 @@
+"""What reaches a channel that shows a force, and one that shows what the model does not give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+import siggen
+from siggen.sensing.block_filter import block_grid
+from siggen.sensing.inputs import FORCE, Input
+from siggen.sensors.accelerometer import Accelerometer
+from siggen.specimen.block_responses import block_responses
+from siggen.specimen.instrument import ChannelInstrument, Instrument, instrument_ways
+from siggen.specimen.measured_path import INPUTS
+
+
+def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
+    shown, bins = Input(FORCE, INPUTS[0]), 9
+    channel = ChannelInstrument(
+        name="a_vertical", sensor=Accelerometer(name="a"), gain=1.0, seen={shown: 3.0},
+        accelerance=np.full((len(INPUTS), bins), 2.0 + 0.0j), sensor_response=None,
+        path_modes=0, path_rms_m_s2_per_n=0.0, path_number=0,
+    )  # fmt: skip
+    grid = block_grid(8, 8)
+    found = instrument_ways(Instrument(16, 1000.0, (channel,), block_responses(grid, {}), None), None)["a_vertical"]
+    assert {one: row[0] for one, row in found.items()} == {Input(FORCE, n): 2.0 for n in INPUTS} | {shown: 5.0}
+
+
+def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monkeypatch: pytest.MonkeyPatch) -> None:
+    def shows(*_: object) -> Mapping[Input, float]:
+        return {Input("angle", "pinion"): 1.0}
+
+    monkeypatch.setattr(Accelerometer, "shows", shows)
+    config = siggen.load_config("ideal")
+    with pytest.raises(ValueError, match=f"sensor {config.sensors[0].name}: shows angle pinion"):
+        siggen.simulate(config, [0])
