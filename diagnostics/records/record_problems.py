@@ -110,7 +110,7 @@ def _channel_problem(signal: np.ndarray, frame_samples: int) -> str:
     if share > LARGEST_CLIPPED_SHARE:
         return (
             f"{share:.2%} of the samples stand clipped at {low:g} or {high:g}; up to {LARGEST_CLIPPED_SHARE:.1%} is "
-            "allowed. Widen the sensor's range (`range_...`)."
+            "allowed. Widen the sensor's range (`range_m_s2` of an accelerometer)."
         )
     return ""
 
