@@ -74,7 +74,7 @@ class RecordCheck:
         found = dict(self._found)
         for name, records in self._clipped.items():
             if len(records) > CLIPPED_RECORDS * self._count:
-                found[name, f"{CLIPPED} (the range is too narrow)"] = records
+                found[name, f"{CLIPPED} (`range_m_s2` of an accelerometer is too narrow)"] = records
         if found:
             raise DatasetError(_refusal(dataset, found, can_leave_channels))
         return tuple(f"channel {name} {CLIPPED} in {_shown(records)}" for name, records in self._clipped.items())

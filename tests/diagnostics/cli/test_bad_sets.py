@@ -147,7 +147,7 @@ ALL = tuple(COMMANDS)
 BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ALL),
-    "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range"), ALL),
+    "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ALL),
     "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole pinion revolution", "duration_s"), ALL),
     "no pulses": (column("tacho_s", []), ("0 whole pinion revolution", "--speed-range"), ALL),
     "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ALL),
