@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
-from siggen.config import Config
+from siggen.config import Bolts, Config, Feet, Housing, RigidHousing
 from siggen.errors import counted
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
@@ -98,7 +98,7 @@ def missing(config: Config) -> Iterator[str]:
     if config.manufacture is None:
         yield "manufacture: perfect gears: healthy records have no sidebands, so any damage is trivially found"
     noises = [s.noise_floor is not None or any(one.broad for one in s.sources) for s in config.sensors]
-    if not any(noises) and config.housing is None and config.background is None:
+    if not any(noises) and config.background is None:
         yield "sensors: no noise at all: any damage is trivially found"
     seen: list[Sensor] = []
     for sensor, noisy in zip(config.sensors, noises, strict=True):
@@ -201,18 +201,29 @@ def _supports(config: Config, pair: GearPair) -> Iterator[Quantity]:
         hint = "is it in kg m²?"
         yield _of(f"dynamics.{name}", "inertia over the pinion's disc", getattr(dynamics, name), 0.1, 1e5, hint, disc)
     if dynamics.model == "casing":
-        gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
-        casing = dynamics.casing
-        yield _of("dynamics.casing.mass_kg", "mass over both discs", casing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
-        for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
-            at = f"dynamics.casing.bolts.{key}"
-            yield _of(at, "stiffness [N/m]", getattr(casing.bolts, key), 1e5, 1e11, "is it in N/m, not N/mm?")
+        yield from _housing(config.housing, pair)
     approach = 1e6 * highest / radius / (pair.face_width_m * 14e9)
     if dynamics.mesh.law == "pairs" and bounds(dynamics.mesh.tip_relief_um)[1] > 0.0:  # without relief is a choice
         hint = f"teeth deflect by about {approach:.2g} µm at full load; is it in µm?"
         yield _of(
             "dynamics.mesh.tip_relief_um", "relief [µm]", dynamics.mesh.tip_relief_um, 0.1, 3 * approach + 20, hint
         )
+
+
+def _housing(housing: Housing, pair: GearPair) -> Iterator[Quantity]:
+    bolts: Bolts | Feet
+    if isinstance(housing, RigidHousing):
+        bolts, name = housing.bolts, "bolts"
+        gears = sum(disc_mass_kg(gear, pair.face_width_m) for gear in (pair.pinion, pair.gear))
+        yield _of("housing.mass_kg", "mass over both discs", housing.mass_kg, 0.5, 500.0, "is it in kg?", gears)
+    else:
+        bolts, name = housing.feet, "feet"
+        if housing.wall_mm is not None:
+            what, centre_mm = "thickness over the centre distance", 1e3 * pair.working_centre_distance_m
+            yield _of("housing.wall_mm", what, housing.wall_mm, 0.01, 0.4, "is it in mm?", centre_mm)
+    for key in ("shear_stiffness_n_per_m", "axial_stiffness_n_per_m"):
+        if (stiffness := getattr(bolts, key)) is not None:
+            yield _of(f"housing.{name}.{key}", "stiffness [N/m]", stiffness, 1e5, 1e11, "is it in N/m, not N/mm?")
 
 
 def _teeth(config: Config, pair: GearPair) -> Iterator[Quantity]:

@@ -49,7 +49,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
     specimen, point = draw_specimen(own, 0), draw_operating_point(own, 0, 0)
     mesh = SpecimenMesh(
         pair,
-        structure(specimen.dynamics, pair, specimen.sensors),
+        structure(own, specimen),
         mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS),
         teeth_missing(specimen.dynamics, pair, TABLE_POINTS),
     )

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from siggen.views.path_curves import PathCurves
 
 
+SHOWN = 12
+"""Modes that are printed; --json has all."""
+
+
 @grouped
 def path(
     config: Annotated[
@@ -28,16 +32,16 @@ def path(
     picture: PictureOptions,
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
     overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Replace a value, such as housing.modal_mass_kg=30.")
+        list[str] | None, typer.Option("--set", help="Replace a value, such as housing.wall_mm=12.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Print the transfer paths from bearing forces to channels: modes, damping and level.
 
     The table of --out has one row per frequency and two columns per channel and bearing force, in the form that a
-    sensor's path of kind measured reads.
+    sensor's measured path reads.
 
-    Example: siggen inspect path configs/transfer_path.yaml --png path.png
+    Example: siggen inspect path quickstart --png path.png
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import check_table_file, write_table_file
@@ -73,7 +77,7 @@ def _facts(found: PathCurves) -> dict[str, object]:
         largest, at_hz = found.peak(channel)
         facts = {"channel": channel.name, "modes": channel.path_modes, "rms_m_s2_per_n": channel.path_rms_m_s2_per_n}
         channels.append({**facts, "largest_m_s2_per_n": largest, "largest_at_hz": at_hz})
-    modes = () if found.modes is None else zip(found.modes.frequency_hz, found.modes.damping_ratio, strict=True)
+    modes = () if found.housing is None else found.housing.pairs
     housing = [{"frequency_hz": frequency, "damping_ratio": damping} for frequency, damping in modes]
     return {"gearbox": found.specimen_id, "channels": channels, "housing_modes": housing}
 
@@ -89,8 +93,9 @@ def _printed(found: PathCurves) -> Table:
         largest, at_hz = found.peak(channel)
         rms = f"{channel.path_rms_m_s2_per_n:.3g}"
         table.add_row(channel.name, str(channel.path_modes or "-"), rms, f"{largest:.3g}", f"{at_hz:.0f}")
-    if found.modes is not None:
-        pairs = zip(found.modes.frequency_hz, found.modes.damping_ratio, strict=True)
-        table.caption = "modes of the housing: " + ", ".join(f"{f:.0f} Hz ({100 * d:.1f} %)" for f, d in pairs)
+    if found.housing is not None:
+        size = " x ".join(f"{1e3 * length:.0f}" for length in found.housing.box.size_m)
+        first = ", ".join(f"{f:.0f} Hz ({100 * d:.1f} %)" for f, d in found.housing.pairs[:SHOWN])
+        table.caption = f"housing of {found.housing.box.mass_kg:.1f} kg, {size} mm; its lowest modes: {first}"
         table.caption_justify = "left"
     return table

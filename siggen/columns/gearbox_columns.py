@@ -21,11 +21,16 @@ PAIR_COLUMNS = (
     Column("contact_ratio", pa.float64(), "", "transverse contact ratio of the unloaded pair"),
 )
 """Columns of sets with several gear pairs."""
-CASING_COLUMNS = (
-    Column("casing_mass_kg", pa.float64(), "kg", "mass of the casing, without gears and shafts"),
-    Column("casing_bolt_damping_ratio", pa.float64(), "", "damping of a bolt that carries its share of the casing"),
+HOUSING_COLUMNS = (
+    Column("housing_mass_kg", pa.float64(), "kg", "mass of the housing, without gears and shafts"),
+    Column(
+        "housing_first_mode_hz",
+        pa.float64(),
+        "Hz",
+        "lowest mode of the housing above the six on its bolts",
+    ),
 )
-"""Columns of sets whose casings differ in mass, and in inertia with it."""
+"""Columns of sets whose housings are drawn from their geometry."""
 OIL_COLUMN = Column("oil", pa.string(), "", "oil of the gearbox")
 
 
@@ -34,7 +39,7 @@ def gearbox_columns(config: Config) -> tuple[Column, ...]:
     return (
         *(PAIR_COLUMNS if config.gears.pairs else ()),
         *((OIL_COLUMN,) if draws_oil(config) else ()),
-        *(CASING_COLUMNS if draws_casing(config) else ()),
+        *(HOUSING_COLUMNS if config.has_plates else ()),
         *(
             Column(name, pa.float64(), MILLIMETRE, _place_text(config, i, axis))
             for i, axis, name in drawn_places(config)
@@ -43,18 +48,12 @@ def gearbox_columns(config: Config) -> tuple[Column, ...]:
 
 
 def _place_text(config: Config, i: int, axis: int) -> str:
-    return f"{('horizontal', 'vertical')[axis]} place of the sensor {config.sensors[i].name} on the casing"
+    return f"{('first', 'second')[axis]} distance of the sensor {config.sensors[i].name} from where its place counts"
 
 
 def draws_oil(config: Config) -> bool:
     """Tell whether gearboxes draw their oil."""
     return isinstance(config.dynamics.friction.oil, tuple)
-
-
-def draws_casing(config: Config) -> bool:
-    """Tell whether the inertia of the casing follows from a mass that gearboxes draw."""
-    casing = config.dynamics.casing
-    return config.dynamics.model == "casing" and casing.inertia_kg_m2 is None and not isinstance(casing.mass_kg, float)
 
 
 def drawn_places(config: Config) -> Iterator[tuple[int, int, str]]:

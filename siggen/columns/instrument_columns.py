@@ -8,19 +8,16 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.column import Column
+from siggen.sensing.inputs import MOTION
 
 if TYPE_CHECKING:
     from siggen.config import Config
     from siggen.sensors.sensor import Sensor
 
-FORCE_NOISE_COLUMN = Column(
-    "force_noise_n_per_sqrt_hz", pa.float64(), "N/sqrt(Hz)", "noise on each bearing force, below its corner"
-)
 
-
-def channel_columns(sensor: Sensor, channel: str) -> Iterator[Column]:
+def channel_columns(sensor: Sensor, channel: str, *, has_plates: bool) -> Iterator[Column]:
     """Yield the columns that describe path and disturbances of one channel: those of parts that its sensor has."""
-    if sensor.through is not None:
+    if sensor.through is not None or (has_plates and MOTION in sensor.reads):
         yield from path_columns(channel, is_family=getattr(sensor.through, "is_family", False))
     for source in sensor.sources:
         name = source.column(channel, sensor.quantity.suffix)
@@ -30,7 +27,7 @@ def channel_columns(sensor: Sensor, channel: str) -> Iterator[Column]:
 def path_columns(channel: str, *, is_family: bool) -> Iterator[Column]:
     """Yield the columns about the path to one channel."""
     accelerance = f"rms accelerance to {channel}, 100 Hz to 0.45 fs, all forces"
-    yield Column(f"path_modes_{channel}", pa.int32(), "", f"flexible modes to {channel}; 0 if it was measured")
+    yield Column(f"path_modes_{channel}", pa.int32(), "", f"modes of the housing to {channel}; 0 if it was measured")
     yield Column(f"path_accelerance_{channel}_m_s2_per_n", pa.float64(), "m/s^2/N", accelerance)
     if is_family:
         yield Column(f"path_number_{channel}", pa.int32(), "", f"which of the measured paths to {channel}, from 0")
@@ -40,6 +37,4 @@ def instrument_columns(config: Config) -> Iterator[Column]:
     """Yield the columns of all parts that a configuration has, channel by channel."""
     for sensor in config.sensors:
         for name, _ in sensor.channels:
-            yield from channel_columns(sensor, name)
-    if config.housing is not None and config.housing.force_noise is not None:
-        yield FORCE_NOISE_COLUMN
+            yield from channel_columns(sensor, name, has_plates=config.has_plates)

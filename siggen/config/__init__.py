@@ -1,12 +1,11 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
 from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
-from siggen.config.casing import Bolts, Casing
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.gears import Gears, Wheel
-from siggen.config.housing import ForceNoise, Housing
+from siggen.config.housing import Bolts, Feet, Housing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
@@ -29,12 +28,11 @@ __all__ = [
     "BearingTones",
     "Bolts",
     "Bursts",
-    "Casing",
     "Config",
     "Coupling",
     "Dynamics",
+    "Feet",
     "Floor",
-    "ForceNoise",
     "ForeignMesh",
     "Friction",
     "Gears",
@@ -44,6 +42,8 @@ __all__ = [
     "Mesh",
     "OperatingRange",
     "ParsedConfig",
+    "PlateHousing",
+    "RigidHousing",
     "Rotor",
     "Rubbing",
     "Shaft",

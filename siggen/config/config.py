@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from siggen.config.background import Background
 from siggen.config.dynamics import Dynamics
 from siggen.config.gears import Gears
-from siggen.config.housing import Housing
+from siggen.config.housing import Housing, PlateHousing
 from siggen.config.internals import Internals
 from siggen.config.manufacture import Manufacture
 from siggen.config.states import State, grown_from
@@ -97,13 +97,20 @@ class Config(Section):
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
     variation: Variation = Field(default=Variation(), description="how speed and torque vary within a record")
     internals: Internals | None = Field(default=None, description="what no sensor sees; null: not stored")
-    housing: Housing | None = Field(default=None, description="what lies between the bearings and sensors with a path")
+    housing: Housing = Field(
+        default=PlateHousing(), description="what carries the bearings with dynamics.model: casing; plates or rigid"
+    )
     background: Background | None = Field(default=None, description="what a healthy machine adds; null: nothing")
 
     @property
     def samples(self) -> int:
         """Number of samples of a record's channel."""
         return round(self.fs_hz * self.duration_s)
+
+    @property
+    def has_plates(self) -> bool:
+        """Whether forces of the bearings reach sensors through a housing of plates."""
+        return self.dynamics.model == "casing" and isinstance(self.housing, PlateHousing)
 
     @property
     def channels(self) -> tuple[str, ...]:

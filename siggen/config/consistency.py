@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
+from siggen.config.housing import PlateHousing
 from siggen.config.states import SEVERITIES, State
 from siggen.errors import Problem
 from siggen.faults.registry import HEALTHY, kinds_called
 from siggen.keys.number import bounds
 from siggen.keys.teeth import most_teeth
+from siggen.sensors.sensor import PLATES
 
 SIDEBANDS = 8
 """Lines beside a mesh harmonic, one shaft frequency apart, that the band must carry too."""
@@ -32,7 +34,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _mesh_law,
         _manufacture,
         _forces_at_bearings,
-        _paths,
+        _housing,
         _background,
         _splits,
     ]
@@ -64,33 +66,26 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
 
 
-SETTLED_DECAYS = 7.0
-"""Decay times after which a mode of the housing has forgotten how it was started: 1e-3 of it is left."""
+AT_BEARINGS, ON_BODY = ("rubbing", "floor", "shafts"), ("base", "second_stage", "auxiliary_drive")
+"""Parts of the background that press on bearings, and those that press on what carries them."""
 
 
 def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
+    if model == "casing" and isinstance(sections.get("housing"), PlateHousing):
+        model = PLATES
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.model_problems(model):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
-def _paths(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield paths without a housing, and modes that ring longer than the history that is kept for them."""
-    if "dynamics" not in sections:
-        return
-    model, housing = sections["dynamics"].model, sections.get("housing")
-    for index, sensor in sections.get("sensors", {}).items():
-        if sensor.through is not None and model != "torsional" and raw.get("housing") is None:
-            received = f"kind: {sensor.through.kind}"
-            yield Problem(f"sensors.{index}.path", received, "allowed: null, or a section housing")
-    if housing is not None:
-        decay_per_s = 2.0 * math.pi * bounds(housing.frequency_hz)[0] * bounds(housing.damping_ratio)[0]
-        if housing.settle_s * decay_per_s < SETTLED_DECAYS:
-            allowed = f"allowed: at least {SETTLED_DECAYS / decay_per_s:.3g} s for the lowest, least damped mode"
-            yield Problem("housing.settle_s", repr(housing.settle_s), allowed)
+def _housing(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield a housing for a model that has none."""
+    model = sections["dynamics"].model if "dynamics" in sections else "casing"
+    if model != "casing" and raw.get("housing") is not None:
+        yield Problem("housing", "a section", f"allowed: none, or dynamics.model: casing (it is {model})")
 
 
 def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
@@ -99,13 +94,15 @@ def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterato
     if section is None or "dynamics" not in sections:
         return
     model = sections["dynamics"].model
-    parts = ("rubbing", "floor", "shafts", "second_stage", "auxiliary_drive")
-    for part in parts if model == "torsional" else ():
+    for part in AT_BEARINGS if model == "torsional" else ():
         if getattr(section, part) is not None:
             allowed = "allowed: null, or a model with bearings: 6dof, 8dof, casing (dynamics.model: torsional)"
             yield Problem(f"background.{part}", "a section", allowed)
-    if section.base is not None and model != "casing":
-        yield Problem("background.base", "a section", f"allowed: null, or dynamics.model: casing (it is {model})")
+    for part in ON_BODY if model != "casing" else ():
+        if getattr(section, part) is not None:
+            yield Problem(
+                f"background.{part}", "a section", f"allowed: null, or dynamics.model: casing (it is {model})"
+            )
 
 
 def _splits(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

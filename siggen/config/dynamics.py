@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.casing import Casing
 from siggen.config.external_forces import BearingTones, Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.shafts import Shafts
@@ -56,7 +55,7 @@ class Dynamics(Section):
 
     model: Literal["8dof", "6dof", "torsional", "casing"] = Field(
         default="casing",
-        description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the casing too",
+        description="which bodies move; 6dof: the gears alone, torsional: rotations alone, casing: the `housing` too",
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
         default=4, description="integration steps per sample with the law linear"
@@ -79,7 +78,6 @@ class Dynamics(Section):
     input_coupling: Coupling = Field(default=Coupling(), description="between motor and pinion")
     output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between gear and load")
     # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
-    casing: Casing = Field(default=Casing(), description="used by the model casing alone")
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")

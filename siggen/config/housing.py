@@ -1,52 +1,107 @@
-"""Section `housing`: the flexible modes between bearings and sensors, and the noise of the forces that excite them."""
+"""Section `housing`: the body between bearings, ground and sensors; used by `dynamics.model: casing`.
+
+`kind: plates` is drawn from its geometry and gives way; `kind: rigid` is a block of given mass on bolts.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field, model_validator
 
+from siggen.errors import Problem
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
-from siggen.keys.section import Real, Section
+from siggen.keys.problems import refusal
+from siggen.keys.section import Position, Section
+
+Stiffness = Annotated[Number | None, Within(above=0, words=(None,))]
+Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
 
 
-class ForceNoise(Section):
-    """Broadband noise on every bearing force, each independent of the others; levels are drawn for every record."""
+class Feet(Section):
+    """The four bolts under a housing of plates, at the corners of its floor, all alike."""
 
-    density_n_per_sqrt_hz: Annotated[Number, Within(least=0)] = Field(
-        default=0.0, description="one-sided density of each force"
+    shear_stiffness_n_per_m: Stiffness = Field(
+        default=None, description="horizontal, each; null: 0.62 to 1.13e9 per metre of centre distance (assumed)"
     )
-    share_per_sqrt_hz: Annotated[Number, Within(least=0, most=1)] = Field(
-        default=0.0, description="density as a share of the mean mesh force; both densities add as powers"
-    )
-    corner_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="frequency from which the power falls as 1/f², drawn per record; null: white"
-    )
-
-
-class Housing(Section):
-    """Flexible modes that all sensors of a gearbox share; their shapes differ from place to place."""
-
-    modes: Annotated[Number, Within(least=1, most=60)] = Field(
-        default=Uniform(low=5.5, high=15.5), description="number of modes per gearbox, rounded to a whole number"
-    )
-    frequency_hz: Annotated[Number, Within(above=0)] = Field(
-        default=LogUniform(low=300.0, high=8000.0),
-        description="natural frequencies; each mode is drawn from its own equal share of the distribution",
+    axial_stiffness_n_per_m: Stiffness = Field(
+        default=None, description="vertical, each; null: 1.13 to 2.05e9 per metre of centre distance (assumed)"
     )
     damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
-        default=Uniform(low=0.01, high=0.04), description="drawn per mode"
+        default=Uniform(low=0.03, high=0.07), description="of what the bolts hold of a mode's energy (assumed)"
     )
-    modal_mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=20.0,
-        description="modal mass of the lowest mode, whose shape has the mean square 1; drawn per gearbox; null: the "
-        "mass of `dynamics.casing`",
+
+
+class PlateHousing(Section):
+    """A box of six plates round the gears, with bearing seats, ribs and bolts; modes follow from its geometry."""
+
+    understood_kind: ClassVar[bool] = True
+
+    kind: Literal["plates"] = Field(default="plates", description="a box that gives way")
+    material: Literal["any", "grey_iron", "steel"] = Field(
+        default="any", description="cast or welded; any: three of five gearboxes are cast"
     )
-    residue_exponent: Annotated[Real, Field(ge=0, le=6)] = Field(
-        default=2.0, description="residues fall as frequency to minus this power"
+    length_mm: Length = Field(
+        default=None,
+        description="inside, across the shafts; null: the gears and 10 to 26 % of the centre distance at either end",
     )
-    settle_s: Annotated[Real, Field(gt=0, le=10)] = Field(
-        default=0.4, description="history of the forces before the first sample; the modes must have decayed over it"
+    height_mm: Length = Field(
+        default=None,
+        description="inside; null: the larger gear, 15 to 31 % of the centre distance above and a sump of 26 to 62 %",
     )
-    force_noise: ForceNoise | None = Field(default=None, description="null: the bearing forces carry no noise")
+    width_mm: Length = Field(
+        default=None, description="inside, along the shafts; null: so that the walls carry the bearings"
+    )
+    wall_mm: Length = Field(
+        default=None,
+        description="of the plates with the bearings; null: 1.1 to 3 times 3 mm + 2.5 % of the centre distance, welded "
+        "1.5 to 4.6 times",
+    )
+    damping_ratio: Annotated[Number, Within(above=0, below=0.5)] = Field(
+        default=LogUniform(low=0.003, high=0.05), description="of the plates, drawn for each mode"
+    )
+    feet: Feet = Field(default=Feet(), description="bolts between floor and ground")
+
+
+class Bolts(Section):
+    """The bolts between casing and ground, all alike."""
+
+    shear_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=8e7, description="horizontal, each")
+    axial_stiffness_n_per_m: Annotated[Number, Within(above=0)] = Field(default=1.5e8, description="vertical, each")
+    damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
+        default=0.04, description="of a bolt that carries its share of the casing's mass"
+    )
+    positions_mm: Annotated[tuple[Position, ...], Field(min_length=2)] = Field(
+        default=((90.0, 0.0), (90.0, 0.0), (-90.0, 0.0), (-90.0, 0.0)),
+        description="[horizontal, vertical] of each from the centre of gravity",
+    )
+
+    @model_validator(mode="after")
+    def _support(self) -> Bolts:
+        if len(set(self.positions_mm)) < 2:
+            received = f"all bolts at {list(self.positions_mm[0])}"
+            allowed = "allowed: at least two different places; about a single one the casing would turn freely"
+            raise refusal([Problem("positions_mm", received, allowed)])
+        return self
+
+
+class RigidHousing(Section):
+    """A rigid casing that carries the bearings: two translations and rocking."""
+
+    kind: Literal["rigid"] = Field(description="a block that moves on its bolts")
+    mass_kg: Annotated[Number, Within(above=0)] = Field(default=20.0, description="without the gears and shafts")
+    inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
+        default=0.25,
+        description="about its centre of gravity; null: the mass times the square of 1.15 centre distances (derived)",
+    )
+    bolts: Bolts = Field(default=Bolts(), description="between casing and ground")
+
+
+def with_kind(section: Any) -> Any:
+    """Return the section with its kind."""
+    return {"kind": "plates", **section} if isinstance(section, Mapping) else section
+
+
+Housing = Annotated[PlateHousing | RigidHousing, Field(discriminator="kind"), BeforeValidator(with_kind)]

@@ -32,10 +32,6 @@ FRICTION = {
     "constant": "The flanks rub with a constant coefficient.",
     "mixed_ehl": "The flanks rub: asperities and the film of {oil} share the load by speed, load and roughness.",
 }
-BEHIND = {
-    "modal": "random flexible modes of a housing, new for every specimen",
-    "measured": "a measured accelerance",
-}
 BACKGROUND = {
     "rubbing": "rubbing of rough flanks",
     "floor": "force noise in mesh and bearings",
@@ -132,7 +128,7 @@ def integration_text(config: Config) -> str:
 
 def _sensing_text(config: Config) -> str:
     return (
-        f"{_path_text(config)}{force_noise_text(config)}{background_text(config)}Gain, noise, clipping at the sensor's "
+        f"{_path_text(config)}{background_text(config)}Gain, noise, clipping at the sensor's "
         "range, and rounding to the converter's step, which is a power of two and therefore exact in float32 (each "
         "sensor's noise and bits are in `config.yaml`)." + "".join(f" {acts}" for acts in _acts(config))
     )
@@ -184,28 +180,17 @@ def drive_text(config: Config) -> str:
 
 
 def _path_text(config: Config) -> str:
-    """Say how vibrations come to the sensors, if any of them stands behind a transfer path."""
-    kinds = sorted({sensor.through.kind for sensor in config.sensors if sensor.through is not None})
-    if not kinds:
-        return ""
-    behind = " or ".join(BEHIND[kind] for kind in kinds)
-    return f"Bearing forces reach {_sensors(config)} through {behind} (`housing`, `path`). "
+    """Say how vibrations come to the sensors."""
+    measured = [sensor.name for sensor in config.sensors if sensor.through is not None]
+    plates = "Bearing forces reach the sensors through a box of plates on bolts, new for every specimen (`housing`). "
+    behind = f"{_some(measured, config)} stand behind a measured accelerance (`path`). " if measured else ""
+    return (plates if config.has_plates and len(measured) < len(config.sensors) else "") + behind
 
 
-def _sensors(config: Config) -> str:
-    through = [sensor.name for sensor in config.sensors if sensor.through is not None]
-    if len(through) == len(config.sensors):
-        return "the sensors"
-    return f"{counted(len(through), 'sensor')} of {len(config.sensors)}"
-
-
-def force_noise_text(config: Config) -> str:
-    """Say whether the bearing forces carry noise on their way to the sensors."""
-    from siggen.sensors.sensor import needs_forces  # as `oils_of`
-
-    if config.housing is None or config.housing.force_noise is None or not needs_forces(config.sensors):
-        return ""
-    return "Broad-band noise is added to the bearing forces (`housing.force_noise`). "
+def _some(names: list[str], config: Config) -> str:
+    if len(names) == len(config.sensors):
+        return "All sensors"
+    return f"{counted(len(names), 'sensor')} of {len(config.sensors)}"
 
 
 def background_text(config: Config) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from siggen.config import Config, Dynamics, Gears, Stiffness
+from siggen.config import Config, Dynamics, Gears, RigidHousing, Stiffness
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
 from siggen.planning.gearbox import gearbox_config
+from siggen.planning.housing_numbers import PlateNumbers, drawn_housing
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensors.sensor import Sensor
 
@@ -20,6 +21,7 @@ class Specimen:
     gears: Gears
     stiffness: Stiffness
     dynamics: Dynamics
+    housing: PlateNumbers | RigidHousing
     sensors: tuple[Sensor, ...]
 
 
@@ -45,6 +47,7 @@ def draw_specimen(config: Config, specimen_id: int) -> Specimen:
         gears=draw(own.gears, gears, "gears"),
         stiffness=draw(own.stiffness, gears, "stiffness"),
         dynamics=draw(own.dynamics, supports, "dynamics"),
+        housing=drawn_housing(own.housing, supports),
         sensors=tuple(one.drawn(sensor) for one in own.sensors),
     )
 

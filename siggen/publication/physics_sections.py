@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from siggen.dataset.card_making import drive_text, friction_text
 from siggen.keys.section import Section
-from siggen.sensors.sensor import needs_forces
 
 if TYPE_CHECKING:
     from siggen.config import Config
@@ -24,7 +23,6 @@ def physics_section(config: Config) -> str:
 def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     dynamics, mesh, made = config.dynamics, config.dynamics.mesh, config.manufacture
     paths = [sensor for sensor in config.sensors if sensor.through is not None]
-    forces = config.housing is not None and config.housing.force_noise is not None and needs_forces(config.sensors)
     yield (
         "manufacturing errors of the teeth",
         made is not None,
@@ -42,8 +40,8 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
         "`dynamics.bearing_tones`",
     )
     yield "variation within a record", config.variation != type(config.variation)(), drive_text(config)
-    yield "transfer path to the sensors", bool(paths), f"{len(paths)} of {len(config.sensors)} sensors"
-    yield "noise on the bearing forces", forces, "`housing.force_noise`"
+    yield "housing of plates that give way", config.has_plates, "`housing`"
+    yield "measured path to the sensors", bool(paths), f"{len(paths)} of {len(config.sensors)} sensors"
     yield "background of a healthy machine", config.background is not None, "`background`"
 
 

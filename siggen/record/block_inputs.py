@@ -28,7 +28,7 @@ class BlockInputs:
         self._samples, self._grid = config.samples, instrument.blocks.grid
         back, background = self._grid.back, instrument.background
         _refuse_undelivered(instrument, delivered(response))
-        self._motions = MotionBlocks(config, specimen, record, response, back)
+        self._motions = MotionBlocks(response, back)
         self._background: BackgroundBlocks | None = None
         self._filters = instrument.blocks.filters
         if background is not None:
@@ -44,8 +44,8 @@ class BlockInputs:
 
     @property
     def labels(self) -> dict[str, object]:
-        """Labels of force noise and background, complete when the first block was taken."""
-        return {**self._motions.labels, **({} if self._background is None else self._background.labels)}
+        """Labels of the background, complete when the first block was taken."""
+        return {} if self._background is None else self._background.labels
 
     def seen(self) -> Iterator[dict[str, FloatArray]]:
         """Yield channel -> its quantity (k,) before its gain, block after block."""

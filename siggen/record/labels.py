@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from siggen.arrays import FloatArray
-from siggen.columns.gearbox_columns import drawn_places, draws_casing, draws_oil
+from siggen.columns.gearbox_columns import drawn_places, draws_oil
 from siggen.config import Config, State
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -14,6 +14,7 @@ from siggen.keys.number import constant
 from siggen.planning.gearbox import pair_of
 from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing import MODES_ON_BOLTS, specimen_housing
 from siggen.specimen.static_mesh import StaticMesh
 
 
@@ -57,20 +58,20 @@ def damage_labels(
 
 
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    """Return what a gearbox draws as a whole: pair, oil, casing, places of sensors; nothing that all share."""
+    """Return what a gearbox draws as a whole: pair, oil, housing, places of sensors; nothing that all share."""
     oil = {"oil": specimen.dynamics.friction.oil} if draws_oil(config) else {}
     positions = {i: sensor.place_on_casing_mm for i, sensor in enumerate(specimen.sensors)}
     places = {name: constant(positions[i][axis]) for i, axis, name in drawn_places(config)}
-    return {**_pair_labels(config, specimen), **oil, **_casing_labels(config, specimen), **places}
+    return {**_pair_labels(config, specimen), **oil, **_housing_labels(config, specimen), **places}
 
 
-def _casing_labels(config: Config, specimen: Specimen) -> dict[str, object]:
-    if not draws_casing(config):
+def _housing_labels(config: Config, specimen: Specimen) -> dict[str, object]:
+    housing = specimen_housing(config, specimen)
+    if housing is None:
         return {}
-    casing = specimen.dynamics.casing
     return {
-        "casing_mass_kg": constant(casing.mass_kg),
-        "casing_bolt_damping_ratio": constant(casing.bolts.damping_ratio),
+        "housing_mass_kg": housing.box.mass_kg,
+        "housing_first_mode_hz": float(housing.modes.frequency_hz[MODES_ON_BOLTS]),
     }
 
 

@@ -5,16 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.time.response_stream import Pieces
-from siggen.planning.plan import PlannedRecord
-from siggen.planning.specimen import Specimen
-from siggen.record.forces import DrawnForceNoise, force_generator, force_noise
 from siggen.sensing.inputs import FORCE, MOTION, Input
-from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-
-ROLL_OFF_TAPS = 1024
-"""Of the filter of force noise that rolls off."""
 
 
 def delivered(response: Pieces) -> tuple[Input, ...]:
@@ -24,16 +16,13 @@ def delivered(response: Pieces) -> tuple[Input, ...]:
 
 
 class MotionBlocks:
-    """Values from sample -`back` on, about the mean of the history, with noise on forces; 0 before the history.
+    """Values from sample -`back` on, about the mean of the history; 0 before the history.
 
     `offsets` are the means that were taken off.
     """
 
-    def __init__(self, config: Config, specimen: Specimen, record: PlannedRecord, response: Pieces, back: int) -> None:
+    def __init__(self, response: Pieces, back: int) -> None:
         self.inputs = delivered(response)
-        noise = force_noise(config, specimen, record)
-        self.labels = noise.labels
-        self._noise = [_noise(config, record, noise, one) for one in self.inputs]
         self._pieces = response.pieces()
         self._mean = np.zeros((len(self.inputs), 1))
         history = self._read(np.empty((len(self.inputs), 0)), response.before)
@@ -54,9 +43,7 @@ class MotionBlocks:
         """
         rows = self._read(self._left, count)
         self._left = rows[:, count:].copy()
-        noises = (None if noise is None else noise.take(count) for noise in self._noise)
-        taken = zip(self.inputs, rows[:, :count], noises, strict=True)
-        return {one: row if noise is None else row + noise for one, row, noise in taken}
+        return dict(zip(self.inputs, rows[:, :count], strict=True))
 
     def _read(self, left: FloatArray, count: int) -> FloatArray:
         """Return what is left and as many pieces behind it as make at least `count` samples."""
@@ -70,11 +57,3 @@ class MotionBlocks:
             found.append(rows)
             have += rows.shape[1]
         return np.concatenate(found, axis=1)
-
-
-def _noise(config: Config, record: PlannedRecord, noise: DrawnForceNoise, one: Input) -> ShapedNoise | None:
-    """Return the noise of a force; None for motions, and without noise."""
-    if one.kind != FORCE or noise.density <= 0.0:
-        return None
-    taps = np.ones(1) if noise.corner_hz is None else shape_taps(noise.roll_off, ROLL_OFF_TAPS, config.fs_hz)
-    return ShapedNoise(noise.density * taps, config.fs_hz, force_generator(config, record, one.name))

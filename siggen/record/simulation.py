@@ -113,7 +113,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
     pair, tables = teeth.pair, teeth.tables
     with refused_as("outside_model"):
         missing = made.missing(state_id)
-        assembled = structure(specimen.dynamics, pair, specimen.sensors)
+        assembled = structure(config, specimen)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
     return SpecimenState(
@@ -185,18 +185,19 @@ def _stream(
             motion,
             driven.rotation,
             SampleGrid(config.fs_hz, config.samples, steps),
-            wanted=Wanted(internals, internals or needs_forces(config.sensors), motions),
+            wanted=Wanted(internals, internals or config.has_plates or needs_forces(config.sensors), motions),
             excitation=driven.excitation,
-            settle_s=_settle_s(config, motion),
-            history_s=history_s(config),
+            settle_s=_settle_s(config, specimen, motion),
+            history_s=history_s(config, specimen),
             ahead=AHEAD,
         )
     return stream, point
 
 
-def _settle_s(config: Config, motion: Motion) -> float:
+def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
     """Return the least time before the record; a motion that starts near its end needs its history behind it."""
-    return history_s(config) + motion.transient_s if motion.coarse_inputs else settle_s(config)
+    before_s = history_s(config, specimen)
+    return before_s + motion.transient_s if motion.coarse_inputs else settle_s(config, specimen)
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:

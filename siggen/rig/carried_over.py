@@ -1,7 +1,7 @@
 """The sections of a configuration carried over from the pair that they were written for to another gear pair.
 
 What is not named here stays: speeds, orders of other machines, damping ratios, roughness, oil, accuracy class, shares,
-noise of sensors, frequencies of the housing.
+noise of sensors. A housing of plates follows the pair by itself.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
             "crowning_gear_um": scales.face_width,
         },
         "variation": {"speed.rated_torque_nm": scales.torque},
-        "housing": {"modal_mass_kg": mass, "force_noise.density_n_per_sqrt_hz": scales.load},
+        "housing": _housing(scales.size),
         "background": {
             "base.mass_kg": mass,
             "base.gyration_m": scales.size,
@@ -100,17 +100,17 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
     }
 
 
+def _housing(size: float) -> dict[str, float]:
+    lengths = ("length_mm", "height_mm", "width_mm", "wall_mm", "bolts.positions_mm")
+    stiffnesses = (f"{bolts}.{way}_stiffness_n_per_m" for bolts in ("feet", "bolts") for way in ("shear", "axial"))
+    return {**dict.fromkeys((*lengths, *stiffnesses), size), "mass_kg": size**3, "inertia_kg_m2": size**5}
+
+
 def _dynamics(scales: PairScales) -> dict[str, float]:
-    mass, size = scales.size**3, scales.size
     found = {
         "motor_inertia_kg_m2": scales.end_inertia[0],
         "load_inertia_kg_m2": scales.end_inertia[1],
         "backlash_um": scales.module,
-        "casing.mass_kg": mass,
-        "casing.inertia_kg_m2": size**5,
-        "casing.bolts.shear_stiffness_n_per_m": size,
-        "casing.bolts.axial_stiffness_n_per_m": size,
-        "casing.bolts.positions_mm": size,
         "mesh.tip_relief_um": scales.load / scales.face_width,
         "mesh.pit_edge_radius_mm": scales.module,
     }

@@ -19,7 +19,6 @@ RUNNING_IN_UM = 2.0
 BENCH_CENTRE_MM = 97.5
 BENCH_TORQUE_NM = (60.0, 156.7)
 BENCH_FORCE_N = 2365.0
-BENCH_CASING_KG = (8.0, 55.0)
 ASSUMED = "scaled from the gearbox of bench, by size or torque"
 
 
@@ -43,7 +42,6 @@ class RigNumbers(NamedTuple):
     load_inertia_kg_m2: float
     coupling_nm_per_rad: Pair
     coupling_nm_s_per_rad: Pair
-    casing_kg: Pair
     scale: float
     load_share: float
     tip_relief_um: Pair
@@ -71,7 +69,6 @@ def rig_numbers(rig: Rig) -> RigNumbers:
         load,
         stiffness,
         (damping[0], damping[1]),
-        (BENCH_CASING_KG[0] * scale**3, BENCH_CASING_KG[1] * scale**3),
         scale,
         force_n / BENCH_FORCE_N,
         (relief[0], relief[1]),

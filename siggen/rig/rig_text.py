@@ -9,13 +9,8 @@ from siggen.rig.rig_numbers import ASSUMED, RigNumbers, RotorNumbers, rig_number
 
 SCHEMA_FILE = "siggen.schema.json"
 """Beside the file of a rig, whose first line names it to editors (`yaml-language-server`)."""
-PLACES_MM = (
-    (60.0, 50.0, "vertical"),
-    (-100.0, -20.0, "horizontal"),
-    (-60.0, 50.0, "vertical"),
-    (100.0, -20.0, "horizontal"),
-)
-"""Of sensors on the casing of bench; further sensors take the same again a little lower."""
+PLACES = (("lid", "vertical"), ("gear_end", "horizontal"), ("wall", "axial"), ("pinion_end", "horizontal"))
+"""Of sensors on the housing; further sensors take the same again."""
 BENCH_MODULE_MM, BENCH_FACE_MM = 3.0, 20.0
 SPREAD = (0.75, 1.33)
 """Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
@@ -39,7 +34,7 @@ def rig_text(rig: Rig, name: str, base: str, proposals: Mapping[str, str] | None
     """
     numbers, why = rig_numbers(rig), dict(proposals or {})
     gears = (_head(rig, name, base, numbers, why), _gears(rig, numbers, why), _manufacture(rig))
-    around = (_background(rig, numbers), _sensors(rig, numbers.scale))
+    around = (_background(rig, numbers), _sensors(rig))
     return "\n".join((*gears, _dynamics(rig, numbers), _states(rig), *around))
 
 
@@ -88,8 +83,6 @@ manufacture:
 
 
 def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
-    scale = numbers.scale
-    bolts = ", ".join(f"[{sign * 90.0 * scale:.3g}, 0]" for sign in (1, 1, -1, -1))
     lines = [
         "dynamics:",
         *(_rotor(name, rotor) for name, rotor in zip(("pinion", "gear"), numbers.rotors, strict=True)),
@@ -108,13 +101,6 @@ def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
                 ("input", "output"), numbers.coupling_nm_per_rad, numbers.coupling_nm_s_per_rad, strict=True
             )
         ),
-        "  casing:",
-        f"    mass_kg: {_range(numbers.casing_kg, 'loguniform')}",
-        "    inertia_kg_m2: null       # with the mass",
-        "    bolts:",
-        f"      shear_stiffness_n_per_m: {_spread(8e7 * scale)}",
-        f"      axial_stiffness_n_per_m: {_spread(1.5e8 * scale)}",
-        f"      positions_mm: [{bolts}]",
         f"  mesh: {{tip_relief_um: {_range(numbers.tip_relief_um)}}}    # running in alone, deflection at full load",
     ]
     return "\n".join(lines) + "\n"
@@ -173,19 +159,18 @@ background:                   # {ASSUMED}
 """
 
 
-def _sensors(rig: Rig, scale: float) -> str:
+def _sensors(rig: Rig) -> str:
     lines = [
-        "sensors:                      # on the casing: [horizontal, vertical] from its centre of gravity",
-        *(_sensor(i, scale) for i in range(rig.sensors)),
+        "sensors:                      # on the housing, about 15 mm around the middle of its plates",
+        *(_sensor(i) for i in range(rig.sensors)),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _sensor(i: int, scale: float) -> str:
-    x, y, axis = PLACES_MM[i % len(PLACES_MM)]
-    lowered = 10.0 * (i // len(PLACES_MM))
+def _sensor(i: int) -> str:
+    place, axis = PLACES[i % len(PLACES)]
     own = f"""name: sensor_{i + 1}
-    position_mm: [{x * scale:.3g}, {(y - lowered) * scale:.3g}]
+    place: {place}
     axes: [{axis}]"""
     if i:
         return f"  - <<: *sensor\n    {own}"
@@ -196,10 +181,8 @@ def _sensor(i: int, scale: float) -> str:
     noise: {{floor_m_s2: {{kind: loguniform, low: 0.003, high: 0.01}}}}
     range_m_s2: 500.0
     bits: 24
-    path: {{kind: modal, delay_us: {{kind: uniform, low: 20, high: 100}}}}
     high_pass_hz: {{kind: loguniform, low: 0.5, high: 2.0}}
-    mounting: {{frequency_hz: {{kind: uniform, low: 6000, high: 15000}}, damping_ratio: 0.06}}
-    place: casing"""
+    mounting: {{frequency_hz: {{kind: uniform, low: 6000, high: 15000}}, damping_ratio: 0.06}}"""
 
 
 def _spread(value: float) -> str:

@@ -96,5 +96,5 @@ def curve_problems(
     late_from = min(memory_s, 0.4 / (response.frequency_hz[1] - response.frequency_hz[0]))
     late = energy[times > late_from].sum() / energy.sum()
     if late > LATE_SHARE:
-        allowed = f"allowed: at most {LATE_SHARE:g}; measure with a finer frequency step or raise housing.settle_s"
+        allowed = f"allowed: at most {LATE_SHARE:g}; measure with a finer frequency step"
         yield f"{late:.2g} of the impulse response's energy after {late_from:.3g} s", allowed

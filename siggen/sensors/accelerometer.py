@@ -19,13 +19,13 @@ from siggen.keys.wording import AllowedText
 from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.sensor_response import high_pass_response, resonance_response
-from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath, ModalPath, TransferPath
+from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.resonance import Resonance
-from siggen.sensors.sensor import SIZE, AxisDraws, Sensor
+from siggen.sensors.sensor import PLATE_OF, PLATES, SIZE, AxisDraws, Sensor
 
 POSITION = AllowedText(
-    "two numbers, [horizontal, vertical] in mm from the casing's centre of gravity; a distribution is drawn per gearbox"
+    "two numbers in mm, from a casing's centre of gravity or the middle of a plate; a distribution is drawn per gearbox"
 )
 
 
@@ -40,7 +40,7 @@ class Accelerometer(SourceKeys, Sensor):
 
     Horizontal and vertical are meant as in the model: across from pinion to gear without, from gear to pinion with a
     casing; vertical along the pitch-line velocity of the pinion. Tangential is the motion of a gear's base circle.
-    Axial is along the shafts, where only a transfer path leads.
+    Axial is along the shafts.
     """
 
     quantity: ClassVar[Quantity] = ACCELERATION
@@ -49,14 +49,18 @@ class Accelerometer(SourceKeys, Sensor):
     understood_kind: ClassVar[bool] = True
 
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
-    place: Literal["pinion_bearing", "gear_bearing", "casing", "pinion_rim", "gear_rim"] = Field(
+    place: Literal[
+        "pinion_bearing", "gear_bearing", "lid", "wall", "pinion_end", "gear_end", "foot", "casing", "pinion_rim",
+        "gear_rim",
+    ] = Field(
         default="pinion_bearing",
-        description="where it is mounted; casing needs the model casing or a path, rims the model torsional",
-    )
+        description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid or a path, "
+        "rims with the model torsional",
+    )  # fmt: skip
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), many=True), POSITION, Grows(SIZE)] = Field(
         default=None,
-        description="horizontal and vertical distance from the casing's centre of gravity (place: casing); needed "
-        "where the motion of the rigid casing is measured",
+        description="casing: horizontal and vertical from its centre of gravity; from the middle of a plate: lid: "
+        "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "tangential", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="directions it measures, one channel each"
@@ -67,9 +71,8 @@ class Accelerometer(SourceKeys, Sensor):
     range_m_s2: Annotated[Real, Field(gt=0)] = Field(
         default=500.0, description="readings are clipped at plus and minus this"
     )
-    path: Annotated[Annotated[TransferPath, Field(discriminator="kind")] | None, PATH] = Field(
-        default=None,
-        description="from the bearing forces to the sensor (place: casing); null: it moves as the model does",
+    path: Annotated[MeasuredPath | None, PATH] = Field(
+        default=None, description="measured from the bearing forces to the sensor (place: casing)"
     )
     high_pass_hz: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="corner of the coupling capacitor (first order); null: none"
@@ -82,51 +85,44 @@ class Accelerometer(SourceKeys, Sensor):
 
     def own_problems(self) -> Iterator[Problem]:
         """Yield what does not go with the place: position, axes, path."""
-        on_casing = self.place == "casing"
+        has_position = self.place == "casing" or self.plate not in {None, "floor"}
         if self.position_mm is not None and (isinstance(self.position_mm, float) or len(self.position_mm) != 2):
             yield Problem("position_mm", received_text(self.position_mm), f"allowed: {POSITION.allowed_text}")
             return
-        if self.path is not None and not on_casing:
-            yield Problem("path", f"kind: {self.path.kind} at place {self.place}", "allowed: null, or place: casing")
-        if self.position_mm is None and self.sees_model and on_casing:
-            allowed = (
-                "allowed: a position [horizontal, vertical] with place: casing, and only there; or a path without "
-                "rigid motion"
-            )
+        if self.path is not None and self.place != "casing":
+            yield Problem("path", f"a path at place {self.place}", "allowed: null, or place: casing")
+        if self.position_mm is None and self.path is None and self.place == "casing":
+            allowed = "allowed: a position [horizontal, vertical] from the centre of gravity; or a measured path"
             yield Problem("position_mm", received_text(None), allowed)
-        if self.position_mm is not None and not on_casing:
-            allowed = "allowed: a position [horizontal, vertical] with place: casing, and only there"
-            yield Problem("position_mm", received_text(self.position_mm), allowed)
+        if self.position_mm is not None and not has_position:
+            yield Problem("position_mm", received_text(self.position_mm), f"allowed: null at place {self.place}")
         if self.place.endswith("_rim") and self.cross_axis != 0.0:
             yield Problem("cross_axis", str(self.cross_axis), f"allowed: 0 at place {self.place}, which has one axis")
-        axes = "tangential" if self.place.endswith("_rim") else "vertical, horizontal"
-        if on_casing and self.path is not None:
-            axes += ", axial"
-        if any(axis not in axes.split(", ") for axis in self.axes):
-            with_path = "; axial with a path" if on_casing and self.path is None else ""
-            yield Problem("axes", ", ".join(self.axes), f"allowed: {axes} at place {self.place}{with_path}")
+        axes = ("tangential",) if self.place.endswith("_rim") else DIRECTIONS
+        if any(axis not in axes for axis in self.axes):
+            yield Problem("axes", ", ".join(self.axes), f"allowed: {', '.join(axes)} at place {self.place}")
 
     def model_problems(self, model: str) -> Iterator[Problem]:
         """Yield what does not go with the model: its place, or what its path leaves out or has in it."""
         if self.path is None or model == "torsional":
             yield from super().model_problems(model)
+            if "axial" in self.axes and model != PLATES:
+                allowed = "allowed: vertical, horizontal; axial needs housing.kind: plates or a path"
+                yield Problem("axes", ", ".join(self.axes), allowed)
             return
-        if isinstance(self.path, MeasuredPath) and self.cross_axis != 0.0:
+        if self.cross_axis != 0.0:
             allowed = "allowed: 0; a measured response has the cross-axis sensitivity in it"
             yield Problem("cross_axis", str(self.cross_axis), allowed)
-        if self.sees_model and model != "casing":
-            allowed = f"allowed: false (dynamics.model: {model} has no casing that moves)"
-            yield Problem("path.rigid", "true", allowed)
 
     @property
-    def sees_model(self) -> bool:
-        """Whether it sees the motion of the model itself, alone or beside what a path adds."""
-        return self.path is None or (isinstance(self.path, ModalPath) and self.path.rigid)
+    def plate(self) -> str | None:
+        """The plate of a housing that it stands on."""
+        return PLATE_OF.get(self.place)
 
     @property
     def motion_place(self) -> str:
         """Name of the motion that it measures: its place, with its own name where it stands on the casing."""
-        return f"casing_{self.name}" if self.place == "casing" else self.place
+        return f"casing_{self.name}" if self.place == "casing" or self.plate else self.place
 
     @property
     def limit(self) -> float:
@@ -144,8 +140,8 @@ class Accelerometer(SourceKeys, Sensor):
         return None if self.noise is None else self.noise.floor_m_s2
 
     @property
-    def through(self) -> TransferPath | None:
-        """The path from the bearing forces through the housing to it."""
+    def through(self) -> MeasuredPath | None:
+        """The measured path from the bearing forces to it."""
         return self.path
 
     @property
@@ -156,7 +152,7 @@ class Accelerometer(SourceKeys, Sensor):
     @property
     def fitted(self) -> bool:
         """Whether lines or paths are those of recordings."""
-        return super().fitted or (isinstance(self.path, MeasuredPath) and self.path.is_family)
+        return super().fitted or (self.path is not None and self.path.is_family)
 
     def drawn(self, uniform: Callable[[str], float]) -> Self:
         """Return the sensor of one specimen: gains and position are drawn, what belongs to records is left."""
@@ -167,8 +163,8 @@ class Accelerometer(SourceKeys, Sensor):
         return super().drawn(uniform).model_copy(update={"position_mm": place})
 
     def shows(self, axis: str, draw: AxisDraws) -> Mapping[Input, float]:
-        """Return the motions of the model that a channel sees; several with cross-axis sensitivity."""
-        seen = {d: w for d, w in self.weights(axis, draw).items() if self.sees_model and d != "axial"}
+        """Return the motions that a channel sees; several with cross-axis sensitivity, none behind a measured path."""
+        seen = {} if self.path is not None else self.weights(axis, draw)
         return {Input(MOTION, f"{self.motion_place}/{direction}"): weight for direction, weight in seen.items()}
 
     def weights(self, axis: str, draw: AxisDraws) -> dict[str, float]:

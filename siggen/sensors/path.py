@@ -1,34 +1,19 @@
-"""The transfer path of a sensor: random modes of the housing, or a measured frequency response."""
+"""The transfer path of a sensor: a measured frequency response in place of the housing."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from siggen.errors import Problem
-from siggen.keys.number import Number, Within
 from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Section
 from siggen.keys.wording import AllowedText
 
 DIRECTIONS = ("vertical", "horizontal", "axial")
 """Directions along which a sensor on the casing may look."""
-
-
-class ModalPath(Section):
-    """Bearing forces reach the sensor through the flexible modes of `housing`."""
-
-    kind: Literal["modal"] = Field(description="random modes of the section housing")
-    rigid: bool = Field(
-        default=True,
-        description="whether the motion of the rigid casing is added; needs dynamics.model: casing and a position",
-    )
-    delay_us: Annotated[Number, Within(least=0, most=5000)] = Field(
-        default=0.0,
-        description="from the bearings through the flexible modes to the sensor, drawn per gearbox and axis",
-    )
 
 
 class TextParser:
@@ -59,7 +44,9 @@ OneOrMore = Annotated[str | tuple[str, ...], TextParser()]
 class MeasuredPath(Section):
     """Bearing forces reach the sensor through a measured accelerance, which holds the rigid motion as well."""
 
-    kind: Literal["measured"] = Field(description="frequency response from a file")
+    understood_kind: ClassVar[bool] = True
+
+    kind: Literal["measured"] = Field(default="measured", description="frequency response from a file")
     file: OneOrMore | None = Field(
         default=None,
         description="CSV, Parquet or npz; its path counts from the folder of the configuration; of a list every "
@@ -83,6 +70,4 @@ class MeasuredPath(Section):
         return isinstance(self.file, tuple)
 
 
-TransferPath: TypeAlias = ModalPath | MeasuredPath
-
-PATH = AllowedText("null, or a mapping with kind: modal or measured")
+PATH = AllowedText("null, or a mapping with file: a measured frequency response")

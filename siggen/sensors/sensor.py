@@ -21,14 +21,19 @@ from siggen.keys.section import Section, Whole
 from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
 from siggen.sensing.inputs import FORCE, Input
-from siggen.sensors.path import TransferPath
+from siggen.sensors.path import MeasuredPath
 from siggen.sensors.quantity import Quantity
 
+PLATES = "casing, housing.kind: plates"
+"""The model whose housing gives way."""
+PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
+"""Place -> plate of the housing."""
 PLACES = {
     "torsional": ("pinion_rim", "gear_rim"),
     "6dof": ("pinion_bearing", "gear_bearing"),
     "8dof": ("pinion_bearing", "gear_bearing"),
     "casing": ("casing", "pinion_bearing", "gear_bearing"),
+    PLATES: (*PLATE_OF, "pinion_bearing", "gear_bearing"),
 }
 """Places whose motion a model has."""
 SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
@@ -121,8 +126,8 @@ class Sensor(Section):
         return ()
 
     @property
-    def through(self) -> TransferPath | None:
-        """The path from the bearing forces through the housing to it."""
+    def through(self) -> MeasuredPath | None:
+        """The measured path from the bearing forces to it."""
         return None
 
     @property
@@ -133,8 +138,13 @@ class Sensor(Section):
         return frozenset(shown | (set() if self.through is None else {FORCE}))
 
     @property
+    def plate(self) -> str | None:
+        """The plate of a housing that it stands on; None for none."""
+        return None
+
+    @property
     def place_on_casing_mm(self) -> tuple[Number, ...]:
-        """Horizontal and vertical distance from the casing's centre of gravity; nothing unless it needs them."""
+        """Distances from the casing's centre of gravity or the middle of its plate; nothing unless it needs them."""
         return ()
 
     @property
@@ -198,5 +208,5 @@ class Sensor(Section):
 
 
 def needs_forces(sensors: tuple[Sensor, ...]) -> bool:
-    """Return whether a sensor shows bearing forces, or what a path makes of them."""
+    """Return whether a sensor shows bearing forces, or what a measured path makes of them."""
     return any(FORCE in sensor.reads for sensor in sensors)

@@ -7,7 +7,7 @@ seats, on shafts, base and housing. What they do to bearing forces passes the fl
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, pi, sin, sqrt
 
 import numpy as np
@@ -15,11 +15,11 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Background, Config, Dynamics
 from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
-from siggen.dynamics.structure.casing_structure import bolt_elements
+from siggen.dynamics.structure.body import Body
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.foundation import Base, on_base
 from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.structure.structure import Structure, vector
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
@@ -36,12 +36,10 @@ from siggen.specimen.background_numbers import (
 )
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.measured_path import INPUTS
-from siggen.specimen.structure import casing_numbers, structure
+from siggen.specimen.structure import specimen_body, structure
 
 DECAYS = 7.0
 """Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
-ENTRIES = ("second_stage", "auxiliary_drive")
-"""Sources that press on the flexible housing at a place of their own."""
 AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
 MACHINES = {"motor": "pinion", "load": "gear"}
@@ -50,6 +48,22 @@ FLOOR_INPUTS = ("mesh", *INPUTS, *MACHINES)
 """Where noise of the floor acts."""
 BLOCK = 8192
 """Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelWay:
+    """How a channel sees forces that act beside the model's own.
+
+    Attributes
+    ----------
+    shown : motions and forces that it shows; of a housing of plates those of the modes that move with the gears
+    accelerance : (bearing forces, k) beyond those motions, m/s² per N; None for none
+    entries : (entries of `Body`, k) the same from where other machines press on the housing
+    """
+
+    shown: Mapping[Input, float]
+    accelerance: ComplexArray | None
+    entries: ComplexArray | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +100,7 @@ def specimen_background(
     config: Config,
     specimen: Specimen,
     section: BackgroundNumbers,
-    channels: Mapping[str, tuple[Mapping[Input, float], ComplexArray | None, ComplexArray | None]],
+    channels: Mapping[str, ChannelWay],
     frequency_hz: FloatArray,
 ) -> SpecimenBackground:
     """Return the background of a specimen; the same for all of its states, operating points and repeats.
@@ -94,31 +108,34 @@ def specimen_background(
     Parameters
     ----------
     section : drawn
-    channels : name -> what of the model it shows, accelerances (bearing forces, k) and (ENTRIES, k), or None
+    channels : by name
     frequency_hz : (k,)
     """
     pair = gear_pair(specimen.gears)
-    assembled = locked_load(structure(specimen.dynamics, pair, specimen.sensors))
-    if section.base is not None:
-        casing = casing_numbers(specimen.dynamics.casing, pair, specimen.sensors)
-        bolts = bolt_elements(casing, pair.working_pressure_angle_rad)
-        assembled = on_base(assembled, bolts, _base(section.base))
+    assembled = locked_load(structure(config, specimen))
+    body = specimen_body(config, specimen) if specimen.dynamics.model == "casing" else None
+    if body is not None:
+        motions = {name: vector(assembled.coordinates, row) for name, row in body.motions.items()}
+        assembled = replace(assembled, motions=motions)
+        if section.base is not None:
+            assembled = on_base(assembled, body, _base(section.base))
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
-    directions = _directions(assembled, section, uniform, pair.pinion.base_radius_m + pair.gear.base_radius_m)
+    directions = _directions(assembled, body, section, uniform)
     shafts = _shafts(config.background, uniform)
     if not directions:
         return SpecimenBackground(section, shafts, (), {})
-    seen = tuple(dict.fromkeys(motion for shown, _, _ in channels.values() for motion in _motions(shown)))
+    ways = {name: _in_model(way, assembled) for name, way in channels.items()}
+    seen = tuple(dict.fromkeys(motion for way in ways.values() for motion in _motions(way.shown)))
     mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
     names, rows = tuple(directions), np.array(list(directions.values()))
+    turn_rad = _angle(uniform, "auxiliary_drive")
     responses = {name: np.empty((len(names), frequency_hz.size), dtype=np.complex128) for name in channels}
     for first in range(0, frequency_hz.size, BLOCK):
         block = slice(first, first + BLOCK)
         forced = forced_motion(assembled, mesh, rows, seen, frequency_hz[block])
-        for name, (shown, *paths) in channels.items():
-            own = (None if path is None else path[:, block] for path in paths)
+        for name, way in ways.items():
             try:
-                responses[name][:, block] = _response(names, forced, shown, *own)
+                responses[name][:, block] = _response(names, turn_rad, forced, way, block)
             except KeyError as error:
                 raise ValueError(f"sensor of {name}: shows {error}, which the background does not reach") from error
     return SpecimenBackground(section, shafts, names, responses)
@@ -150,7 +167,7 @@ def _base(section: BaseNumbers) -> Base:
 
 
 def _directions(
-    assembled: Structure, section: BackgroundNumbers, uniform: Callable[[str], float], arm_m: float
+    assembled: Structure, body: Body | None, section: BackgroundNumbers, uniform: Callable[[str], float]
 ) -> dict[str, FloatArray]:
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
@@ -166,23 +183,20 @@ def _directions(
             found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
     if section.second_stage is not None:
-        found["second_stage"] = _couple(assembled, arm_m)
+        found["second_stage"] = _entry(assembled, body, "second_stage")
     if section.auxiliary_drive is not None:
-        found["auxiliary_drive"] = _turned(_moved(assembled, ("x_c", "y_c")), _angle(uniform, "auxiliary_drive"))
+        rows = np.array([_entry(assembled, body, f"auxiliary_drive/{axis}") for axis in AXES])
+        found["auxiliary_drive"] = _turned(rows, _angle(uniform, "auxiliary_drive"))
     return found
 
 
-def _couple(assembled: Structure, arm_m: float) -> FloatArray:
-    """Return what a mesh inside does to the housing: equal and opposite forces on the seats of both shafts.
-
-    Their sum is nothing, their moment is the force times the distance of both lines of action, the sum of the base
-    radii. That of the stage simulated stands for the other one's.
-    """
-    return np.array([arm_m if name == "phi_c" else 0.0 for name in assembled.coordinates])
+def _entry(assembled: Structure, body: Body | None, name: str) -> FloatArray:
+    """Return the generalised force (n,) of 1 N where another machine presses on the body; nothing without a body."""
+    return vector(assembled.coordinates, {} if body is None else body.entries[name])
 
 
 def _on_seat(assembled: Structure, name: str) -> FloatArray:
-    """Return 1 N on the housing alone, at a bearing: what shafts bring in from outside, as `housing.force_noise`."""
+    """Return 1 N on the housing alone, at a bearing: what shafts bring in from outside."""
     rotor = [coordinate in {"x_1", "y_1", "x_2", "y_2"} for coordinate in assembled.coordinates]
     return np.where(rotor, 0.0, -bearing_direction(assembled, *name.split("/")))
 
@@ -221,24 +235,32 @@ def _motions(shown: Mapping[Input, float]) -> tuple[str, ...]:
     return tuple(one.name for one in shown if one.kind == MOTION)
 
 
+def _in_model(way: ChannelWay, assembled: Structure) -> ChannelWay:
+    """Return a way that shows motions of the model alone: without those that it does not have, such as axial ones."""
+    shown = {
+        one: weight
+        for one, weight in way.shown.items()
+        if one.kind != MOTION or one.name in assembled.motions or not one.name.endswith("/axial")
+    }
+    return replace(way, shown=shown)
+
+
 def _response(
-    inputs: tuple[str, ...],
-    forced: ForcedMotion,
-    shown: Mapping[Input, float],
-    accelerance: ComplexArray | None,
-    entries: ComplexArray | None,
+    inputs: tuple[str, ...], turn_rad: float, forced: ForcedMotion, way: ChannelWay, block: slice
 ) -> ComplexArray:
-    """Return the response (inputs, k) of one channel."""
+    """Return the response (inputs, k) of one channel at a block of its frequencies."""
     total = np.zeros_like(next(iter(forced.bearing_force.values())))
-    for one, weight in shown.items():
+    for one, weight in way.shown.items():
         total += weight * (forced.bearing_force if one.kind == FORCE else forced.acceleration)[one.name]
-    if accelerance is not None:
-        for name, row in zip(INPUTS, accelerance, strict=True):
+    if way.accelerance is not None:
+        for name, row in zip(INPUTS, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]
             if name in inputs:
                 total[inputs.index(name)] += row
-    if entries is not None:
-        for name, row in zip(ENTRIES, entries, strict=True):
+    if way.entries is not None:
+        stage, horizontal, vertical = way.entries[:, block]
+        direct = {"second_stage": stage, "auxiliary_drive": cos(turn_rad) * horizontal + sin(turn_rad) * vertical}
+        for name, row in direct.items():
             if name in inputs:
                 total[inputs.index(name)] += row
     return total

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
-from math import pi
 
 import numpy as np
 
@@ -17,13 +16,12 @@ from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BlockGrid, block_grid
 from siggen.sensing.inputs import BACKGROUND, FLOOR, FORCE, MOTION, Input
-from siggen.sensing.modal_path import modal_accelerance, modal_shares
 from siggen.sensing.spectral_filter import frequencies
-from siggen.sensors.path import MeasuredPath, ModalPath
+from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.specimen.background import (
-    ENTRIES,
     FLOOR_INPUTS,
+    ChannelWay,
     SpecimenBackground,
     background_history_s,
     drawn_background,
@@ -32,7 +30,7 @@ from siggen.specimen.background import (
 from siggen.specimen.background_numbers import FloorNumbers
 from siggen.specimen.block_responses import BlockResponses, block_responses, floor_response
 from siggen.specimen.housing import SpecimenHousing, specimen_housing
-from siggen.specimen.measured_path import INPUTS, decoded_response
+from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 
 CHAIN_HISTORY_S = 0.02
 """History for the resonances of sensors without a path; those above 1 kHz with 1 % damping have 0.1 % left after it."""
@@ -88,39 +86,38 @@ class Instrument:
     background: SpecimenBackground | None = None
 
 
-def settle_s(config: Config) -> float:
-    """Return the time before the first sample over which the housing's modes settle [s]."""
-    return 0.0 if config.housing is None else config.housing.settle_s
+def settle_s(config: Config, specimen: Specimen) -> float:
+    """Return the time before the first sample over which what lies between bearings and sensors settles [s]."""
+    housing = specimen_housing(config, specimen)
+    measured = any(isinstance(sensor.through, MeasuredPath) for sensor in specimen.sensors)
+    return max(0.0 if housing is None else housing.settle_s, MEMORY_S if measured else 0.0)
 
 
-def history_s(config: Config) -> float:
+def history_s(config: Config, specimen: Specimen) -> float:
     """Return the history that the instrument needs [s].
 
     The longest memory of a filter counts whatever the sensors are: the motion begins before it. Otherwise a sensor
     that is added would move all others by what is left of the start.
     """
-    return max(settle_s(config), CHAIN_HISTORY_S)
+    return max(settle_s(config, specimen), CHAIN_HISTORY_S)
 
 
 def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
     section = drawn_background(config, specimen.specimen_id)
-    history = max(history_s(config), background_history_s(section))
-    history_samples = round(history * config.fs_hz)
-    blocks = block_grid(history_samples, config.samples)
-    housing = specimen_housing(config, specimen.specimen_id)
+    history = max(history_s(config, specimen), background_history_s(section))
+    blocks = block_grid(round(history * config.fs_hz), config.samples)
+    housing = specimen_housing(config, specimen)
     uniform = named_uniforms(config.seed, Stage.SENSOR, specimen.specimen_id)
     grid = frequencies(blocks.memory, config.fs_hz)
-    paths = _paths(specimen, housing, grid)
-    channels = []
+    channels, ways = [], {}
     for sensor in specimen.sensors:
         for axis, gain in zip(sensor.axes, sensor.gains, strict=True):
             draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}")
-            channels.append(_channel(sensor, axis, constant(gain), draw, paths))
+            channel, ways[f"{sensor.name}_{axis}"] = _channel(sensor, axis, constant(gain), draw, _Paths(housing, grid))
+            channels.append(channel)
     background = None
     if section is not None:
-        ways = {c.name: (c.seen, c.accelerance, _entries(c, uniform, paths)) for c in channels}
-        del paths  # as large as the responses of a channel
         background = specimen_background(config, specimen, section, ways, grid)
     found = Instrument(blocks.memory, config.fs_hz, tuple(channels), block_responses(blocks, {}), background)
     filters = _in_blocks(found, blocks)
@@ -166,39 +163,51 @@ def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArra
 
 @dataclass(frozen=True, slots=True)
 class _Paths:
-    """A housing and a grid of frequencies (k,); what the modes do there (modes, k), if all paths share it."""
+    """A housing and a grid of frequencies (k,)."""
 
     housing: SpecimenHousing | None
     grid: FloatArray
-    shares: ComplexArray | None
 
 
-def _paths(specimen: Specimen, housing: SpecimenHousing | None, grid: FloatArray) -> _Paths:
-    """Return housing and grid, and what the modes do for all paths."""
-    modal = housing is not None and any(isinstance(sensor.through, ModalPath) for sensor in specimen.sensors)
-    return _Paths(housing, grid, modal_shares(housing.modes, grid) if modal and housing is not None else None)
-
-
-def _channel(sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths) -> ChannelInstrument:
-    housing, grid = paths.housing, paths.grid
-    accelerance = None
-    if sensor.through is not None:
+def _channel(
+    sensor: Sensor, axis: str, gain: float, draw: AxisDraws, paths: _Paths
+) -> tuple[ChannelInstrument, ChannelWay]:
+    """Return a channel and what it sees of forces that the model does not make."""
+    shown, housing, grid = sensor.shows(axis, draw), paths.housing, paths.grid
+    motions = {one.name: weight for one, weight in shown.items() if one.kind == MOTION}
+    accelerance, beyond, entries = None, None, None
+    if isinstance(sensor.through, MeasuredPath):
         weights = sensor.weights(axis, draw)
-        one_by_one = (weight * _accelerance(sensor, d, draw, paths) for d, weight in weights.items())
-        accelerance = reduce(np.add, one_by_one)
-    modal = isinstance(sensor.through, ModalPath) and housing is not None
-    return ChannelInstrument(
+        accelerance = beyond = _measured(sensor, weights, draw, grid)
+    elif housing is not None and motions:
+        seen = housing.seen(motions)
+        coupled, others = slice(housing.coupled), slice(housing.coupled, None)
+        beyond = housing.accelerance(seen, INPUTS, grid, others)
+        entries = housing.accelerance(seen, tuple(housing.entries), grid, others)
+        accelerance = beyond + housing.accelerance(seen, INPUTS, grid, coupled)
+    channel = ChannelInstrument(
         name=f"{sensor.name}_{axis}",
         sensor=sensor,
         gain=gain,
-        seen=sensor.shows(axis, draw),
+        seen=_of_model(shown, housing),
         accelerance=accelerance,
         sensor_response=sensor.response(draw, grid),
         high_pass_hz=sensor.coupling_hz(draw),
-        path_modes=housing.modes.frequency_hz.size if modal and housing is not None else 0,
+        path_modes=0 if housing is None or entries is None else housing.modes.frequency_hz.size,
         path_rms_m_s2_per_n=0.0 if accelerance is None else _band_rms(accelerance, grid),
         path_number=path_number(sensor, draw.uniform),
     )
+    return channel, ChannelWay(shown, beyond, entries)
+
+
+def _of_model(shown: Mapping[Input, float], housing: SpecimenHousing | None) -> dict[Input, float]:
+    """Return what of the model's motion is shown as it is: nothing that a housing of plates gives, nothing axial."""
+    motions = {} if housing is None else housing.motions
+    return {
+        one: weight
+        for one, weight in shown.items()
+        if one.kind != MOTION or not (one.name in motions or one.name.endswith("/axial"))
+    }
 
 
 def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
@@ -207,29 +216,11 @@ def path_number(sensor: Sensor, uniform: Callable[[str], float]) -> int:
     return min(int(uniform("path.number") * len(family)), len(family) - 1) if len(family) > 1 else 0
 
 
-def _accelerance(
-    sensor: Sensor, direction: str, draw: AxisDraws, paths: _Paths, inputs: tuple[str, ...] = INPUTS
-) -> ComplexArray:
-    """Return the accelerance (inputs, k) from forces on the housing to one direction at a sensor."""
-    housing, grid = paths.housing, paths.grid
-    match sensor.through:
-        case ModalPath() as path if housing is not None:
-            shape = housing.at_sensor(sensor, direction)
-            found = modal_accelerance(housing.modes, housing.at_bearings(inputs), shape, grid, paths.shares)
-            return np.asarray(found * np.exp(-2e-6j * pi * grid * draw(path.delay_us, "path.delay_us")))
-        case MeasuredPath(family=(_, *_) as family):
-            return decoded_response(family[path_number(sensor, draw.uniform)]).accelerance(direction, inputs, grid)
-    raise ValueError(f"sensor {sensor.name}: a path needs the section housing, a measured one its numbers")
-
-
-def _entries(channel: ChannelInstrument, uniform: Callable[[str], float], paths: _Paths) -> ComplexArray | None:
-    """Return the accelerance (entries, k) from what presses on the housing beside the bearings; None without modes."""
-    sensor, axis = channel.sensor, channel.name.removeprefix(f"{channel.sensor.name}_")
-    if not isinstance(sensor.through, ModalPath):
-        return None
-    draw = AxisDraws(uniform, f"sensors.{sensor.name}.{axis}")
-    weights = sensor.weights(axis, draw)
-    return reduce(np.add, (w * _accelerance(sensor, d, draw, paths, ENTRIES) for d, w in weights.items()))
+def _measured(sensor: Sensor, weights: Mapping[str, float], draw: AxisDraws, grid: FloatArray) -> ComplexArray:
+    """Return the accelerance (inputs, k) from bearing forces that was measured."""
+    assert isinstance(sensor.through, MeasuredPath)
+    response = decoded_response(sensor.through.family[path_number(sensor, draw.uniform)])
+    return reduce(np.add, (weight * response.accelerance(d, INPUTS, grid) for d, weight in weights.items()))
 
 
 def _band_rms(accelerance: ComplexArray, grid: FloatArray) -> float:

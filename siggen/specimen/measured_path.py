@@ -40,6 +40,8 @@ MOST_NUMBERS = 400_000
 """Numbers that a response may have: they become part of the configuration, 11 bytes each."""
 
 
+MEMORY_S = 0.6
+"""Of a measured path: what comes later is cut off."""
 NUMBER_BYTES = 8
 """Of a number in a file of numpy."""
 
@@ -80,7 +82,7 @@ def with_measured_responses(raw: Mapping[str, Any], folder: Path) -> tuple[Mappi
 
 def _filled(sensor: Any, folder: Path) -> Any:
     path = sensor.get("path") if isinstance(sensor, Mapping) else None
-    if not isinstance(path, Mapping) or path.get("kind") != "measured":
+    if not isinstance(path, Mapping) or path.get("kind", "measured") != "measured":
         return sensor
     name = str(sensor.get("name", ""))
     if path.get("response") is not None:
@@ -98,15 +100,15 @@ def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, lis
 
 def response_problems(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield what makes the measured responses of valid sections unusable for their records."""
-    housing, fs_hz = sections.get("housing"), sections.get("fs_hz")
-    if housing is None or fs_hz is None:
+    fs_hz = sections.get("fs_hz")
+    if fs_hz is None:
         return
     for index, sensor in sections.get("sensors", {}).items():
         if isinstance(sensor.through, MeasuredPath):
             for number, text in enumerate(sensor.through.family):
                 keys = (f"file.{number}", f"response.{number}") if sensor.through.is_family else ("file", "response")
                 file, numbers = (f"sensors.{index}.path.{key}" for key in keys)
-                yield from _text_problems(text, sensor.axes, (fs_hz, housing.settle_s), file, numbers)
+                yield from _text_problems(text, sensor.axes, (fs_hz, MEMORY_S), file, numbers)
 
 
 def _text_problems(

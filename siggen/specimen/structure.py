@@ -3,37 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import pi
 
-from siggen.config import Casing as CasingSection
+from siggen.config import Config, Dynamics, RigidHousing, Rotor
 from siggen.config import Coupling as CouplingSection
-from siggen.config import Dynamics, Rotor
 from siggen.config import Shaft as ShaftSection
-from siggen.dynamics.structure.casing_structure import Bolts, Casing, Point, casing_structure, torsional
+from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
+from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
 from siggen.dynamics.structure.structure import Rotor as RotorNumbers
 from siggen.dynamics.structure.tilting_shaft import Shaft
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import Number, constant
+from siggen.planning.specimen import Specimen
 from siggen.rig.rig_numbers import STEEL_DENSITY_KG_M3
 from siggen.sensors.sensor import Sensor
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing import coupled_modes, specimen_housing
 
 CASING_GYRATION = 1.15
 """Radius of gyration of a casing over its centre distance: a box of even wall round the gears (derived)."""
 ASSEMBLIES = {"8dof": eight_dof, "6dof": six_dof, "torsional": torsional}
 
 
-def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()) -> Structure:
-    """Return the structure of a drawn `dynamics` section; a gear without given mass is a steel disc with its bore.
+def structure(config: Config, specimen: Specimen) -> Structure:
+    """Return the structure of a drawn specimen; a gear without given mass is a steel disc with its bore."""
+    dynamics, pair = specimen.dynamics, gear_pair(specimen.gears)
+    stage = spur_stage(dynamics, pair)
+    if dynamics.model != "casing":
+        return ASSEMBLIES[dynamics.model](stage)
+    body = specimen_body(config, specimen)
+    if specimen_housing(config, specimen) is not None:
+        # modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`)
+        body = replace(body, motions={})
+    return carried_structure(stage, body, _shafts(dynamics, stage, pair))
 
-    Parameters
-    ----------
-    dynamics : Dynamics, without distributions
-    pair : GearPair
-    sensors : Sensor, those on the casing become points of it
-    """
-    stage = SpurStage(
+
+def specimen_body(config: Config, specimen: Specimen) -> Body:
+    """Return the body that carries the bearings of a specimen, sensors and entries on it included."""
+    pair = gear_pair(specimen.gears)
+    housing = specimen_housing(config, specimen)
+    if housing is not None:
+        return modal_body(coupled_modes(housing), pair.working_pressure_angle_rad)
+    assert isinstance(specimen.housing, RigidHousing)
+    body = casing_body(spur_stage(specimen.dynamics, pair), casing_numbers(specimen.housing, pair, specimen.sensors))
+    # Of a second mesh a rigid casing feels the moment alone: the force times the distance of both lines of action.
+    arm_m = pair.pinion.base_radius_m + pair.gear.base_radius_m
+    return replace(body, entries={**body.entries, "second_stage": {"phi_c": arm_m}})
+
+
+def spur_stage(dynamics: Dynamics, pair: GearPair) -> SpurStage:
+    """Return motor, gears and load of a drawn `dynamics` section in SI."""
+    return SpurStage(
         working_pressure_angle_rad=pair.working_pressure_angle_rad,
         pinion=_rotor(dynamics.pinion, pair.pinion, pair.face_width_m),
         gear=_rotor(dynamics.gear, pair.gear, pair.face_width_m),
@@ -42,9 +65,6 @@ def structure(dynamics: Dynamics, pair: GearPair, sensors: Sequence[Sensor] = ()
         input_coupling=_coupling(dynamics.input_coupling),
         output_coupling=_coupling(dynamics.output_coupling),
     )
-    if dynamics.model == "casing":
-        return casing_structure(stage, casing_numbers(dynamics.casing, pair, sensors), _shafts(dynamics, stage, pair))
-    return ASSEMBLIES[dynamics.model](stage)
 
 
 def disc_mass_kg(gear: SpurGear, face_width_m: float) -> float:
@@ -96,7 +116,7 @@ def _coupling(section: CouplingSection) -> Coupling:
     return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))
 
 
-def casing_numbers(section: CasingSection, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
+def casing_numbers(section: RigidHousing, pair: GearPair, sensors: Sequence[Sensor]) -> Casing:
     """Return a drawn casing in SI."""
     bolts, inertia = section.bolts, section.inertia_kg_m2
     mass, gyration_m = constant(section.mass_kg), CASING_GYRATION * pair.working_centre_distance_m

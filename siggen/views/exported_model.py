@@ -26,7 +26,7 @@ from siggen.dynamics.time.transient import settling_steps
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.planning.specimen import Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
@@ -65,7 +65,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         angle = start_angle_rad(config, state.pair, record)
         driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
         motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
-        grid = _time_grid(config, motion, driven.rotation, steps)
+        grid = _time_grid(config, specimen, motion, driven.rotation, steps)
         start = motion.start(grid["start_pitches"])
     return {
         "format": "siggen exported model",
@@ -134,8 +134,8 @@ def _structure(structure: Structure) -> dict[str, Any]:
         "sliding_vectors": structure.sliding_vectors,
         "torque_vector": structure.torque_vector,
         "equivalent_mesh_mass_kg": structure.equivalent_mesh_mass_kg,
-        "motion_names": np.array(list(structure.motions)),
-        "motion_rows": np.array(list(structure.motions.values())),
+        "motion_names": np.array(list(structure.motions), dtype=np.str_),
+        "motion_rows": np.array(list(structure.motions.values())) if structure.motions else empty,
         "bearing_force_names": np.array(list(structure.bearing_forces), dtype=np.str_),
         "bearing_force_stiffness_rows": np.array([k for k, _ in forces]) if forces else empty,
         "bearing_force_damping_rows": np.array([c for _, c in forces]) if forces else empty,
@@ -162,10 +162,10 @@ def _static_part(equations: Equations) -> dict[str, Any]:
     }
 
 
-def _time_grid(config: Config, motion: Motion, rotation: Rotation, steps: int) -> dict[str, Any]:
+def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rotation, steps: int) -> dict[str, Any]:
     """Return rate, steps and the phase of the mesh; the transient lies before time 0."""
     step_s = 1.0 / (config.fs_hz * steps)
-    settling = settling_steps(motion.transient_s, settle_s(config), config.fs_hz * steps)
+    settling = settling_steps(motion.transient_s, settle_s(config, specimen), config.fs_hz * steps)
     start_s = -(half_length(steps) + settling) * step_s
     per_radian = motion.teeth / (2.0 * np.pi)
     return {

@@ -44,7 +44,7 @@ def specimen_modes(config: Config, specimen_id: int = 0) -> SpecimenModes:
     pair = gear_pair(specimen.gears)
     tables = mesh_tables(pair, (), stiffness_options(specimen.stiffness))
     stiffness = mean_mesh_stiffness(tables)
-    assembled = structure(specimen.dynamics, pair)
+    assembled = structure(config, specimen)
     return SpecimenModes(assembled.coordinates, stiffness, assembled.mass, natural_modes(assembled, stiffness))
 
 

@@ -13,9 +13,8 @@ from siggen.config import Config
 from siggen.errors import UsageError
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
-from siggen.sensing.modal_path import HousingModes
 from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.housing import specimen_housing
+from siggen.specimen.housing import SpecimenHousing, specimen_housing
 from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
 from siggen.specimen.measured_path import INPUTS
 
@@ -32,7 +31,7 @@ class PathCurves:
     specimen_id: int
     frequency_hz: FloatArray
     channels: tuple[ChannelInstrument, ...]
-    modes: HousingModes | None
+    housing: SpecimenHousing | None
     mesh_hz: tuple[float, ...]
     mesh_harmonics: int
     memory_s: float = 0.0
@@ -78,17 +77,19 @@ def path_curves(config: Config, specimen_id: int = 0) -> PathCurves:
     instrument = specimen_instrument(config, specimen)
     channels = tuple(channel for channel in instrument.channels if channel.accelerance is not None)
     if not channels:
-        raise UsageError("no sensor has a path; give one `path: {kind: modal}` and add a section housing")
-    housing = specimen_housing(config, specimen_id)
+        raise UsageError(
+            "no sensor stands on a housing of plates or has a measured path: dynamics.model: casing has one"
+        )
+    housing = specimen_housing(config, specimen)
     points = (draw_operating_point(config, specimen_id, i) for i in range(len(config.operating_points)))
     return PathCurves(
         specimen_id=specimen_id,
         frequency_hz=frequencies(instrument.length, config.fs_hz),
         channels=channels,
-        modes=None if housing is None or not any(c.path_modes for c in channels) else housing.modes,
+        housing=housing if any(c.path_modes for c in channels) else None,
         mesh_hz=tuple(point.speed_hz * specimen.gears.pinion.teeth for point in points),
         mesh_harmonics=config.mesh_harmonics,
-        memory_s=settle_s(config),
+        memory_s=settle_s(config, specimen),
     )
 
 

@@ -85,12 +85,10 @@ def bearing_direction(structure: Structure, place: str, axis: str) -> FloatArray
         If the structure has no such bearing.
     """
     key = f"{place}/{axis}"
-    if key not in structure.bearing_forces:
-        allowed = ", ".join(structure.bearing_forces) or "none in a model of rotations alone"
+    if key not in structure.bearing_directions:
+        allowed = ", ".join(structure.bearing_directions) or "none in a model of rotations alone"
         raise ValueError(f"bearing: received {key}; allowed are {allowed}")
-    # Force on the housing per displacement is the stiffness times the unit direction of the shaft's part.
-    stiff = structure.bearing_forces[key][0]
-    return stiff / np.linalg.norm(_on_shaft(structure, place, stiff))
+    return structure.bearing_directions[key]
 
 
 def shaft_directions(structure: Structure, place: str) -> FloatArray:

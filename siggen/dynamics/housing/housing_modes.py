@@ -23,6 +23,7 @@ from siggen.arrays import ComplexArray, FloatArray, IntArray
 from siggen.dynamics.housing.box import SIDES, Box, plane_axes
 from siggen.dynamics.housing.box_energy import box_energy
 from siggen.dynamics.housing.half_functions import HalfFunctions
+from siggen.dynamics.housing.modal_sum import modal_sum
 from siggen.dynamics.housing.motion import Motion
 from siggen.dynamics.housing.ordered_sums import squares
 from siggen.dynamics.housing.plate_energy import sheet
@@ -36,6 +37,7 @@ FINER = 6
 IN_PLANE = 1
 """Bubbles of motion in the plane, polynomials of degree 4."""
 LEAST_BUBBLES = 4
+ALL = slice(None)
 REACH = 2.0
 """95 % of third octaves hold within 6 dB up to so many times `resolved_hz` (`python -m benchmarks.housing reach`)."""
 BEYOND = 3.0
@@ -86,16 +88,30 @@ class HousingModes:
         return self.static_flexibility(outputs, inputs) - squares(left / (omega * omega), right)
 
     def accelerance(
-        self, outputs: Sequence[Motion], inputs: Sequence[Motion], frequency_hz: FloatArray, damping_ratio: FloatArray
+        self,
+        outputs: Sequence[Motion],
+        inputs: Sequence[Motion],
+        frequency_hz: FloatArray,
+        damping_ratio: FloatArray,
+        which: slice = ALL,
     ) -> ComplexArray:
-        """Return accelerances (outputs, inputs, k) [m/s² per N] at frequencies (k,) with damping ratios (m,)."""
-        omega, natural = 2.0 * pi * frequency_hz, 2.0 * pi * self.frequency_hz[:, None]
-        shares = -(omega**2) / (natural**2 - omega**2 + 2j * damping_ratio[:, None] * natural * omega)
-        at_outputs, at_inputs = self.shapes(outputs), self.shapes(inputs)
-        total: ComplexArray = -(omega**2) * self.residual_flexibility(outputs, inputs)[:, :, None].astype(complex)
-        for output, force, share in zip(at_outputs.T, at_inputs.T, shares, strict=True):
-            total += np.outer(output, force)[:, :, None] * share
-        return total
+        """Return accelerances (outputs, inputs, k) [m/s² per N] at frequencies (k,) with damping ratios (m,).
+
+        Of all modes, or of some; where these go up to the last one, with what stands for those above.
+        """
+        at_outputs, at_inputs = self.shapes(outputs)[:, which], self.shapes(inputs)[:, which]
+        residues = (at_outputs[:, None, :] * at_inputs[None, :, :]).reshape(-1, at_outputs.shape[1])
+        residual = np.zeros(len(residues))
+        if which.stop is None:
+            residual = self.residual_flexibility(outputs, inputs).reshape(-1)
+        total = modal_sum(
+            np.ascontiguousarray(residues),
+            2.0 * pi * self.frequency_hz[which],
+            damping_ratio[which],
+            residual,
+            2.0 * pi * frequency_hz,
+        )
+        return np.asarray(total.reshape(len(outputs), len(inputs), frequency_hz.size))
 
 
 def _columns(motions: Sequence[Motion], half: int) -> FloatArray:

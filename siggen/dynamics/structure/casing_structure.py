@@ -10,11 +10,15 @@ pitch-line velocity of the pinion at the mesh).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.housing.ordered_sums import squares
+from siggen.dynamics.housing.stiff_pencil import solve_lower, solve_upper, upper_root
+from siggen.dynamics.structure.body import Body, Casing, axis_vector, rigid_body
 from siggen.dynamics.structure.structure import (
     Element,
     Rotor,
@@ -26,30 +30,6 @@ from siggen.dynamics.structure.structure import (
     vector,
 )
 from siggen.dynamics.structure.tilting_shaft import Shaft, tilting_ends
-
-Point = tuple[float, float]
-"""Horizontal and vertical distance from the casing's centre of gravity [m]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Bolts:
-    """Bolts between casing and ground, all alike: horizontal stiffness by shear, vertical by the bolt's axis."""
-
-    shear_stiffness_n_per_m: float
-    axial_stiffness_n_per_m: float
-    damping_ratio: float
-    places_m: tuple[Point, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Casing:
-    """A rigid casing, and where pinion and sensors stand on it."""
-
-    mass_kg: float
-    inertia_kg_m2: float
-    bolts: Bolts
-    pinion_place_m: Point
-    sensor_places_m: Mapping[str, Point]
 
 
 def torsional(stage: SpurStage) -> Structure:
@@ -68,47 +48,59 @@ def torsional(stage: SpurStage) -> Structure:
 
 
 def casing_structure(stage: SpurStage, casing: Casing, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
-    """Return the gears in a bolted casing, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, x_c, y_c, φ_c].
+    """Return the gears in a rigid casing, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, x_c, y_c, φ_c] and tilts.
 
     Sensors at the bearings sit on the casing. A sensor of another name is seen as `casing_<name>`.
-    With shafts that bend, the tilts [φ_x1, φ_y1, φ_x2, φ_y2] come behind: what a gear moves along x and y at a distance
-    along its axis, per distance. The casing itself does not tilt.
 
     Raises
     ------
     ValueError
         If the bolts leave the casing free to move.
     """
+    return carried_structure(stage, casing_body(stage, casing), shafts_of_gears)
+
+
+def casing_body(stage: SpurStage, casing: Casing) -> Body:
+    """Return a rigid casing as the body that carries a stage.
+
+    Raises
+    ------
+    ValueError
+        As `casing_structure`.
+    """
     if len(set(casing.bolts.places_m)) < 2:
         raise ValueError(
             f"bolts: received {len(set(casing.bolts.places_m))} distinct places; allowed are at least 2, "
             "since about a single one the casing would turn freely"
         )
-    angle = stage.working_pressure_angle_rad
     gear_place = (casing.pinion_place_m[0] - _centre_distance_m(stage), casing.pinion_place_m[1])
-    seats = {"pinion_bearing": casing.pinion_place_m, "gear_bearing": gear_place}
+    return rigid_body(casing, gear_place, stage.working_pressure_angle_rad)
+
+
+def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft, Shaft] | None = None) -> Structure:
+    """Return the gears in a body, q = [θ_m, θ_1, θ_2, θ_L, x_1, y_1, x_2, y_2, coordinates of the body].
+
+    With shafts that bend, the tilts [φ_x1, φ_y1, φ_x2, φ_y2] come behind: what a gear moves along x and y at a distance
+    along its axis, per distance. Seats do not tilt.
+    """
+    angle = stage.working_pressure_angle_rad
     bearings = {
-        **_bearings("1", "pinion_bearing", stage.pinion, casing.pinion_place_m, angle),
-        **_bearings("2", "gear_bearing", stage.gear, gear_place, angle),
+        **_bearings("1", "pinion_bearing", stage.pinion, body, angle),
+        **_bearings("2", "gear_bearing", stage.gear, body, angle),
     }
     held = _held(bearings, shafts_of_gears)
-    places = {**seats, **{f"casing_{name}": place for name, place in casing.sensor_places_m.items()}}
-    inertias = {**_rotations(stage), **_translations(stage), **_casing_inertias(casing)}
-    inertias |= _tilt_inertias(shafts_of_gears)
+    inertias = {**_rotations(stage), **_translations(stage), **body.inertias, **_tilt_inertias(shafts_of_gears)}
     coordinates = tuple(inertias)
-    springs = (element for elements in held.values() for element in elements)
-    stiffness, damping = assemble(coordinates, (*shafts(stage), *springs, *bolt_elements(casing, angle)))
-    motions = {
-        f"{name}/{axis}": vector(coordinates, _on_casing(place, axis, angle))
-        for name, place in places.items()
-        for axis in ("vertical", "horizontal")
-    }
+    stiffness, damping = assemble(coordinates, (*shafts(stage), *body.supports))
+    springs = seated_springs(coordinates, held, tuple(body.seats), body.flexibility_m_per_n)
     line_of_action = {"y_1": 1.0, "y_2": -1.0}
     across = {"x_1": 1.0, "x_2": -1.0}
-    forces = {name: _force_rows(coordinates, elements) for name, elements in held.items()}
-    structure = _structure(stage, inertias, stiffness, damping, line_of_action, motions, across)
+    motions = {name: vector(coordinates, row) for name, row in body.motions.items()}
+    structure = _structure(
+        stage, inertias, stiffness + springs.stiffness, damping + springs.damping, line_of_action, motions, across
+    )
     tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
-    return replace(structure, bearing_forces=forces, tilt_vector=tilt)
+    return replace(structure, bearing_forces=springs.forces, bearing_directions=springs.directions, tilt_vector=tilt)
 
 
 def _held(
@@ -135,24 +127,53 @@ def _tilt_inertias(shafts_of_gears: tuple[Shaft, Shaft] | None) -> dict[str, flo
     }
 
 
-def _force_rows(coordinates: tuple[str, ...], elements: Sequence[Element]) -> tuple[FloatArray, FloatArray]:
-    """Return what the elements together press with, per displacement and per velocity, each (n,)."""
-    directions = [vector(coordinates, element.direction) for element in elements]
-    pairs = list(zip(elements, directions, strict=True))
-    stiffness, damping = [e.stiffness * v for e, v in pairs], [e.damping * v for e, v in pairs]
-    return np.add.reduce(stiffness), np.add.reduce(damping)
+class SeatedSprings(NamedTuple):
+    """Stiffness and damping (n, n) of all bearings; by place/axis force per displacement and velocity, direction."""
+
+    stiffness: FloatArray
+    damping: FloatArray
+    forces: dict[str, tuple[FloatArray, FloatArray]]
+    directions: dict[str, FloatArray]
 
 
-def bolt_elements(casing: Casing, angle_rad: float) -> tuple[Element, ...]:
-    """Return the bolts as springs on the casing; c = 2 ζ √(k m_c/bolts)."""
-    bolts = casing.bolts
-    numbers = {"horizontal": bolts.shear_stiffness_n_per_m, "vertical": bolts.axial_stiffness_n_per_m}
-    share = casing.mass_kg / len(bolts.places_m)
-    return tuple(
-        Element(_on_casing(place, axis, angle_rad), k, float(2.0 * bolts.damping_ratio * np.sqrt(k * share)))
-        for place in bolts.places_m
-        for axis, k in numbers.items()
-    )
+def seated_springs(
+    coordinates: tuple[str, ...],
+    held: Mapping[str, Sequence[Element]],
+    seats: tuple[str, ...],
+    flexibility_m_per_n: FloatArray | None,
+) -> SeatedSprings:
+    """Return bearings on seats that give way by (seats, seats), each by the forces on all of them.
+
+    Derived: springs k_i in series with the flexibility R of their seats have the stiffness K = (diag(1/k) + R)^-1
+    together. A damper c sees its own spring's share of the motion, K/k: C = K diag(c/k²) K (exact for slow motion).
+    """
+    elements = [(seats.index(name), element) for name, of_place in held.items() for element in of_place]
+    rows = np.array([vector(coordinates, element.direction) for _, element in elements])
+    seat = [number for number, _ in elements]
+    k, c = (np.array([getattr(e, name) for _, e in elements]) for name in ("stiffness", "damping"))
+    stiff, damped = np.diag(k), np.diag(c)
+    if flexibility_m_per_n is not None:
+        stiff = _inverse(np.diag(1.0 / k) + flexibility_m_per_n[np.ix_(seat, seat)])
+        damped = _squares(stiff, _squares(np.diag(c / k**2), stiff))
+    pushing, braking = _squares(stiff, rows), _squares(damped, rows)
+    forces, directions = {}, {}
+    for name in held:
+        own = [number for number, place in enumerate(seat) if place == seats.index(name)]
+        forces[name] = np.add.reduce(pushing[own]), np.add.reduce(braking[own])
+        # both ends of a shaft share a force between shaft and seat as their springs do
+        directions[name] = np.add.reduce(rows[own] * (k[own] / k[own].sum())[:, None])
+    return SeatedSprings(_squares(rows, pushing), _squares(rows, braking), forces, directions)
+
+
+def _squares(left: FloatArray, right: FloatArray) -> FloatArray:
+    return squares(np.ascontiguousarray(left), np.ascontiguousarray(right))
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """Return the inverse of a small positive definite matrix; a library's last bits depend on the processor."""
+    root = upper_root(matrix)
+    inverse = solve_upper(root, solve_lower(root, np.eye(len(matrix))))
+    return np.asarray(0.5 * (inverse + inverse.T))
 
 
 def _rotations(stage: SpurStage) -> dict[str, float]:
@@ -169,31 +190,13 @@ def _translations(stage: SpurStage) -> dict[str, float]:
     return {"x_1": pinion, "y_1": pinion, "x_2": gear, "y_2": gear}
 
 
-def _casing_inertias(casing: Casing) -> dict[str, float]:
-    return {"x_c": casing.mass_kg, "y_c": casing.mass_kg, "phi_c": casing.inertia_kg_m2}
-
-
 def _centre_distance_m(stage: SpurStage) -> float:
     radii = stage.pinion.base_radius_m + stage.gear.base_radius_m
     return float(radii / np.cos(stage.working_pressure_angle_rad))
 
 
-def _axis(axis: str, angle_rad: float) -> Point:
-    """Return the (x, y) components of the horizontal or the vertical unit vector."""
-    sine, cosine = float(np.sin(angle_rad)), float(np.cos(angle_rad))
-    return (cosine, -sine) if axis == "horizontal" else (sine, cosine)
-
-
-def _on_casing(place_m: Point, axis: str, angle_rad: float) -> dict[str, float]:
-    """Return the motion of a point of the casing along an axis: (x_c - Y φ_c, y_c + X φ_c) · u."""
-    u, (h, v) = _axis(axis, angle_rad), place_m
-    # Arm of the axis about the centre of gravity, X u_y - Y u_x; it does not depend on the frame.
-    arm = -v if axis == "horizontal" else h
-    return {"x_c": u[0], "y_c": u[1], "phi_c": arm}
-
-
-def _bearings(index: str, name: str, rotor: Rotor, place_m: Point, angle_rad: float) -> dict[str, Element]:
-    """Return place/axis -> the spring between a gear and its seat in the casing."""
+def _bearings(index: str, name: str, rotor: Rotor, body: Body, angle_rad: float) -> dict[str, Element]:
+    """Return place/axis -> the spring between a gear and its seat in the body."""
     bearing = rotor.bearing
     numbers = {
         "vertical": (bearing.stiffness_y_n_per_m, bearing.damping_y_n_s_per_m),
@@ -201,8 +204,8 @@ def _bearings(index: str, name: str, rotor: Rotor, place_m: Point, angle_rad: fl
     }
     result = {}
     for axis, (stiffness, damping) in numbers.items():
-        u = _axis(axis, angle_rad)
-        seat = {key: -value for key, value in _on_casing(place_m, axis, angle_rad).items()}
+        u = axis_vector(axis, angle_rad)
+        seat = {key: -value for key, value in body.seats[f"{name}/{axis}"].items()}
         result[f"{name}/{axis}"] = Element({f"x_{index}": u[0], f"y_{index}": u[1], **seat}, stiffness, damping)
     return result
 
@@ -232,4 +235,5 @@ def _structure(
         equivalent_mesh_mass_kg=stage.equivalent_mesh_mass_kg,
         motions=motions,
         bearing_forces={},
+        bearing_directions={},
     )

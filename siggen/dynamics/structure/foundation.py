@@ -1,22 +1,19 @@
 """Foundation: a gearbox whose bolts stand on a base that moves on its mounts, instead of on the ground.
 
-Derived. The bolts press on the base as much as on the casing: with K_b their stiffness in the casing's coordinates, the
-base's block gains K_b + K_m, the coupling -K_b. The base moves like the casing: two translations and rocking about the
-same point. Far above its mounts a force F on the base moves it by F/(m ω²); with heavy, stiff mounts it is the ground.
+Derived. The bolts press on the base as much as on the body: each support acts on its own stretch less what the base
+moves it by (`Body.base`). The base moves by two translations and rocking about the middle between the shafts. Far above
+its mounts a force F on the base moves it by F/(m ω²); with heavy, stiff mounts it is the ground.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.dynamics.structure.body import BASE, Body
 from siggen.dynamics.structure.structure import Element, Structure, assemble
-
-BASE = ("x_b", "y_b", "phi_b")
-CASING = ("x_c", "y_c", "phi_c")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,24 +31,15 @@ class Base:
         return 2.0 * np.pi * min(self.natural_hz) * self.damping_ratio
 
 
-def on_base(structure: Structure, bolts: Sequence[Element], base: Base) -> Structure:
+def on_base(structure: Structure, body: Body, base: Base) -> Structure:
     """Return the structure with a base under its bolts; its coordinates come behind the others.
 
     Parameters
     ----------
-    structure : Structure with a casing
-    bolts : elements between casing and ground that the structure holds already, on the casing's coordinates
+    structure : Structure that holds the supports of the body
+    body : Body
     base : Base
-
-    Raises
-    ------
-    ValueError
-        If the structure has no casing.
     """
-    if not set(CASING) <= set(structure.coordinates):
-        raise ValueError(
-            f"base: received a structure of {', '.join(structure.coordinates)}; allowed: one with a casing"
-        )
     coordinates = (*structure.coordinates, *BASE)
     mass = np.diag([*np.diag(structure.mass), base.mass_kg, base.mass_kg, base.inertia_kg_m2])
     stiffness, damping = (_padded(matrix) for matrix in (structure.stiffness, structure.damping))
@@ -63,7 +51,9 @@ def on_base(structure: Structure, bolts: Sequence[Element], base: Base) -> Struc
     ]
     of_mounts = assemble(coordinates, mounts)
     # (v_c - v_b)(v_c - v_b)ᵀ less the v_c v_cᵀ that is there already
-    moving, fixed = assemble(coordinates, [_to_base(bolt) for bolt in bolts]), assemble(coordinates, bolts)
+    moving, fixed = (
+        assemble(coordinates, elements) for elements in ([_to_base(one, body) for one in body.supports], body.supports)
+    )
     return replace(
         structure,
         coordinates=coordinates,
@@ -75,12 +65,17 @@ def on_base(structure: Structure, bolts: Sequence[Element], base: Base) -> Struc
         torque_vector=_longer(structure.torque_vector),
         motions={name: _longer(row) for name, row in structure.motions.items()},
         bearing_forces={name: (_longer(k), _longer(c)) for name, (k, c) in structure.bearing_forces.items()},
+        bearing_directions={name: _longer(row) for name, row in structure.bearing_directions.items()},
     )
 
 
-def _to_base(bolt: Element) -> Element:
-    on_base_side = {BASE[CASING.index(name)]: -value for name, value in bolt.direction.items()}
-    return replace(bolt, direction={**bolt.direction, **on_base_side})
+def _to_base(support: Element, body: Body) -> Element:
+    """Return a support between the body and a base: what it stretches by, less what the base moves the body by."""
+    moved: dict[str, float] = {}
+    for name, value in support.direction.items():
+        for base, share in body.base[name].items():
+            moved[base] = moved.get(base, 0.0) - value * share
+    return replace(support, direction={**support.direction, **moved})
 
 
 def _padded(matrix: FloatArray) -> FloatArray:

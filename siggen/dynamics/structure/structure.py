@@ -40,6 +40,7 @@ class Structure:
     equivalent_mesh_mass_kg : J_1 J_2 / (J_1 R_b2² + J_2 R_b1²)
     motions : place/axis -> (n,), displacement at that place = vector · q
     bearing_forces : place/axis -> two (n,), force on the housing = first · q + second · q̇
+    bearing_directions : place/axis -> (n,), 1 N between a shaft and its seat: on the shaft along the axis, and back
     tilt_vector : (n,) t, tilt of the pinion's flanks against the gear's in the plane of action = tᵀ q; None where gears
         stay parallel. A moment of the mesh across the face acts as -t
     """
@@ -54,6 +55,7 @@ class Structure:
     equivalent_mesh_mass_kg: float
     motions: Mapping[str, FloatArray]
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
+    bearing_directions: Mapping[str, FloatArray]
     tilt_vector: FloatArray | None = None
 
 
@@ -227,6 +229,7 @@ def _spur_structure(
             place: (directions[place] * element.stiffness, directions[place] * element.damping)
             for place, element in supports.items()
         },
+        bearing_directions=directions,
     )
 
 
