@@ -117,5 +117,5 @@ def _case(config: Config, gearbox: int, state: int) -> Case:
     made = specimen_state(config, specimen, state_id)
     point = draw_operating_point(config, gearbox, record.operating_point_id)
     angle = start_angle_rad(config, made.pair, record)
-    driven = record_drive(config, specimen, made.pair, made.mesh.structure, point, record, angle)
+    driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)
     return Case(config, specimen, made, point, driven)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.external_forces import BearingTones, Unbalance
+from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.shafts import Shafts
 from siggen.keys.number import Number, Within
@@ -81,7 +81,6 @@ class Dynamics(Section):
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
-    bearing_tones: BearingTones = Field(default=BearingTones(), description="forces of rolling bearings")
     shafts: Shafts | None = Field(
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
     )

@@ -203,7 +203,7 @@ def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     angle_rad = start_angle_rad(config, state.pair, record)
-    return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
+    return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad)
 
 
 def simulated(

@@ -63,7 +63,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     steps = time_grid(config, specimen, state.mesh.structure, state.mesh.tables).per_sample
     with refused_as("outside_model"):
         angle = start_angle_rad(config, state.pair, record)
-        driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
+        driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
         motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
         grid = _time_grid(config, specimen, motion, driven.rotation, steps)
         start = motion.start(grid["start_pitches"])

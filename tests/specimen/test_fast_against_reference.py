@@ -48,7 +48,7 @@ def accelerations(
     specimen = draw_specimen(config, record.specimen_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     angle = start_angle_rad(config, state.pair, record)
-    driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
+    driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
     rate_hz = config.fs_hz * steps
     dynamics = by_reference(specimen.dynamics) if integrator == "runge_kutta" else specimen.dynamics
     motion = specimen_motion(dynamics, state.mesh, point, 1.0 / rate_hz, driven, stride=stride)
