@@ -5,6 +5,7 @@ Everything is checked at the bounds of all numbers, with the largest bearings th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -59,7 +60,7 @@ def _problems(housing: PlateHousing, shafts: Shafts | None, pair: GearPair) -> I
         if given is not None and 1e-3 * bounds(given)[0] < least.length_m:
             allowed = f"allowed: at least {1e3 * least.length_m:.4g} mm: {least.reason}"
             yield Problem(f"housing.{least.given}", f"{bounds(given)[0]:g}", allowed)
-    most_m = THICKEST * min(_inner_m(numbers, shafts, contents, wall_m))
+    most_m = THICKEST * min(_inner_m(numbers, contents))
     if housing.wall_mm is not None and wall_m > most_m:
         allowed = f"allowed: at most {1e3 * most_m:.3g} mm, a quarter of the least inner length of the box"
         yield Problem("housing.wall_mm", f"{1e3 * wall_m:g}", allowed)
@@ -103,18 +104,13 @@ def _least(contents: Contents, wall_m: float) -> Iterator[Least]:
     yield Least("width_mm", contents.face_width_m + 2.0 * CLEARANCE_M, "the gears' faces (gears.face_width_mm)")
 
 
-def _inner_m(
-    numbers: PlateNumbers, shafts: Shafts | None, contents: Contents, wall_m: float
-) -> tuple[float, float, float]:
-    """Return the least inner length, height and width that a gearbox may draw."""
+def _inner_m(numbers: PlateNumbers, contents: Contents) -> Iterator[float]:
+    """Yield the least inner length and height that a gearbox may draw, and the width where it is given.
+
+    A width that is not given may be as narrow as the shafts ask for, whatever the walls.
+    """
     centre_m, tips_m = contents.centre_distance_m, contents.tip_radius_m
-    end, above, sump, side = (bounds(n)[0] for n in (numbers.end, numbers.above, numbers.sump, numbers.side))
-    width_m = contents.face_width_m + 2.0 * side * centre_m
-    if shafts is not None:
-        spans_mm = [bounds(shaft.bearing_span_mm)[0] for shaft in (shafts.pinion, shafts.gear)]
-        between_m = 0.5e-3 * sum(spans_mm) - wall_m - 2.0 * bounds(numbers.overhang)[1] * centre_m
-        width_m = max(between_m, contents.face_width_m + 2.0 * CLEARANCE_M)
-    own_m = (sum(tips_m) + (1.0 + 2.0 * end) * centre_m, 2.0 * max(tips_m) + (above + sump) * centre_m, width_m)
+    end, above, sump = (bounds(n)[0] for n in (numbers.end, numbers.above, numbers.sump))
+    own_m = (sum(tips_m) + (1.0 + 2.0 * end) * centre_m, 2.0 * max(tips_m) + (above + sump) * centre_m, math.inf)
     given = (numbers.length_mm, numbers.height_mm, numbers.width_mm)
-    length, height, width = (m if mm is None else 1e-3 * bounds(mm)[0] for m, mm in zip(own_m, given, strict=True))
-    return length, height, width
+    yield from (m if mm is None else 1e-3 * bounds(mm)[0] for m, mm in zip(own_m, given, strict=True))

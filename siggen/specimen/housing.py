@@ -163,7 +163,9 @@ def _made(
     return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
 
 
-def specimen_layout(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> tuple[Contents, Proportions, Material]:
+def specimen_layout(
+    numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair
+) -> tuple[Contents, Proportions, Material]:
     """Return what the box of a drawn housing is made from."""
     contents = housing_contents(numbers, shafts, pair)
     return contents, _proportions(numbers, shafts, contents), _material(numbers)
@@ -279,13 +281,13 @@ def _sensors(
     found = {}
     for sensor in sensors:
         if sensor.plate is not None:
-            plate, first, second = _place(box, sensor, uniform)
+            plate, first, second = sensor_place(box, sensor, uniform)
             for axis, number in AXES.items():
                 found[f"casing_{sensor.name}/{axis}"] = motion_at(modes.halves, Place(plate, first, second, number))
     return found
 
 
-def _place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
+def sensor_place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
     """Return the plate and where on it a sensor stands: about its middle, or about a bolt."""
     if sensor.plate == "floor":
         bolt = box.bolts[-1]

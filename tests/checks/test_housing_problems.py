@@ -34,7 +34,7 @@ def refusals(**changes: object) -> dict[str, str]:
         ({"housing__height_mm": 150.0}, "housing.height_mm", "the larger gear"),
         ({"housing__width_mm": 23.0}, "housing.width_mm", "at least 24 mm: the gears' faces"),
         ({"housing__length_mm": {"kind": "uniform", "low": 200, "high": 400}}, "housing.length_mm", "200; allowed"),
-        ({"housing__wall_mm": 30.0}, "housing.wall_mm", "a quarter of the least inner length"),
+        ({"housing__wall_mm": 50.0}, "housing.wall_mm", "a quarter of the least inner length"),
         ({"housing__wall_mm": 11.0, "housing__width_mm": 40.0}, "housing.wall_mm", "at most 10 mm"),
         (
             {"dynamics__shafts": {"pinion": {"diameter_mm": 44}, "gear": {"diameter_mm": 125}}},
@@ -64,10 +64,9 @@ def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, mat
     """Of 30 gearboxes each, whatever bearings and walls they draw; a box that cannot be is refused by its own check."""
     config = load_config(minimal(dynamics__shafts=shafts, housing__material=material))
     pair = gear_pair(config.gears)
-    tight = {"length_mm": 1.0, "height_mm": 1.0, "width_mm": 1.0}
     least = {}
-    for key in tight:
-        section = config.housing.model_copy(update={key: tight[key]})
+    for key in ("length_mm", "height_mm", "width_mm"):
+        section = config.housing.model_copy(update={key: 1.0})
         (problem,) = housing_problems({"dynamics": config.dynamics, "housing": section}, [pair])
         least[key] = 1.0005 * float(problem.allowed.split("at least ")[1].split(" mm")[0])  # told with four digits
     smallest = load_config(config.canonical() | {"housing": {**config.canonical()["housing"], **least}})
