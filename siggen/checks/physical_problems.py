@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.checks.edge_problems import edge_problems
+from siggen.checks.housing_problems import housing_problems
 from siggen.checks.pair_problems import pair_problems
 from siggen.checks.shaft_problems import shaft_problems
 from siggen.checks.tilt_problems import tilt_problems
@@ -69,6 +70,7 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)
     problems += variation_problems(sections, sound)
     problems += shaft_problems(sections, sound)
+    problems += housing_problems(sections, sound)
     problems += edge_problems(sections, sound)
     problems += tilt_problems(sections, flanks)
     return tuple({problem.path: problem for problem in reversed(problems)}.values())

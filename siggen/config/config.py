@@ -155,7 +155,7 @@ def _identity_content(value: Any) -> Any:
                 item, default = value.identity_value(name), field.get_default(call_default_factory=True)
                 content = _identity_content(item)
                 # what is named and means the same does not count either (`identity_value`)
-                counts = bool(content) if isinstance(default, Section) else item != default
+                counts = item != default and (bool(content) or not isinstance(default, Section))
                 found |= {name: content} if counts or name == named else {}
             return found
         case tuple():

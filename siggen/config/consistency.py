@@ -81,10 +81,10 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 
-def _housing(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
-    """Yield a housing for a model that has none."""
+def _housing(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield a housing for a model that has none; that of files without the section is no choice of anybody."""
     model = sections["dynamics"].model if "dynamics" in sections else "casing"
-    if model != "casing" and raw.get("housing") is not None:
+    if model != "casing" and sections.get("housing", PlateHousing()) != PlateHousing():
         yield Problem("housing", "a section", f"allowed: none, or dynamics.model: casing (it is {model})")
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, model_validator
 
 from siggen.errors import Problem
 from siggen.keys.distributions import LogUniform, Uniform
@@ -104,4 +104,4 @@ def with_kind(section: Any) -> Any:
     return {"kind": "plates", **section} if isinstance(section, Mapping) else section
 
 
-Housing = Annotated[PlateHousing | RigidHousing, Field(discriminator="kind"), BeforeValidator(with_kind)]
+Housing = Annotated[PlateHousing | RigidHousing, Discriminator("kind"), BeforeValidator(with_kind)]

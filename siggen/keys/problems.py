@@ -24,8 +24,8 @@ MOST_PROBLEMS = 1_000
 SHOWN_NUMBERS = 4
 """Lists of up to as many numbers are shown as they came."""
 
-BRANCHES = {"modal", "measured"}
-"""Tags by which pydantic names the branch of a union it took, to which every kind of damage adds its own.
+BRANCHES = {"plates", "rigid"}
+"""Tags by which pydantic names the branch of a union it took, to which kinds of damage and sensors add their own.
 
 No key of the file has such a name (tested).
 """

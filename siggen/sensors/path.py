@@ -41,12 +41,15 @@ class TextParser:
 OneOrMore = Annotated[str | tuple[str, ...], TextParser()]
 
 
+KIND = AllowedText("measured; a sensor on a place of a housing of plates needs no path")
+
+
 class MeasuredPath(Section):
     """Bearing forces reach the sensor through a measured accelerance, which holds the rigid motion as well."""
 
     understood_kind: ClassVar[bool] = True
 
-    kind: Literal["measured"] = Field(default="measured", description="frequency response from a file")
+    kind: Annotated[Literal["measured"], KIND] = Field(default="measured", description="frequency response from a file")
     file: OneOrMore | None = Field(
         default=None,
         description="CSV, Parquet or npz; its path counts from the folder of the configuration; of a list every "

@@ -111,7 +111,7 @@ def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | No
     if specimen.dynamics.model != "casing" or not isinstance(numbers, PlateNumbers):
         return None
     pair = gear_pair(specimen.gears)
-    box, modes = _made(*_layout(numbers, specimen.dynamics.shafts, pair), 0.5 * config.fs_hz)
+    box, modes = _made(*specimen_layout(numbers, specimen.dynamics.shafts, pair), 0.5 * config.fs_hz)
     rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
     plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
     below = int((modes.frequency_hz < COUPLED_HZ).sum())
@@ -163,8 +163,11 @@ def _made(
     return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
 
 
-def _layout(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> tuple[Contents, Proportions, Material]:
-    contents = _contents(numbers, shafts, pair)
+def specimen_layout(
+    numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair
+) -> tuple[Contents, Proportions, Material]:
+    """Return what the box of a drawn housing is made from."""
+    contents = housing_contents(numbers, shafts, pair)
     return contents, _proportions(numbers, shafts, contents), _material(numbers)
 
 
@@ -174,7 +177,8 @@ def _material(numbers: PlateNumbers) -> Material:
     return Material(_within(IRON_PA, numbers.modulus), 0.26, _within(IRON_KG_M3, numbers.density))
 
 
-def _contents(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> Contents:
+def housing_contents(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> Contents:
+    """Return what a housing holds; bearings are as large as fit beside each other."""
     centre = pair.working_centre_distance_m
     diameters = [SHAFT_SHARE * centre] * 2
     if shafts is not None:
@@ -192,7 +196,7 @@ def _contents(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> C
 def _proportions(numbers: PlateNumbers, shafts: Shafts | None, contents: Contents) -> Proportions:
     centre, n = contents.centre_distance_m, numbers
     wall, overhang = _wall_m(numbers, centre), constant(numbers.overhang) * centre
-    end = max(constant(n.end) * centre, _end_for_bearings_m(contents, wall))
+    end = max(constant(n.end) * centre, end_for_bearings_m(contents, wall))
     side = constant(n.side) * centre
     above, sump = constant(n.above) * centre, constant(n.sump) * centre
     if shafts is not None:
@@ -227,7 +231,7 @@ LEAST_BOSS = 1.2
 """Of a boss over its bearing, where the ends are near (assumed)."""
 
 
-def _end_for_bearings_m(contents: Contents, wall_m: float) -> float:
+def end_for_bearings_m(contents: Contents, wall_m: float) -> float:
     """Return the least distance of the teeth from the ends, so that bosses end a wall's thickness before them."""
     pairs = zip(contents.bearing_outer_m, contents.tip_radius_m, strict=True)
     return max(0.5 * LEAST_BOSS * outer + 0.5 * wall_m - tip for outer, tip in pairs)
@@ -245,7 +249,12 @@ def _bolt_n_per_m(numbers: PlateNumbers, centre_m: float) -> tuple[float, float]
 def _wall_m(numbers: PlateNumbers, centre_m: float) -> float:
     if numbers.wall_mm is not None:
         return 1e-3 * constant(numbers.wall_mm)
-    return (3e-3 + 0.025 * centre_m) * _within(STEEL_WALL if numbers.material == "steel" else IRON_WALL, numbers.wall)
+    return least_wall_m(centre_m) * _within(STEEL_WALL if numbers.material == "steel" else IRON_WALL, numbers.wall)
+
+
+def least_wall_m(centre_m: float) -> float:
+    """Return what walls are multiples of [m]."""
+    return 3e-3 + 0.025 * centre_m
 
 
 def _within(limits: tuple[float, float], share: Number) -> float:
@@ -272,13 +281,13 @@ def _sensors(
     found = {}
     for sensor in sensors:
         if sensor.plate is not None:
-            plate, first, second = _place(box, sensor, uniform)
+            plate, first, second = sensor_place(box, sensor, uniform)
             for axis, number in AXES.items():
                 found[f"casing_{sensor.name}/{axis}"] = motion_at(modes.halves, Place(plate, first, second, number))
     return found
 
 
-def _place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
+def sensor_place(box: Box, sensor: Sensor, uniform: Callable[[str], float]) -> tuple[str, float, float]:
     """Return the plate and where on it a sensor stands: about its middle, or about a bolt."""
     if sensor.plate == "floor":
         bolt = box.bolts[-1]

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.structure.casing_structure import Bolts, Casing, casing_structure
+from siggen.dynamics.structure.body import Bolts, Casing
+from siggen.dynamics.structure.casing_structure import casing_structure
 from siggen.dynamics.structure.structure import Bearing, Coupling, Rotor, SpurStage, Structure
 
 PRESSURE_ANGLE = np.radians(20.0)

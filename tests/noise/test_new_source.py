@@ -19,7 +19,7 @@ specimens: 1
 duration_s: 0.2
 repeats: 1
 states: [{{name: healthy}}]
-sensors: [{{name: lid, place: casing, position_mm: [60, 50], bits: null{source}}}]
+sensors: [{{name: lid, place: lid, position_mm: [5, 5], bits: null{source}}}]
 """
 SIGNAL, LABEL = "accel_lid_vertical_m_s2", "toy_drift_lid_vertical_m_s2_per_s"
 

@@ -90,7 +90,7 @@ DRAWN = {
         ),
     ],
     "dynamics__friction__oil": ["ISO VG 100", "ISO VG 220", "ISO VG 460"],
-    "sensors": [{"name": "lid", "place": "casing", "position_mm": [{"kind": "uniform", "low": 20, "high": 60}, 5.0]}],
+    "sensors": [{"name": "lid", "place": "lid", "position_mm": [{"kind": "uniform", "low": 20, "high": 60}, 5.0]}],
 }
 
 
@@ -111,6 +111,6 @@ def test_a_gearbox_draws_gear_teeth_and_oil_once_for_all_of_its_states_and_place
 
 
 def test_naming_one_gear_one_number_and_one_place_keeps_the_identity() -> None:
-    plain = config(sensors=[{"name": "lid", "place": "casing", "position_mm": [20.0, 5.0]}])
+    plain = config(sensors=[{"name": "lid", "place": "lid", "position_mm": [20.0, 5.0]}])
     assert plain.sensors[0].position_mm == (20.0, 5.0)
     assert gearbox_config(plain, 3) is plain

@@ -43,9 +43,11 @@ def test_the_pair_that_the_file_was_written_for_leaves_the_configuration_as_it_i
 
 def test_a_pair_of_the_same_shape_and_twice_the_size_has_eight_masses_and_bears_eight_torques() -> None:
     masses = {"dynamics__pinion__mass_kg": 1.0, "dynamics__gear__inertia_kg_m2": 6.4e-3}
-    own = pair_config(family({"teeth": [18, 47], "module_mm": 6.0, "face_width_mm": 40.0}, **masses), 0)
+    rigid = {"kind": "rigid", "inertia_kg_m2": 0.25}
+    own = pair_config(family({"teeth": [18, 47], "module_mm": 6.0, "face_width_mm": 40.0}, **masses, housing=rigid), 0)
     assert own.operating_points[0].torque_nm == pytest.approx(8.0 * 60.0)
-    assert own.dynamics.casing.mass_kg == pytest.approx(8.0 * 20.0)
+    assert own.housing.mass_kg == pytest.approx(8.0 * 20.0)  # type: ignore[union-attr]
+    assert own.housing.inertia_kg_m2 == pytest.approx(32.0 * 0.25)  # type: ignore[union-attr]
     # Shafts come in steps of 5 mm, so masses and inertias of rotors are those of similar bodies within some per cent.
     assert own.dynamics.pinion.mass_kg == pytest.approx(8.0, rel=0.1)
     assert own.dynamics.gear.inertia_kg_m2 == pytest.approx(32.0 * 6.4e-3, rel=0.1)
@@ -54,6 +56,16 @@ def test_a_pair_of_the_same_shape_and_twice_the_size_has_eight_masses_and_bears_
     assert (damage.semi_axis_face_mm, damage.depth_mm) == (0.6, 0.8)  # type: ignore[union-attr]
     drawn = own.dynamics.pinion.bearing_stiffness_x_n_per_m
     assert drawn.high / drawn.low == pytest.approx(2.0)  # type: ignore[union-attr]
+
+
+def test_a_box_that_was_given_grows_with_the_pair_and_one_that_was_not_is_drawn_round_it() -> None:
+    given = {"length_mm": 260.0, "wall_mm": {"kind": "uniform", "low": 8, "high": 12}}
+    twice = {"teeth": [18, 47], "module_mm": 6.0, "face_width_mm": 40.0}
+    own = pair_config(family(twice, housing=given), 0).housing
+    assert own.length_mm == pytest.approx(520.0)  # type: ignore[union-attr]
+    assert own.wall_mm.high == pytest.approx(24.0)  # type: ignore[union-attr]
+    assert own.width_mm is None  # type: ignore[union-attr]
+    assert own.feet == family(twice).housing.feet  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("teeth", [(17, 19), (18, 83), (35, 104)])

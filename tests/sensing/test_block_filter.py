@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 
 from siggen.sensing.block_filter import AHEAD, BlockGrid, block_grid, limited
-from siggen.sensing.modal_path import housing_modes, modal_accelerance
 from siggen.sensing.spectral_filter import frequencies
+from tests.sensing.resonances import accelerance
 
 FS = 25600.0
 
 
 def path(frequency_hz: np.ndarray) -> np.ndarray:
     """Two modes and a delay of 1.3 samples: what a sensor on a housing sees, and what rings before time 0."""
-    modes = housing_modes(np.array([320.0, 2000.0]), np.array([0.02, 0.02]), lowest_mass_kg=20.0, exponent=2.0)
-    found = modal_accelerance(modes, np.ones((1, 2)), np.ones(2), frequency_hz)[0]
+    found = accelerance(frequency_hz, (320.0, 2000.0), (0.05, 0.00128))
     return found * np.exp(-2j * np.pi * frequency_hz * 1.3 / FS)
 
 

@@ -4,17 +4,16 @@ import numpy as np
 import pytest
 
 from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
-from siggen.sensing.modal_path import housing_modes, modal_accelerance
+from tests.sensing.resonances import accelerance
 
 KEY = ("vertical", "pinion_bearing/vertical")
 FS = 51200.0
-MODES = housing_modes(np.array([400.0, 1700.0]), np.array([0.02, 0.02]), lowest_mass_kg=20.0, exponent=2.0)
+MODES = (400.0, 1700.0), (0.05, -0.0028)
 
 
 def modal(step_hz: float = 1.0, top_hz: float = 25600.0, first_hz: float = 0.0) -> FrequencyResponse:
     grid = np.arange(round(first_hz / step_hz), round(top_hz / step_hz) + 1) * step_hz
-    curve = modal_accelerance(MODES, np.ones((1, 2)), np.array([1.0, -1.0]), grid)[0]
-    return FrequencyResponse(grid, {KEY: curve})
+    return FrequencyResponse(grid, {KEY: accelerance(grid, *MODES)})
 
 
 def found(response: FrequencyResponse, memory_s: float = 0.4) -> list[str]:
@@ -33,7 +32,7 @@ def test_a_measured_response_is_applied_as_it_was_given() -> None:
 
 def test_between_its_frequencies_it_runs_as_the_modes_do() -> None:
     between = np.arange(100.25, 20000.0, 7.0)
-    exact = modal_accelerance(MODES, np.ones((1, 2)), np.array([1.0, -1.0]), between)[0]
+    exact = accelerance(between, *MODES)
     error = np.abs(modal().accelerance(KEY[0], (KEY[1],), between)[0] - exact)
     # a spline of step h has the error h⁴ f''''/384, for a resonance of half-width 8 Hz (1/8)⁴ 24/384 = 2e-5 of its peak
     assert error.max() < 5e-5 * np.abs(exact).max()
@@ -61,7 +60,7 @@ def test_a_response_of_random_phases_is_not_causal() -> None:
 
 
 def test_a_response_that_rings_longer_than_the_history_is_refused() -> None:
-    assert "housing.settle_s" in found(modal(), memory_s=0.02)[0]
+    assert "finer frequency step" in found(modal(), memory_s=0.02)[0]
 
 
 def test_a_frequency_step_too_wide_for_the_damping_is_refused() -> None:

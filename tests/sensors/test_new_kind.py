@@ -104,7 +104,7 @@ def test_card_and_publication_name_its_quantity_and_no_other(folder: Path) -> No
 
 
 def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path) -> None:
-    lid = "  - {name: lid, place: casing, position_mm: [60, 50], noise: {floor_m_s2: 0.01}}\n"
+    lid = "  - {name: lid, place: lid, position_mm: [5, 5], noise: {floor_m_s2: 0.01}}\n"
     washer = CONFIG.partition("sensors:\n")[2]
     for name, sensors in (("alone", lid), ("both", washer + lid)):
         own = CONFIG.replace("specimens: 10", f"specimens: 1\nbackground: null\n{CLEAN}").replace(washer, sensors)
@@ -119,7 +119,7 @@ def test_it_stands_beside_an_accelerometer_and_leaves_it_as_it_was(folder: Path)
     assert abs(noise.mean()) < 0.1 * record["noise_floor_washer_vertical_n"]
     card = (folder / "both" / "README.md").read_text(encoding="utf-8")
     assert "labelled bearing force and acceleration records" in card
-    assert "`washer_vertical` (pinion_bearing, vertical), in N; `lid_vertical` (casing, vertical), in m/s^2" in card
+    assert "`washer_vertical` (pinion_bearing, vertical), in N; `lid_vertical` (lid, vertical), in m/s^2" in card
 
 
 def test_the_explorer_shows_its_quantity_and_no_other(folder: Path) -> None:

@@ -12,7 +12,7 @@ POINTS = 200
 
 def rigid_box_hz(box: Box) -> np.ndarray:
     """Natural frequencies (6,) of the box's mass on its bolts."""
-    places, masses = _points(box)
+    places, masses = mass_points(box)
     mass = sum(m * _jacobian(p).T @ _jacobian(p) for p, m in zip(places, masses, strict=True))
     stiffness = np.zeros((6, 6))
     for bolt in box.bolts:
@@ -28,7 +28,8 @@ def _jacobian(place: np.ndarray) -> np.ndarray:
     return np.hstack([np.eye(3), np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])])
 
 
-def _points(box: Box) -> tuple[np.ndarray, np.ndarray]:
+def mass_points(box: Box) -> tuple[np.ndarray, np.ndarray]:
+    """Return places (n, 3) [m] and masses (n,) [kg] that stand for plates and bosses."""
     places, masses = [], []
     for plate, (normal, end) in SIDES.items():
         a, b = plane_axes(normal)

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.casing_structure import Bolts, bolt_elements, casing_structure, torsional
+from siggen.dynamics.structure.body import Bolts, bolt_elements
+from siggen.dynamics.structure.casing_structure import casing_structure, torsional
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.structure.structure import eight_dof, vector
 from siggen.dynamics.time.modes import natural_modes

@@ -10,7 +10,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
-from siggen.dynamics.structure.casing_structure import bolt_elements
+from siggen.dynamics.structure.body import bolt_elements
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import vector
 from siggen.dynamics.time.equations import no_inputs

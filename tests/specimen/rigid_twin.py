@@ -1,0 +1,43 @@
+"""The rigid casing that a box of plates becomes when its walls give way no more."""
+
+from __future__ import annotations
+
+from siggen.config import Config
+from siggen.dynamics.structure.body import Bolts, Casing
+from siggen.dynamics.structure.casing_structure import casing_structure
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import Structure
+from siggen.planning.specimen import Specimen
+from siggen.seeding import Stage, named_uniforms
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing import SpecimenHousing, sensor_place
+from siggen.specimen.structure import spur_stage
+from tests.dynamics.housing.rigid_body import mass_points
+
+
+def rigid_twin(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Structure:
+    """Return the gears in a rigid casing with the box's mass, inertia, bolts and places of sensors."""
+    casing = _casing(config, specimen, housing)
+    return locked_load(casing_structure(spur_stage(specimen.dynamics, gear_pair(specimen.gears)), casing))
+
+
+def _casing(config: Config, specimen: Specimen, housing: SpecimenHousing) -> Casing:
+    box = housing.box
+    places, masses = mass_points(box)
+    x, y, _ = masses @ places / masses.sum()
+    arms = places[:, :2] - (x, y)
+    shear, axial, _ = box.bolts[0].stiffness_n_per_m
+    uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
+    sensors = {}
+    for sensor in specimen.sensors:
+        plate, first, _ = sensor_place(box, sensor, uniform)
+        at = {"lid": (first, box.size_m[1]), "gear_end": (0.0, first)}[plate]
+        sensors[sensor.name] = (at[0] - x, at[1] - y)
+    seat = box.seats["pinion"]
+    return Casing(
+        mass_kg=float(masses.sum()),
+        inertia_kg_m2=float(masses @ (arms**2).sum(axis=1)),
+        bolts=Bolts(shear, axial, 0.05, tuple((bolt.x_m - x, -y) for bolt in box.bolts for _ in range(2))),
+        pinion_place_m=(seat.x_m - x, seat.y_m - y),
+        sensor_places_m={name: (float(h), float(v)) for name, (h, v) in sensors.items()},
+    )

@@ -1,0 +1,178 @@
+"""A housing of plates round the gears of a specimen: limits, what cancels, and what sensors on it see."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.config import Config
+from siggen.dynamics.housing.box import Material
+from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
+from siggen.dynamics.structure.foundation import Base, on_base
+from siggen.dynamics.structure.load_lock import locked_load
+from siggen.dynamics.structure.structure import Structure
+from siggen.planning.specimen import draw_specimen
+from siggen.sensing.inputs import MOTION
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing import SpecimenHousing, specimen_housing
+from siggen.specimen.instrument import specimen_instrument
+from siggen.specimen.measured_path import INPUTS
+from siggen.specimen.structure import specimen_body, structure
+from tests.dynamics.natural_frequencies import natural_frequencies_hz
+from tests.specimen.rigid_twin import rigid_twin
+
+CONFIG = load_config("quickstart")
+MESH = MeanMesh(3e8, 800.0)
+DRAWN = range(10)
+
+
+def housing_of(config: Config, specimen_id: int) -> SpecimenHousing:
+    housing = specimen_housing(config, draw_specimen(config, specimen_id))
+    assert housing is not None
+    return housing
+
+
+def housed(specimen_id: int) -> SpecimenHousing:
+    return housing_of(CONFIG, specimen_id)
+
+
+def in_mesh(stage: Structure, hz: np.ndarray, motions: tuple[str, ...] = ()) -> ForcedMotion:
+    """Return what a force along the line of action does."""
+    return forced_motion(stage, MESH, stage.mesh_vector[None, :], motions, hz)
+
+
+@pytest.fixture
+def stiff(monkeypatch) -> None:
+    """Let walls be 10,000 times as stiff as those of steel."""
+    monkeypatch.setattr("siggen.specimen.housing._material", lambda _: Material(2.06e15, 0.3, 7850.0))
+
+
+@pytest.mark.usefixtures("stiff")
+@pytest.mark.parametrize("specimen_id", [0, 4])
+def test_a_box_of_very_stiff_walls_is_the_rigid_casing_of_its_mass_inertia_and_bolts(specimen_id: int) -> None:
+    """Of two boxes without ribs, which the points of mass that stand for plates and bosses leave out."""
+    config = load_config("quickstart", ["dynamics.shafts=null"])
+    specimen = draw_specimen(config, specimen_id)
+    housing = housing_of(config, specimen_id)
+    assert housing.coupled == 6
+    assert not housing.box.ribs
+    box, rigid = locked_load(structure(config, specimen)), rigid_twin(config, specimen, housing)
+    found, expected = (natural_frequencies_hz(one, MESH.stiffness_n_per_m) for one in (box, rigid))
+    # the box moves along the shafts and tilts too: three modes that gears between alike walls do not excite
+    assert found.size == expected.size + 3
+    for frequency in expected:
+        # 1 %: the inertia that stands for shear of thick plates also counts in a rotation
+        assert np.abs(found - frequency).min() < 0.01 * frequency + 1e-6
+    # where the damping of bolts, which the two define differently, does not count
+    hz = np.array([30.0, 60.0, 4000.0, 9000.0])
+    of_box, of_rigid = in_mesh(box, hz).bearing_force, in_mesh(rigid, hz).bearing_force
+    for name in INPUTS:
+        np.testing.assert_allclose(of_box[name], of_rigid[name], rtol=0.003)
+
+
+def test_a_base_that_moves_slowly_takes_the_box_along_without_force() -> None:
+    specimen = draw_specimen(CONFIG, 0)
+    free = locked_load(structure(CONFIG, specimen))
+    stage = on_base(free, specimen_body(CONFIG, specimen), Base(300.0, 20.0, (20.0, 20.0, 20.0), 0.1))
+    p, names = stage.mesh_vector, stage.coordinates
+    stiffness = stage.stiffness + MESH.stiffness_n_per_m * np.outer(p, p)
+    moving = [i for i, name in enumerate(names) if not name.endswith("_b")]
+    angle, half_m = gear_pair(specimen.gears).working_pressure_angle_rad, 0.04875
+    # x lies horizontally but for the working pressure angle; rocking is about the middle between both shafts
+    turned = half_m * np.array([np.sin(angle), np.cos(angle)])
+    goes = {"x_b": ((1.0, 0.0), (1.0, 0.0)), "y_b": ((0.0, 1.0), (0.0, 1.0)), "phi_b": (turned, -turned)}
+    for base, expected in goes.items():
+        q = np.eye(len(names))[names.index(base)]
+        against = -(stiffness @ q)[moving]
+        q[moving] = np.linalg.lstsq(stiffness[np.ix_(moving, moving)], against, rcond=1e-12)[0]
+        for name, (row, _) in stage.bearing_forces.items():
+            assert abs(row @ q) < 1e-12 * np.abs(row).max(), (base, name)
+        found = np.array([q[names.index(name)] for name in ("x_1", "y_1", "x_2", "y_2")]).reshape(2, 2)
+        # modes beyond those that move with the gears stand still: 1 to 4 % of the motion of the seats
+        np.testing.assert_allclose(found, np.array(expected), atol=0.05 * np.abs(expected).max())
+
+
+def test_what_a_sensor_sees_of_bearing_forces_is_the_sum_over_all_modes() -> None:
+    """The instrument's rows against numpy at some frequencies of its grid."""
+    config = load_config("quickstart", ["sensors.0.cross_axis=0", "sensors.1.cross_axis=0"])
+    housing, instrument = housed(3), specimen_instrument(config, draw_specimen(config, 3))
+    omega = 2.0 * np.pi * np.array([1, 7, 50, 333, 1000, 2500]) * config.fs_hz / instrument.length
+    modes, forces = housing.modes, [housing.seats[name] for name in INPUTS]
+    own, ratio = 2.0 * np.pi * modes.frequency_hz[:, None], housing.damping_ratio[:, None]
+    share = -(omega**2) / (own**2 - omega**2 + 2j * ratio * own * omega)
+    for channel, name in zip(instrument.channels, ("lid/vertical", "side/horizontal"), strict=True):
+        place = housing.motions[f"casing_{name}"]
+        residues = modes.shapes([place]) * modes.shapes(forces)
+        left = modes.static_flexibility([place], forces)[0] - (residues / own[:, 0] ** 2).sum(axis=1)
+        expected = residues @ share - omega**2 * left[:, None]
+        assert channel.accelerance is not None
+        found = channel.accelerance[:, np.round(omega * instrument.length / config.fs_hz / (2.0 * np.pi)).astype(int)]
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
+        assert not [one for one in channel.seen if one.kind == MOTION]  # and nothing beside it
+
+
+@pytest.mark.parametrize("specimen_id", DRAWN)
+def test_below_250_hz_a_place_moves_about_as_on_a_rigid_casing(specimen_id: int) -> None:
+    """Under a force in the mesh: 0.3 to 4 is the aim; below its modes a box gives way by some tens of per cent more.
+
+    Vertical and horizontal together: a place near the axis of rocking hardly moves along one of them.
+    """
+    config = load_config("quickstart", ["dynamics.shafts=null"])
+    specimen = draw_specimen(config, specimen_id)
+    housing = housing_of(config, specimen_id)
+    hz = np.arange(20.0, 250.0, 1.0)
+    pressed = in_mesh(locked_load(structure(config, specimen)), hz).bearing_force
+    forces = np.array([pressed[name][0] for name in INPUTS])
+    places = {s: tuple(f"casing_{s}/{axis}" for axis in ("vertical", "horizontal")) for s in ("lid", "side")}
+    rigid = in_mesh(rigid_twin(config, specimen, housing), hz, (*places["lid"], *places["side"])).acceleration
+    for names in places.values():
+        seen = [(housing.accelerance(housing.motions[name], INPUTS, hz) * forces).sum(axis=0) for name in names]
+        ratio = np.sqrt(sum(np.abs(one) ** 2 for one in seen) / sum(np.abs(rigid[name][0]) ** 2 for name in names))
+        assert ratio.min() > 0.8
+        assert ratio.max() < 2.0
+
+
+@pytest.mark.parametrize("specimen_id", DRAWN)
+def test_opposed_vertical_forces_of_both_shafts_cancel_on_the_lid(specimen_id: int) -> None:
+    housing, hz = housed(specimen_id), np.arange(50.0, 1000.0, 2.0)
+    lid = housing.motions["casing_lid/vertical"]
+    pinion, gear = housing.accelerance(lid, ("pinion_bearing/vertical", "gear_bearing/vertical"), hz)
+    opposed, independent = (np.abs(pinion - gear) ** 2).mean(), (np.abs(pinion) ** 2 + np.abs(gear) ** 2).mean()
+    assert 10.0 * np.log10(opposed / independent) < -6.0
+
+
+def test_gearboxes_have_housings_of_their_own_and_states_share_one() -> None:
+    drawn = [housed(specimen_id) for specimen_id in range(6)]
+    assert len({housing.box.mass_kg for housing in drawn}) == 6
+    assert {housing.box.material.poisson_ratio for housing in drawn} == {0.26, 0.3}
+    for housing in drawn:
+        assert 6 <= housing.coupled <= 9
+        assert (np.diff(housing.modes.frequency_hz) >= 0.0).all()
+        assert housing.damping_ratio.min() > 0.003
+        assert housing.damping_ratio.max() < 0.07
+        # 1e-3 of every mode is left
+        rate = (2.0 * np.pi * housing.modes.frequency_hz * housing.damping_ratio).min()
+        assert np.exp(-rate * housing.settle_s) == pytest.approx(np.exp(-7.0))
+
+
+def test_a_number_that_is_given_is_that_of_every_gearbox_and_moves_no_other() -> None:
+    given = load_config("quickstart", ["housing.wall_mm=12", "housing.material=steel"])
+    for specimen_id in range(3):
+        free, held = draw_specimen(CONFIG, specimen_id).housing, draw_specimen(given, specimen_id).housing
+        assert held.model_copy(update={"wall_mm": None, "material": free.material}) == free
+        housing = housing_of(given, specimen_id)
+        assert housing.box.thickness.walls_m == pytest.approx(0.012)
+        assert housing.box.material.density_kg_m3 == 7850.0
+
+
+def test_a_housing_that_is_given_in_full_has_its_sizes() -> None:
+    sizes = {"length_mm": 280, "height_mm": 220, "width_mm": 90, "wall_mm": 10}
+    config = load_config("quickstart", [f"housing.{key}={value}" for key, value in sizes.items()])
+    box = housing_of(config, 0).box
+    plates = (box.thickness.ends_m, 0.5 * (box.thickness.floor_m + box.thickness.lid_m), box.thickness.walls_m)
+    inner_mm = [1e3 * (size - plate) for size, plate in zip(box.size_m, plates, strict=True)]
+    assert inner_mm == pytest.approx([280.0, 220.0, 90.0])
+    feet = {"shear_stiffness_n_per_m": 5e7, "axial_stiffness_n_per_m": 9e7}
+    config = load_config("quickstart", [f"housing.feet.{key}={value}" for key, value in feet.items()])
+    assert {bolt.stiffness_n_per_m for bolt in housing_of(config, 0).box.bolts} == {(5e7, 9e7, 5e7)}
