@@ -1,4 +1,4 @@
-"""Figure and tables of docs/understand/friction_at_the_pitch_point.md: `python docs/scripts/pitch_point.py`.
+"""Figure and tables of docs/understand/pitch_point.md: `python docs/scripts/pitch_point.py`.
 
 Published beside ours: the regression of Xu, Kahraman, Anderson and Maddock 2007 to their elastohydrodynamic
 computations, and Schlenk's mean coefficient of measured gears (ISO/TR 14179-2), both with the numbers that a doctoral
@@ -8,6 +8,7 @@ thesis prints. Neither original was read.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import exp, log10
 from pathlib import Path
 from typing import Any
@@ -42,10 +43,6 @@ CONFIG = Path(__file__).resolve().parents[2] / "configs" / "paper_b.yaml"
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 SPEEDS_HZ, TORQUE_NM = (5.0, 10.0, 20.0, 40.0), 40.0
 FIXED_FILM, FIXED_SLIP_M_S = 0.02, 0.02
-BEFORE_AND_NOW = {
-    "off": "dynamics.friction.model=off", "fixed": "dynamics.friction.model=mixed_ehl",
-    "now": "dynamics.friction.model=mixed_ehl",
-}  # fmt: skip
 # Perfect gears on stiff shafts: nothing but mesh lines. The middles of the ranges of configs/paper_b.yaml.
 CONSTANTS = [
     "specimens=1", "manufacture=null", "dynamics.shafts=null", "mesh_harmonics=5", "duration_s=2", "fs_hz=54000",
@@ -92,10 +89,11 @@ class Contact:
         return share * BOUNDARY_FRICTION, (1.0 - share) * np.minimum(film, BOUNDARY_FRICTION)
 
 
-def contact(config: Config, speed_hz: float, roughness_um: float = 0.4) -> Contact:
+def contact(config: Config, speed_hz: float, roughness_um: float = 0.4, oil_c: float = 50.0) -> Contact:
     """Return the contact of a pair that carries alone."""
     pair = gear_pair(config.gears)
-    section = config.dynamics.friction.model_copy(update={"roughness_um": roughness_um})
+    changed = {"roughness_um": roughness_um, "oil_temperature_c": oil_c}
+    section = config.dynamics.friction.model_copy(update=changed)
     mesh = lubricated_mesh(section, pair, OperatingPoint(speed_hz, TORQUE_NM))
     return Contact(pair, mesh, TORQUE_NM / pair.pinion.base_radius_m, composite_roughness_m(section)[0])
 
@@ -165,10 +163,10 @@ def draw(config: Config) -> None:
     """Draw coefficient over slide-to-roll ratio: ours, what was fixed before, and what was published."""
     figure = Figure(figsize=(10, 3.6), layout="constrained")
     axes = figure.subplots(1, 3, sharey=True)
-    cases = [("20 Hz, flanks of 0.4 µm", 20.0, 0.4), ("40 Hz, flanks of 0.4 µm", 40.0, 0.4),
-             ("40 Hz, flanks of 0.05 µm", 40.0, 0.05)]  # fmt: skip
-    for axis, (title, speed, roughness) in zip(axes, cases, strict=True):
-        found = contact(config, speed, roughness)
+    cases = [("20 Hz, 50 °C, flanks of 0.4 µm", 20.0, 0.4, 50.0), ("40 Hz, 50 °C, flanks of 0.4 µm", 40.0, 0.4, 50.0),
+             ("40 Hz, 90 °C, flanks of 0.1 µm", 40.0, 0.1, 90.0)]  # fmt: skip
+    for axis, (title, *case) in zip(axes, cases, strict=True):
+        found = contact(config, *case)
         places = found.pair.pitch_point_m + np.linspace(0.0, 1.0, 400) ** 2 * (
             found.pair.contact_end_m - found.pair.pitch_point_m
         )
@@ -190,33 +188,35 @@ def draw(config: Config) -> None:
     figure.savefig(FIGURES / "pitch_point.png", dpi=110)
 
 
-def fixed_law(*given: Any, **more: Any) -> FrictionLaw | None:
-    """Return the law as it was: the film with one coefficient, one ramp for all speeds."""
+def law_as_before(*given: Any, film: bool, **more: Any) -> FrictionLaw | None:
+    """Return the law with one ramp for all speeds as it was, and with `film` with the film as it was."""
     law = _lubricated(*given, **more)
     if law is None:
         return None
-    table = law.table._replace(fluid=np.full_like(law.table.fluid, FIXED_FILM))
+    table = law.table._replace(fluid=np.full_like(law.table.fluid, FIXED_FILM)) if film else law.table
     return law._replace(table=table, slip_speed_m_s=FIXED_SLIP_M_S)
 
 
 _lubricated = motion.specimen_friction
+LAWS = {
+    "off": _lubricated, "before": partial(law_as_before, film=True),
+    "ramp as before": partial(law_as_before, film=False), "now": _lubricated,
+}  # fmt: skip
 
 
-def strongest_lines(model: str) -> list[tuple[float, float, int]]:
-    """Return amplitude [N], along the axis it is largest, mesh force's line [N] and number of the line, per speed."""
-    config = configured(BEFORE_AND_NOW[model])
-    motion.specimen_friction = fixed_law if model == "fixed" else _lubricated
+def strongest_lines(name: str) -> list[tuple[float, int, float]]:
+    """Return the pinion's strongest bearing line [N], its number, and the casing's rms [m/s²], per speed."""
+    config = configured(f"dynamics.friction.model={'off' if name == 'off' else 'mixed_ehl'}")
+    motion.specimen_friction = LAWS[name]  # type: ignore[assignment]
     specimen = draw_specimen(config, 0)
     built, rows = specimen_state(config, specimen, 0), []
     for place, speed in enumerate(SPEEDS_HZ):
         response, _ = record_response(config, specimen, built, planned_record(config, place), internals=True)
-        quantities, times = internal_quantities(specimen, response), 54000 / speed
+        quantities = internal_quantities(specimen, response)
         names = [f"bearing_force_pinion_bearing_{axis}_n" for axis in ("vertical", "horizontal")]
-        lines = np.array([mesh_lines(quantities[name], times) for name in names])
-        axis, line = np.unravel_index(np.argmax(lines), lines.shape)
-        rows.append(
-            (float(lines[axis, line]), float(mesh_lines(quantities["mesh_force_n"], times)[line]), int(line + 1))
-        )
+        lines = np.array([mesh_lines(quantities[name], 54000 / speed) for name in names])
+        shaking = float(np.std(quantities["clean_accel_casing_lid_vertical_m_s2"]))
+        rows.append((float(lines.max()), int(np.argmax(lines.max(axis=0))) + 1, shaking))
     motion.specimen_friction = _lubricated
     return rows
 
@@ -229,12 +229,13 @@ def mesh_lines(signal: np.ndarray, samples_per_turn: float) -> np.ndarray:
 
 
 def forces() -> None:
-    """Print the strongest line of the bearing forces by law and speed."""
-    print("\n| pinion [Hz] | off [N] | fixed film and ramp [N] | now [N] | mesh line now |\n|---|---|---|---|---|")
-    found = {model: strongest_lines(model) for model in BEFORE_AND_NOW}
+    """Print the strongest line of the bearing forces and the casing's vertical acceleration by law and speed."""
+    found = {name: strongest_lines(name) for name in LAWS}
+    print(f"\n| pinion [Hz] | {' | '.join(LAWS)} |\n|---{'|---' * len(LAWS)}|")
     for row, speed in enumerate(SPEEDS_HZ):
-        off, fixed, now = (found[model][row] for model in BEFORE_AND_NOW)
-        print(f"| {speed:g} | {off[0]:.1f} | {fixed[0]:.1f} | {now[0]:.1f} | {now[2]} |", flush=True)
+        rows = (found[name][row] for name in LAWS)
+        cells = [f"{force:.1f} N, line {line}; {shaking:.2f} m/s²" for force, line, shaking in rows]
+        print(f"| {speed:g} | {' | '.join(cells)} |", flush=True)
 
 
 if __name__ == "__main__":

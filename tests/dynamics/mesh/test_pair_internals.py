@@ -68,6 +68,26 @@ def test_edges_inside_damage_rub_more_and_never_above_the_boundary() -> None:
     assert 0.9 * healthy[COEFFICIENT] < pitted[COEFFICIENT] < healthy[COEFFICIENT]
 
 
+@pytest.mark.parametrize("place", [PITCH_POINT, PITCH_POINT + 5e-5, DEDENDUM])
+def test_friction_never_gives_power_and_turns_without_a_kink(place: float) -> None:
+    chosen, slip = law(), FRICTION_LAW.slip_speed_m_s
+    pitches = (place - PAIR.contact_start_m) / PAIR.base_pitch_m
+
+    def friction(slide: float) -> float:
+        pairs = pair_table(chosen)
+        pair_forces(chosen, 12e-6, 0.0, pitches, slide, 0.0, pairs)
+        return float(pairs[0, FRICTION])
+
+    slides = slip * np.linspace(-3.0, 3.0, 61)
+    found = np.array([friction(slide) for slide in slides])
+    assert (found * slides >= 0.0).all()
+    assert found[30] == 0.0
+    # One slope on either side of v = 0; of tanh it differs from the tangent by a third of 1e-3 squared.
+    left, right = (friction(side * 1e-3 * slip) / (side * 1e-3 * slip) for side in (-1.0, 1.0))
+    assert left == pytest.approx(right, rel=1e-9)
+    assert left == pytest.approx(friction(3e-3 * slip) / (3e-3 * slip), rel=1e-5)
+
+
 def test_friction_before_and_behind_a_pit_is_the_healthy_one_to_the_bit() -> None:
     plain, pitted = law(), law(HALF_PIT)
     for pitches in (ALONE + 0.1, ON_PIT + 1.0, 4.3):
