@@ -26,9 +26,9 @@ DAMPED = "dynamics.pinion.bearing_damping_x_n_s_per_m"
     [
         ("dynamics.pinion.bearing_stiffness_x_n_per_m=-1e8", "allowed: a number above 0"),
         ("dynamics.input_coupling.stiffness_nm_per_rad=-1", "allowed: a number above 0"),
-        ("dynamics.casing.mass_kg=0", "allowed: a number above 0"),
-        ("dynamics.casing.bolts.shear_stiffness_n_per_m=0", "allowed: a number above 0"),
-        ("dynamics.casing.bolts.positions_mm=[[9, 0], [9, 0]]", "about a single one the casing would turn freely"),
+        ("housing.mass_kg=0", "allowed: a number above 0"),
+        ("housing.bolts.shear_stiffness_n_per_m=0", "allowed: a number above 0"),
+        ("housing.bolts.positions_mm=[[9, 0], [9, 0]]", "about a single one the casing would turn freely"),
         ("dynamics.friction.coefficient=-0.1", "allowed: a number from 0 to 0.5"),
         ("operating_points.0.speed_hz=0", "allowed: a number above 0"),
         ("operating_points.0.torque_nm=-30", "allowed: a number above 0"),

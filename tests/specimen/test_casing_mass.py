@@ -1,4 +1,4 @@
-"""A casing whose mass is drawn: limits, energy and responses found without our solver."""
+"""A rigid casing whose mass is drawn: limits, energy and responses found without our solver."""
 
 from __future__ import annotations
 
@@ -6,33 +6,28 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.columns.record import Record
 from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
 from siggen.planning.specimen import draw_specimen
-from siggen.record.simulation import simulate
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import specimen_housing
 from siggen.specimen.structure import structure
 from tests.config.minimal import minimal
 
-LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "position_mm": [60.0, 50.0], "path": {"kind": "modal"}}
-DRAWN = {"kind": "loguniform", "low": 8, "high": 55}
+LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "position_mm": [60.0, 50.0]}
 MESH = MeanMesh(3e8, 800.0)
 
 
-def loaded(mass_kg: object, inertia_kg_m2: object = None, **changes: object) -> Config:
-    casing = {"mass_kg": mass_kg, "inertia_kg_m2": inertia_kg_m2}
-    changes = {"dynamics__model": "casing", "dynamics__casing": casing, "housing": {"modal_mass_kg": None}, **changes}
-    return load_config(minimal(sensors=[LID], duration_s=0.1, specimens=3, **changes))
+def loaded(mass_kg: float) -> Config:
+    housing = {"kind": "rigid", "mass_kg": mass_kg, "inertia_kg_m2": None}
+    return load_config(minimal(sensors=[LID], housing=housing))
 
 
 def assembled(mass_kg: float) -> Structure:
     config = loaded(mass_kg)
     specimen = draw_specimen(config, 0)
-    return locked_load(structure(specimen.dynamics, gear_pair(specimen.gears), specimen.sensors))
+    return locked_load(structure(config, specimen))
 
 
 def test_a_casing_without_end_to_its_mass_stands_still_and_passes_the_force_to_rigid_seats() -> None:
@@ -81,7 +76,7 @@ def test_far_above_its_bolts_a_casing_moves_and_turns_as_a_free_body_of_its_mass
     config = loaded(12.0)
     specimen, height_m = draw_specimen(config, 0), 0.05
     pair = gear_pair(specimen.gears)
-    stage = locked_load(structure(specimen.dynamics, pair, specimen.sensors))
+    stage = locked_load(structure(config, specimen))
     direction = stage.motions["casing_lid/horizontal"]
     found = forced_motion(stage, MESH, direction[None, :], ("casing_lid/horizontal",), np.array([2e5]))
     inertia = 12.0 * (1.15 * pair.working_centre_distance_m) ** 2
@@ -89,47 +84,11 @@ def test_far_above_its_bolts_a_casing_moves_and_turns_as_a_free_body_of_its_mass
     assert found.acceleration["casing_lid/horizontal"][0, 0].real == pytest.approx(expected, rel=1e-3)
 
 
-def test_flexible_modes_have_the_mass_of_the_casing_that_was_drawn() -> None:
-    drawn = loaded(DRAWN)
-    masses = []
-    for specimen_id in range(3):
-        housing = specimen_housing(drawn, specimen_id)
-        assert housing is not None
-        mass_kg = draw_specimen(drawn, specimen_id).dynamics.casing.mass_kg
-        assert housing.modes.modal_mass_kg[0] == mass_kg
-        masses.append(mass_kg)
-        fixed = specimen_housing(loaded(20.0), specimen_id)
-        assert fixed is not None
-        # nothing but the mass differs
-        assert housing.modes.frequency_hz.tobytes() == fixed.modes.frequency_hz.tobytes()
-        ratio = housing.modes.modal_mass_kg / fixed.modes.modal_mass_kg
-        np.testing.assert_allclose(ratio, float(mass_kg) / 20.0, rtol=1e-12)  # type: ignore[arg-type]
-    assert len(set(masses)) == 3
-
-
-def test_records_say_what_was_drawn_and_other_files_have_no_such_label() -> None:
-    config = loaded(DRAWN)
-    found = simulate(config, [0])[0]
-    assert isinstance(found, Record)
-    casing = draw_specimen(config, 0).dynamics.casing
-    assert found.labels["casing_mass_kg"] == casing.mass_kg
-    assert found.labels["casing_bolt_damping_ratio"] == casing.bolts.damping_ratio
-    for other in (loaded(DRAWN, 0.25), loaded(20.0)):
-        record = simulate(other, [0])[0]
-        assert isinstance(record, Record)
-        assert "casing_mass_kg" not in record.labels
-
-
-def test_a_file_that_writes_the_old_values_out_has_the_identity_of_one_without_them() -> None:
-    plain = {
-        "dynamics__model": "casing",
-        "housing": {},
-        "background": {"floor": {}},
-        "sensors": [LID],
-        "duration_s": 0.1,
-    }
-    written = {**plain, "housing": {"modal_mass_kg": 20.0}, "background": {"floor": {"level_std": 0.0}}}
-    written["dynamics__casing"] = {"inertia_kg_m2": 0.25}
-    assert load_config(minimal(**plain)).identity == load_config(minimal(**written)).identity
-    written["background"] = {"floor": {"level_std": 0.3}}
-    assert load_config(minimal(**plain)).identity != load_config(minimal(**written)).identity
+def test_a_file_that_writes_the_default_values_out_has_the_identity_of_one_without_them() -> None:
+    plain, written = {"kind": "rigid"}, {"kind": "rigid", "mass_kg": 20.0, "inertia_kg_m2": 0.25, "bolts": {}}
+    config = load_config(minimal(housing=plain))
+    assert config.identity == load_config(minimal(housing=written)).identity
+    assert config.identity != load_config(minimal(housing={**plain, "inertia_kg_m2": None})).identity
+    assert config.identity != load_config(minimal()).identity
+    plates = {"kind": "plates", "damping_ratio": {"kind": "loguniform", "low": 0.003, "high": 0.05}}
+    assert load_config(minimal(housing=plates)).identity == load_config(minimal()).identity

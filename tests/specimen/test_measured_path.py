@@ -16,31 +16,39 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import Record
 from siggen.config import Config, parse, parse_yaml, yaml_text
 from siggen.errors import ConfigError
-from siggen.record.simulation import simulate
-from siggen.views.path_curves import path_curves
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.specimen.measured_path import INPUTS
 from tests.config.minimal import minimal
+from tests.sensing.resonances import accelerance
 
-MODAL = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
+SENSOR = {"name": "lid", "place": "casing", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 
 
 def written(folder: Path, path: dict[str, Any], **changes: Any) -> Path:
     """Write a configuration whose sensor has this path, and return its file."""
-    sensor = {**MODAL, "path": path}
-    changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0, "housing": {}, **changes}
+    sensor = {**SENSOR, "path": path}
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0, **changes}
     source = folder / "set.yaml"
     source.write_text(yaml_text(minimal(sensors=[sensor], **changes)))
     return source
 
 
-@pytest.fixture
-def modal(tmp_path: Path) -> Config:
-    return load_config(written(tmp_path, {"kind": "modal", "rigid": False}))
+GRID = np.arange(0.0, 12_801.0)
+RESIDUES = {"pinion_bearing/vertical": (0.05, -0.01), "pinion_bearing/horizontal": (0.01, 0.02),
+            "gear_bearing/vertical": (0.04, 0.01), "gear_bearing/horizontal": (-0.02, 0.01)}  # fmt: skip
+"""Of two resonances, by bearing force."""
 
 
-def columns(config: Config) -> dict[str, np.ndarray]:
-    """Return the modal path of the first gearbox as the columns of a measurement."""
-    table = path_curves(config).table
-    return {name.replace("lid_", ""): table[name].to_numpy() for name in table.column_names}
+def columns() -> dict[str, np.ndarray]:
+    """Return the columns of a measurement."""
+    found = {"frequency_hz": GRID}
+    for name in INPUTS:
+        curve = accelerance(GRID, (400.0, 1700.0), RESIDUES[name])
+        stem = f"vertical_from_{name.replace('/', '_')}"
+        found |= {f"{stem}_real_m_s2_per_n": curve.real, f"{stem}_imag_m_s2_per_n": curve.imag}
+    return found
 
 
 def polar(cartesian: dict[str, np.ndarray], unit: str) -> dict[str, np.ndarray]:
@@ -70,21 +78,37 @@ def signal(config: Config) -> np.ndarray:
     return result.channels["lid_vertical"]
 
 
-@pytest.mark.parametrize("name", ["lid.csv", "lid.parquet", "lid.npz", "polar_deg.csv", "polar_rad.parquet"])
-def test_a_response_from_a_file_gives_the_record_of_the_path_it_was_taken_from(
-    modal: Config, tmp_path: Path, name: str
-) -> None:
+def test_forces_of_all_bearings_pass_a_response_from_a_file(tmp_path: Path) -> None:
+    save(columns(), tmp_path / "lid.npz")
+    config = load_config(written(tmp_path, {"file": "lid.npz"}))
+    specimen = draw_specimen(config, 0)
+    response, _ = record_response(config, specimen, specimen_state(config, specimen, 0), planned_record(config, 0))
+    length = 2**16  # nothing wraps round
+    hz = np.arange(length // 2 + 1) * config.fs_hz / length
+    total = np.zeros(hz.size, dtype=complex)
+    for name in INPUTS:
+        whole = np.concatenate([response.history.bearing_force_n[name], response.bearing_force_n[name]])
+        assert 2 * whole.size < length
+        values = whole - response.history.bearing_force_n[name].mean()
+        total += accelerance(hz, (400.0, 1700.0), RESIDUES[name]) * np.fft.rfft(values, length)
+    expected = np.fft.irfft(total, length)[whole.size - config.samples : whole.size]
+    # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
+    assert np.abs(signal(config) - expected).max() < 3e-3 * expected.std()
+
+
+@pytest.mark.parametrize("name", ["lid.csv", "lid.parquet", "polar_deg.csv", "polar_rad.parquet"])
+def test_all_forms_of_a_file_give_the_same_record(tmp_path: Path, name: str) -> None:
     (tmp_path / "measured").mkdir()
-    values = columns(modal)
-    save(polar(values, name[6:9]) if name.startswith("polar") else values, tmp_path / "measured" / name)
+    save(columns(), tmp_path / "lid.npz")
+    save(polar(columns(), name[6:9]) if name.startswith("polar") else columns(), tmp_path / "measured" / name)
+    expected = signal(load_config(written(tmp_path, {"kind": "measured", "file": "lid.npz"})))
     measured = load_config(written(tmp_path, {"kind": "measured", "file": f"measured/{name}"}))
-    expected = signal(modal)
     # float32 channels: 6e-8 of the largest value, and as much again from rounding in the other direction
     np.testing.assert_allclose(signal(measured), expected, atol=1.3e-7 * np.abs(expected).max())
 
 
-def test_the_set_needs_the_file_no_more(modal: Config, tmp_path: Path) -> None:
-    save(columns(modal), tmp_path / "lid.csv")
+def test_the_set_needs_the_file_no_more(tmp_path: Path) -> None:
+    save(columns(), tmp_path / "lid.csv")
     config = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
     digest = hashlib.sha256((tmp_path / "lid.csv").read_bytes()).hexdigest()
     assert config.sensors[0].path.sha256 == digest  # type: ignore[union-attr]
@@ -98,9 +122,9 @@ def test_the_set_needs_the_file_no_more(modal: Config, tmp_path: Path) -> None:
     assert signal(load_config(tmp_path / "stored.yaml")).tobytes() == signal(config).tobytes()
 
 
-def test_the_identity_follows_the_content_and_not_the_folder(modal: Config, tmp_path: Path) -> None:
+def test_the_identity_follows_the_content_and_not_the_folder(tmp_path: Path) -> None:
     (tmp_path / "a").mkdir()
-    values = columns(modal)
+    values = columns()
     save(values, tmp_path / "lid.csv")
     save(values, tmp_path / "a" / "lid.csv")
     here = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
@@ -134,9 +158,9 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_file_that_is_no_response_is_refused_by_name(modal: Config, tmp_path: Path, mistake: str) -> None:
+def test_a_file_that_is_no_response_is_refused_by_name(tmp_path: Path, mistake: str) -> None:
     change, said = MISTAKES[mistake]
-    save(change(columns(modal)), tmp_path / "lid.parquet")
+    save(change(columns()), tmp_path / "lid.parquet")
     with pytest.raises(ConfigError) as refused:
         load_config(written(tmp_path, {"kind": "measured", "file": "lid.parquet"}))
     assert {problem.path for problem in refused.value.problems} == {"sensors.0.path.file"}
@@ -164,8 +188,8 @@ def test_a_path_without_a_usable_file_is_refused_by_name(tmp_path: Path, path: d
     assert all(problem.path.startswith("sensors.0.path.") for problem in refused.value.problems)
 
 
-def test_a_measured_path_takes_no_more_cross_axis_sensitivity(modal: Config, tmp_path: Path) -> None:
-    save(columns(modal), tmp_path / "lid.csv")
+def test_a_measured_path_takes_no_more_cross_axis_sensitivity(tmp_path: Path) -> None:
+    save(columns(), tmp_path / "lid.csv")
     source = written(tmp_path, {"kind": "measured", "file": "lid.csv"})
     with pytest.raises(ConfigError, match=r"sensors\.0\.cross_axis"):
         load_config(source, ["sensors.0.cross_axis=0.04"])
