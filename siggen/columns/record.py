@@ -135,9 +135,9 @@ INTEGRATION_COLUMNS = (
         "integration_error",
         pa.float64(),
         "",
-        "estimated relative rms error of the simulated accelerations by the steps of integration: half of the steps on "
-        "a stretch of the record, which holds a damaged pair if one comes; above the set's tolerance where the motion "
-        "depends on every rounding or the finest steps do not suffice, inf where it diverges",
+        "estimated relative rms error of the simulated accelerations by the steps of integration, from a stretch of "
+        "the record with twice as many; above the set's tolerance where the motion depends on every rounding or the "
+        "finest steps do not suffice, inf where it diverges",
     ),
 )
 """Columns of sets of the law pairs."""
