@@ -62,8 +62,8 @@ class Dynamics(Section):
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the delivered signals that steps are chosen for with the law pairs, "
-        "once for all states of a gearbox",
+        description="relative rms error of the delivered signals that the steps of every record are chosen for with "
+        "the law pairs",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"

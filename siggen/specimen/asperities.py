@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from math import pi, sqrt
+from typing import NamedTuple
 
 from siggen.config import Friction
 from siggen.dynamics.friction.asperity_share import masjedi_khonsari_ratio
 from siggen.dynamics.friction.contact_kinematics import effective_modulus, relative_radius
+from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
+from siggen.dynamics.friction.reversal import slip_speed
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import LEAST_LINE_LOAD_N_PER_M
-from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
+from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, pitch_point
 
 
 def asperity_share(section: Friction, pair: GearPair, point: OperatingPoint) -> float:
@@ -20,6 +23,21 @@ def asperity_share(section: Friction, pair: GearPair, point: OperatingPoint) -> 
         pair.pitch_point_m, force_n, composite_roughness_m(section)[0]
     )
     return float(min(masjedi_khonsari_ratio(groups), 1.0))
+
+
+class FrictionTurn(NamedTuple):
+    """Friction where the sliding turns: the coefficient that turns, and the speed v_0 over which it does [m/s]."""
+
+    coefficient: float
+    slip_speed_m_s: float
+
+
+def friction_turn(section: Friction, pair: GearPair, point: OperatingPoint) -> FrictionTurn:
+    """Return how the friction of a mixed film turns at the pitch point: asperities do, the film is at rest there."""
+    force_n = mean_force_n(pair, point.torque_nm / pair.pinion.base_radius_m)
+    mesh = lubricated_mesh(section, pair, point)
+    speed = slip_speed(mesh, pitch_point(pair, mesh), force_n, composite_roughness_m(section)[0])
+    return FrictionTurn(asperity_share(section, pair, point) * BOUNDARY_FRICTION, speed)
 
 
 def contact_half_width_m(pair: GearPair, force_n: float) -> float:

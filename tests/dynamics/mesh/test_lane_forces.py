@@ -21,8 +21,8 @@ from siggen.dynamics.mesh.pair_columns import (
     NODE_SLIDING_1,
     NODE_TILT,
     NODE_TILT_RATE,
-    NORMAL,
     PAIR,
+    SPRUNG,
     STIFFNESS,
 )
 from siggen.dynamics.mesh.pair_law import PairLaw, SqueezeFilm
@@ -102,7 +102,7 @@ def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, cou
         alike.add(said)
         rows = slice(NODE_NORMAL, NODE_ROWS)
         assert node[rows, :NODES].tobytes() == expected[rows, :NODES].tobytes()
-        kept = np.ix_(range(4, 6), (NORMAL, STIFFNESS, PAIR))
+        kept = np.ix_(range(4, 6), (SPRUNG, STIFFNESS, PAIR))
         assert pairs[kept].tobytes() == reference[kept].tobytes()
         pitches += step if rng.random() < 0.9 else 0.0  # a step that is taken again
     assert 0.85 * STEPS < taken < STEPS  # the others met a back flank, or a pair that enters or leaves
