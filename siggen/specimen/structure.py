@@ -9,6 +9,7 @@ from math import pi
 from siggen.config import Config, Dynamics, RigidHousing, Rotor
 from siggen.config import Coupling as CouplingSection
 from siggen.config import Shaft as ShaftSection
+from siggen.dynamics.drive.external_forces import shaft_direction
 from siggen.dynamics.structure.body import Body, Bolts, Casing, Point, modal_body
 from siggen.dynamics.structure.casing_structure import carried_structure, casing_body, torsional
 from siggen.dynamics.structure.structure import Bearing, Coupling, SpurStage, Structure, eight_dof, six_dof
@@ -34,11 +35,12 @@ def structure(config: Config, specimen: Specimen) -> Structure:
     stage = spur_stage(dynamics, pair)
     if dynamics.model != "casing":
         return ASSEMBLIES[dynamics.model](stage)
-    body = specimen_body(config, specimen)
-    if specimen_housing(config, specimen) is not None:
-        # modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`)
-        body = replace(body, motions={})
-    return carried_structure(stage, body, _shafts(dynamics, stage, pair))
+    found = carried_structure(stage, specimen_body(config, specimen), _shafts(dynamics, stage, pair))
+    if specimen_housing(config, specimen) is None:
+        return found
+    # Modes below some frequency are not what is seen of a housing: sensors take all of them (`instrument`).
+    shafts = {name.replace("bearing", "shaft"): shaft_direction(found, name) for name in found.bearing_directions}
+    return replace(found, motions=shafts)
 
 
 def specimen_body(config: Config, specimen: Specimen) -> Body:

@@ -74,9 +74,7 @@ def slowest_decay_per_s(
     matrix[:m, m:] = np.eye(m)
     matrix[m:, :m], matrix[m:, m:] = (basis.T @ structure.mass @ full[:, half] @ basis for half in _halves(n))
     values, right = np.linalg.eig(matrix)
-    # a housing of plates is seen through the forces on its seats alone
-    shown = structure.motions or structure.bearing_directions
-    motions = np.array(list(shown.values())) @ basis
+    motions = np.array(list(structure.motions.values())) @ basis
     inputs = np.concatenate([np.zeros(m), basis.T @ p])
     # Least squares, since equal modes may leave the matrix of eigenvectors without an inverse.
     participation = np.linalg.lstsq(right, inputs.astype(complex), rcond=None)[0]
