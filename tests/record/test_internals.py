@@ -102,7 +102,7 @@ def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_
     specimen = draw_specimen(config, 0)
     table = internals_table(config, 0)
     pair = gear_pair(specimen.gears)
-    assembled = structure(specimen.dynamics, pair, specimen.sensors)
+    assembled = structure(config, specimen)
     lengths = dict(zip(assembled.coordinates, assembled.mesh_vector, strict=True))
     assert lengths["theta_1"] == pytest.approx(pair.pinion.base_radius_m)
     assert lengths["theta_2"] == pytest.approx(-pair.gear.base_radius_m)

@@ -36,7 +36,7 @@ def drive_of(config: Config, record_id: int, start_rad: float = 0.5) -> RecordDr
     specimen = draw_specimen(config, record.specimen_id)
     pair = gear_pair(specimen.gears)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    return record_drive(config, specimen, pair, structure(specimen.dynamics, pair), point, record, start_rad)
+    return record_drive(config, specimen, pair, structure(config, specimen), point, record, start_rad)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +107,7 @@ def test_unbalance_belongs_to_the_specimen_and_cage_slip_to_the_record() -> None
     np.testing.assert_array_equal(first[:, :4], second[:, :4])
     assert np.abs(first[:, 4:] - second[:, 4:]).max() > 0.1 * np.abs(first[:, 4:]).max()
     point = draw_operating_point(config, 0, 0)
-    mass = structure(draw_specimen(config, 0).dynamics, gear_pair(draw_specimen(config, 0).gears)).mass[1, 1]
+    mass = structure(config, draw_specimen(config, 0)).mass[1, 1]
     expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
     assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)
 
@@ -126,7 +126,7 @@ def test_tones_of_bearings_lie_between_a_fifth_and_all_of_their_level() -> None:
         record = planned_record(config, specimen_id * config.records_per_specimen)
         specimen, point = draw_specimen(config, specimen_id), draw_operating_point(config, specimen_id, 0)
         pair = gear_pair(specimen.gears)
-        sources = force_sources(config, specimen, pair, structure(specimen.dynamics, pair), point, record)
+        sources = force_sources(config, specimen, pair, structure(config, specimen), point, record)
         level_n = 0.03 * point.torque_nm / pair.pinion.base_radius_m
         shares += [tone.amplitude_n / level_n for source in sources for tone in getattr(source, "harmonics", ())]
     assert len(shares) == 192
