@@ -18,7 +18,8 @@ from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.time.equations import Equations, state_rate
 from siggen.dynamics.time.linear_motion import LinearMotion
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.pair_motion import PairEquations, PairMotion, pair_rate
+from siggen.dynamics.time.pair_equations import PairEquations
+from siggen.dynamics.time.pair_motion import PairMotion, pair_rate
 
 Rate = Callable[[float, FloatArray], FloatArray]
 

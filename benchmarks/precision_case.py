@@ -18,7 +18,7 @@ from siggen.planning.plan import planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, specimen_state, start_angle_rad
 from siggen.specimen.drive import RecordDrive, record_drive
-from siggen.specimen.integration import TimeGrid, time_grid
+from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
 from siggen.specimen.motion import specimen_motion
 
 SIGNAL_S, LOOP_S = 0.3, 1.0
@@ -50,9 +50,7 @@ class Case:
 
     def own_steps(self) -> int:
         """Return the steps of integration per sample that the rule takes."""
-        mesh = self.state.mesh
-        grid = time_grid(self.config, self.specimen, mesh.structure, mesh.tables)
-        return grid.per_sample // grid.stride
+        return rule_grid(self.config, self.specimen.dynamics, self.state.mesh, self.point).steps
 
     def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:
         """Return the response to SIGNAL_S, behind the transient or what is discarded if that is longer."""
@@ -88,8 +86,8 @@ class Case:
 
 
 def state_grid(integrator: str, steps: int) -> TimeGrid:
-    """Return where states are with so many steps per sample: of the exponential one never fewer than two per sample."""
-    return TimeGrid(2, 2) if (integrator, steps) == ("exponential", 1) else TimeGrid(steps, 1)
+    """Return where states are with so many steps per sample."""
+    return exponential_grid(steps) if integrator == "exponential" else TimeGrid(steps, 1)
 
 
 def precision_case(preset: Path, gearbox: int, state: int, *, tilt: bool = True) -> Case:
@@ -117,5 +115,5 @@ def _case(config: Config, gearbox: int, state: int) -> Case:
     made = specimen_state(config, specimen, state_id)
     point = draw_operating_point(config, gearbox, record.operating_point_id)
     angle = start_angle_rad(config, made.pair, record)
-    driven = record_drive(config, specimen, made.pair, made.mesh.structure, point, record, angle)
+    driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)
     return Case(config, specimen, made, point, driven)

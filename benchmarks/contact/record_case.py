@@ -91,5 +91,5 @@ def record_case(state: str, gearbox: int, *overrides: str) -> RecordCase:
     made = specimen_state(config, specimen, state_id)
     point = draw_operating_point(config, gearbox, record.operating_point_id)
     angle = start_angle_rad(config, made.pair, record)
-    driven = record_drive(config, specimen, made.pair, made.mesh.structure, point, record, angle)
+    driven = record_drive(config, specimen, made.mesh.structure, point, record, angle)
     return RecordCase(config, specimen, made, point, driven, state_id)

@@ -42,10 +42,6 @@ def with_density_files(raw: Mapping[str, Any], folder: Path) -> tuple[Mapping[st
             key, columns = source.key, source.file_columns
             sensors = [filled(one, key, f"sensors.{i}.{key}", columns) for i, one in enumerate(sensors)]
         found["sensors"] = sensors
-    background = raw.get("background")
-    if isinstance(background, Mapping) and "floor" in background:
-        floor = filled(background["floor"], "spectrum", "background.floor.spectrum")
-        found["background"] = {**background, "floor": floor}
     return found, problems
 
 

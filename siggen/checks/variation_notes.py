@@ -57,11 +57,9 @@ def _reversals(config: Config) -> Iterator[str]:
 
 
 def _forces(config: Config) -> Iterator[str]:
-    unbalance, tones = config.dynamics.unbalance, config.dynamics.bearing_tones
+    unbalance = config.dynamics.unbalance
     if _some(unbalance.grade_mm_s):
         yield f"unbalance of grade G{_span(unbalance.grade_mm_s)} at {RATED_SPEED_HZ:g} Hz"
-    if _some(tones.level):
-        yield f"bearing tones of up to {_percent(tones.level)} of the mean mesh force"
 
 
 def _limits(config: Config) -> Iterator[str]:

@@ -21,7 +21,7 @@ def verify(
             min=0,
             metavar="K",
             help="Integrate K records, spread over all states, again with Runge-Kutta at high resolution, and report "
-            "the error by state. Costs about ten times the records.",
+            "the error by state. Costs fifteen times the records, or more.",
         ),
     ] = 0,
     as_json: AsJson = False,
@@ -30,7 +30,8 @@ def verify(
 
     With --physics the numerical error is measured and kept in physics.json beside the set; no other file changes.
 
-    Exit codes: 0 all as promised, 2 no finished set, 4 something differs or an error is above the set's tolerance.
+    Exit codes: 0 all as promised, 2 no finished set, 4 something differs or an error is above the set's tolerance
+    and its label does not say so.
 
     Example: siggen verify sets/quickstart --sample 10 --physics 8
     """

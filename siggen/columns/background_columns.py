@@ -13,12 +13,16 @@ if TYPE_CHECKING:
 
 RUBBING = (
     ("rubbing_force_n", "N", "rms of the rubbing force along the line of action, without bursts, all frequencies"),
+    ("rubbing_asperity_share", "", "share of the mean load that asperities carry at the pitch point"),
     ("rubbing_level_std", "", "s of the rubbing's random level exp(s U - s^2/2)"),
     ("rubbing_pinion_depth", "", "modulation of the rubbing by the pinion's shaft"),
     ("rubbing_gear_depth", "", "modulation of the rubbing by the gear's shaft"),
 )
-FLOOR = (
-    ("floor_force_n_per_sqrt_hz", "N/sqrt(Hz)", "noise of the force in the mesh, above its low corner"),
+BEARINGS = tuple(
+    (f"bearing_velocity_{shaft}_um_s", "um/s", f"waviness of the {shaft}'s bearings, 1800 to 10000 Hz at 30 turns/s")
+    for shaft in ("pinion", "gear")
+)
+MACHINES = (
     ("machine_force_n_per_sqrt_hz", "N/sqrt(Hz)", "noise of the force of each machine beside, above its low corner"),
 )
 SHAFTS = tuple(
@@ -32,10 +36,8 @@ def background_columns(config: Config) -> tuple[Column, ...]:
     section = config.background
     if section is None:
         return ()
-    parts = {"floor": FLOOR, "rubbing": RUBBING, "shafts": SHAFTS}
+    parts = {"bearings": BEARINGS, "machines": MACHINES, "rubbing": RUBBING, "shafts": SHAFTS}
     numbers = [one for part, columns in parts.items() if getattr(section, part) is not None for one in columns]
-    if section.floor is not None and section.floor.level_std != 0.0:
-        numbers.append(("floor_level_std", "", "s of the random level exp(s U - s^2/2) of the bearings' noise"))
     for name in ("second_stage", "auxiliary_drive"):
         if getattr(section, name) is not None:
             what = name.replace("_", " ")

@@ -130,6 +130,17 @@ OPERATING_COLUMNS = (
     Column("mesh_hz", pa.float64(), HERTZ, "tooth mesh frequency"),
     Column("start_angle_rad", pa.float64(), "rad", "pinion angle at the first sample"),
 )
+INTEGRATION_COLUMNS = (
+    Column(
+        "integration_error",
+        pa.float64(),
+        "",
+        "estimated relative rms error of the simulated accelerations by the steps of integration, from a stretch of "
+        "the record with twice as many; above the set's tolerance where the motion depends on every rounding or the "
+        "finest steps do not suffice, inf where it diverges",
+    ),
+)
+"""Columns of sets of the law pairs."""
 VARIATION_COLUMNS = (
     Column(
         "speed_std_hz", pa.float64(), HERTZ, "standard deviation of the pinion's speed; its mean is pinion_shaft_hz"
@@ -173,7 +184,9 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     named = ((name, sensor.quantity) for sensor in config.sensors for name, _ in sensor.channels)
     per_channel = (column for one in named for column in channel_label_columns(*one))
     varying = VARIATION_COLUMNS if config.variation.active else ()
-    common = (*LABEL_COLUMNS, *OPERATING_COLUMNS, *gearbox_columns(config), *varying, *manufacture_columns(config))
+    stepped = INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()
+    operating = (*OPERATING_COLUMNS, *stepped)
+    common = (*LABEL_COLUMNS, *operating, *gearbox_columns(config), *varying, *manufacture_columns(config))
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 

@@ -1,9 +1,18 @@
 """What a user writes: the YAML file as frozen sections, with ranges, distributions and an identity."""
 
-from siggen.config.background import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
+from siggen.config.background import (
+    Background,
+    Base,
+    Bearings,
+    Bursts,
+    ForeignMesh,
+    Machines,
+    Rubbing,
+    ShaftLines,
+)
 from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.dynamics import Coupling, Dynamics, Rotor, by_reference
-from siggen.config.external_forces import BearingTones, Unbalance
+from siggen.config.external_forces import Unbalance
 from siggen.config.gears import Gears, Wheel
 from siggen.config.housing import Bolts, Feet, Housing, PlateHousing, RigidHousing
 from siggen.config.inheritance import extended_files, inherited
@@ -25,19 +34,19 @@ __all__ = [
     "STORED_NUMBERS",
     "Background",
     "Base",
-    "BearingTones",
+    "Bearings",
     "Bolts",
     "Bursts",
     "Config",
     "Coupling",
     "Dynamics",
     "Feet",
-    "Floor",
     "ForeignMesh",
     "Friction",
     "Gears",
     "Housing",
     "Internals",
+    "Machines",
     "Manufacture",
     "Mesh",
     "OperatingRange",

@@ -15,7 +15,6 @@ from pydantic import Field
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
-from siggen.noise.density import Density
 
 
 class Base(Section):
@@ -42,7 +41,7 @@ class Bursts(Section):
 
 
 class Rubbing(Section):
-    """Rough flanks that slide: broadband force along the line of action, k r n(t) √M, M of mean 1."""
+    """Rough flanks that roll and slide on each other: broadband force along the line of action, by speed and load."""
 
     roughness_um: Annotated[Number, Within(least=0, most=20)] = Field(
         default=LogUniform(low=0.2, high=0.6), description="composite Rq along the flank (source: ground flanks)"
@@ -54,24 +53,33 @@ class Rubbing(Section):
     bursts: Bursts | None = Field(default=None, description="null: none")
 
 
-class Floor(Section):
-    """Noise of forces in the mesh, at every bearing and of both machines, independent of each other."""
+class Bearings(Section):
+    """Waviness of rolling bearings and the passing of balls: displacements in series with each bearing's spring."""
 
-    density_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=1000)] = Field(
-        default=LogUniform(low=0.03, high=0.3), description="one-sided, in the mesh (assumed; gives measured floors)"
+    velocity_um_s: Annotated[Number, Within(least=0, most=100_000)] = Field(
+        default=LogUniform(low=20.0, high=200.0),
+        description="rms velocity of the outer ring at 1800 turns a minute, drawn for each band of ISO 15242: 50, 300, "
+        "1800, 10000 Hz (memory)",
     )
-    machines_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=10_000)] = Field(
-        default=LogUniform(low=0.16, high=1.6),
-        description="one-sided, of each machine beside the gearbox, on the base or its shaft (derived: measured 3 to 7 "
-        "mm/s²/√Hz from 40 to 80 Hz, times 75 to 325 kg, over √2 for two machines)",
+    compliance_um: Annotated[Number, Within(least=0, most=100)] = Field(
+        default=LogUniform(low=0.02, high=0.3), description="displacement as each ball passes (assumed)"
+    )
+    ball_pass_order: Annotated[Number, Within(above=0, most=100)] = Field(
+        default=Uniform(low=3.0, high=5.5), description="balls past the outer ring per turn of the shaft (derived)"
     )
     level_std: Annotated[Number, Within(least=0, most=2)] = Field(
-        default=0.0,
-        description="s of the random level exp(s U - s²/2) of the bearings' noise, one course per shaft; kurtosis "
-        "3 exp(s²); 0: Gaussian",
+        default=LogUniform(low=0.1, high=0.6),
+        description="s of the random level exp(s U - s²/2), one course per shaft; kurtosis 3 exp(s²) (measured)",
     )
-    spectrum: Density | None = Field(
-        default=None, description="factor on all densities over frequency; null: 1 at all frequencies"
+
+
+class Machines(Section):
+    """Noise of the motor and of what is driven; each presses on the base, or on its shaft without one."""
+
+    density_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=10_000)] = Field(
+        default=LogUniform(low=0.16, high=1.6),
+        description="one-sided, of each machine (derived: measured 3 to 7 mm/s²/√Hz from 40 to 80 Hz, times 75 to 325 "
+        "kg, over √2 for two machines)",
     )
 
 
@@ -94,8 +102,8 @@ class ForeignMesh(Section):
 
     order: Annotated[Number, Within(above=0, most=10_000)] = Field(description="of the mesh, per turn of the pinion")
     force_share: Annotated[Number, Within(least=0, most=2)] = Field(
-        default=LogUniform(low=0.005, high=0.05),
-        description="first line over the mean mesh force (measured: 6 to 26 dB below mesh 1, here 10 % of the mean)",
+        default=LogUniform(low=0.002, high=0.02),
+        description="first line over the mean mesh force (measured: 6 to 26 dB below mesh 1, which is 1 to 4 % of it)",
     )
     shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,))] = Field(
         default=None, description="turns of the sidebands' shaft per turn of the pinion; null: the gear's shaft"
@@ -112,7 +120,8 @@ class Background(Section):
     )
     base: Base | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")
-    floor: Floor | None = Field(default=None, description="null: none")
+    bearings: Bearings | None = Field(default=None, description="null: none")
+    machines: Machines | None = Field(default=None, description="null: none")
     shafts: ShaftLines | None = Field(default=None, description="null: none")
     second_stage: ForeignMesh | None = Field(default=None, description="a stage that shares a shaft; null: none")
     auxiliary_drive: ForeignMesh | None = Field(default=None, description="a pump or other drive; null: none")

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from siggen.config.external_forces import BearingTones, Unbalance
+from siggen.config.external_forces import Unbalance
 from siggen.config.mesh import Friction, Mesh
 from siggen.config.shafts import Shafts
 from siggen.keys.number import Number, Within
@@ -62,8 +62,8 @@ class Dynamics(Section):
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the delivered signals that steps are chosen for with the law pairs, "
-        "once for all states of a gearbox",
+        description="relative rms error of the delivered signals that the steps of every record are chosen for with "
+        "the law pairs",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"
@@ -81,7 +81,6 @@ class Dynamics(Section):
     mesh: Mesh = Field(default=Mesh(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: Unbalance = Field(default=Unbalance(), description="forces of shafts out of balance")
-    bearing_tones: BearingTones = Field(default=BearingTones(), description="forces of rolling bearings")
     shafts: Shafts | None = Field(
         default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
     )

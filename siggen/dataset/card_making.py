@@ -34,7 +34,8 @@ FRICTION = {
 }
 BACKGROUND = {
     "rubbing": "rubbing of rough flanks",
-    "floor": "force noise in mesh and bearings",
+    "bearings": "noise of its rolling bearings",
+    "machines": "noise of motor and load",
     "shafts": "lines of its shafts",
     "second_stage": "a second gear stage",
     "auxiliary_drive": "an auxiliary drive",

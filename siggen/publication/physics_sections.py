@@ -34,11 +34,6 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     yield "casing that moves", dynamics.model == "casing", f"`dynamics.model: {dynamics.model}`"
     yield "shafts that bend, gears that tilt", dynamics.shafts is not None, "`dynamics.shafts`"
     yield "unbalance", dynamics.unbalance != type(dynamics.unbalance)(), "`dynamics.unbalance`"
-    yield (
-        "tones of rolling bearings",
-        dynamics.bearing_tones != type(dynamics.bearing_tones)(),
-        "`dynamics.bearing_tones`",
-    )
     yield "variation within a record", config.variation != type(config.variation)(), drive_text(config)
     yield "housing of plates that give way", config.has_plates, "`housing`"
     yield "measured path to the sensors", bool(paths), f"{len(paths)} of {len(config.sensors)} sensors"

@@ -6,30 +6,36 @@ their phase against the pinion's angle, so that all states of a gearbox share th
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from dataclasses import replace
+from math import pi
 
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, Floor
+from siggen.config import Config
 from siggen.dynamics.drive.comb import Comb, turns_of
 from siggen.keys.drawing import draw
 from siggen.keys.number import constant
 from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import Specimen
 from siggen.record.background_course import Course, course_at
-from siggen.record.force_floor import bearing_strength, floor_levels, random_levels
+from siggen.record.bearing_noise import BearingVelocities
 from siggen.record.rubbing import RubbingForce
-from siggen.sensing.inputs import BACKGROUND, FLOOR, Input
-from siggen.specimen.background import AXES, FLOOR_INPUTS, SpecimenBackground
+from siggen.sensing.force_density import contact_filter, rising_floor
+from siggen.sensing.inputs import BACKGROUND, Input
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+from siggen.specimen.background import AXES, MACHINES, SpecimenBackground, bearings_of_shafts
 from siggen.specimen.background_numbers import (
     FOREIGN_LINES,
     BackgroundNumbers,
-    FloorNumbers,
     ForeignNumbers,
+    MachineNumbers,
     ShaftNumbers,
     background_numbers,
 )
+
+MACHINE_TAPS = 8192
+"""Of the filter of their noise, whose corner lies below 120 Hz."""
 
 
 class BackgroundBlocks:
@@ -48,71 +54,66 @@ class BackgroundBlocks:
         length: int,
     ) -> None:
         self._of_record = (config, specimen, record)
-        self._background, self._next, self._length = background, first, length
+        self._next, self._length = first, length
         assert config.background is not None
-        course = self._course(1)
-        self._asked = config.background.floor
-        self._section = with_levels(background_numbers(config.background), background.section, course)
-        self._levels = {} if self._section.floor is None else random_levels(self._section.floor, course)
-        self._generators = {name: course.of_record(f"background.floor.{name}") for name in FLOOR_INPUTS}
+        self._background = with_levels(background_numbers(config.background), background, self._course(1))
         self._rubbing: RubbingForce | None = None
+        self._bearings: BearingVelocities | None = None
+        self._machines: dict[str, ShapedNoise] = {}
         self.labels: dict[str, object] = {}
-
-    @property
-    def floor(self) -> FloorNumbers | None:
-        """The floor as drawn for the record."""
-        return self._section.floor
 
     def take(self, count: int) -> dict[Input, FloatArray]:
         """Return the next values (count,) of every input."""
         course = self._course(count)
-        forces, labels = line_forces(self._section, course, self._background)
-        if self._section.rubbing is not None:
-            if self._rubbing is None:
-                self._rubbing = RubbingForce(self._section.rubbing, course, self._length)
+        forces, labels = line_forces(self._background.section, course, self._background)
+        if not self.labels:
+            self._begin(course)
+        if self._rubbing is not None:
             forces["mesh"] = self._rubbing.take(course)
             labels |= self._rubbing.labels
-        found = {Input(BACKGROUND, name): force for name, force in forces.items()}
-        if self._section.floor is not None:
-            labels |= floor_labels(self._asked, self._section.floor)
-            found |= self._white(self._section.floor, course)
+        if self._bearings is not None:
+            forces |= self._bearings.take(course)
+            labels |= self._bearings.labels
+        forces |= {name: noise.take(course.length) for name, noise in self._machines.items()}
+        if (machines := self._background.section.machines) is not None:
+            labels["machine_force_n_per_sqrt_hz"] = constant(machines.density_n_per_sqrt_hz)
         self.labels = self.labels or labels
         self._next += count
-        return found
+        return {Input(BACKGROUND, name): force for name, force in forces.items()}
+
+    def _begin(self, course: Course) -> None:
+        section = self._background.section
+        if section.rubbing is not None:
+            self._rubbing = RubbingForce(section.rubbing, course, self._length)
+        if self._background.bearings:
+            self._bearings = BearingVelocities(self._background.bearings, course)
+        if section.machines is not None:
+            self._machines = machine_noise(section.machines, course)
 
     def _course(self, count: int) -> Course:
         return course_at(*self._of_record, self._next, count)
 
-    def _white(self, floor: FloorNumbers, course: Course) -> dict[Input, FloatArray]:
-        """Return noise of the floor's density above its low corner, modulated where shafts do that."""
-        found = {}
-        random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
-        for name, level in floor_levels(floor).items():
-            values = self._generators[name].standard_normal(course.length)
-            values *= level * sqrt(0.5 * course.fs_hz)
-            strength = bearing_strength(floor, course, name, random)
-            if strength is not None:
-                values *= np.sqrt(strength)
-            found[Input(FLOOR, name)] = values
-        return found
+
+def machine_noise(machines: MachineNumbers, course: Course) -> dict[str, ShapedNoise]:
+    """Return the noise of both machines beside the gearbox, independent of each other."""
+    corner, exponent = constant(machines.low_corner_hz), constant(machines.low_exponent)
+    density, high = constant(machines.density_n_per_sqrt_hz), constant(machines.high_corner_hz)
+
+    def shape(frequency_hz: FloatArray) -> FloatArray:
+        return density * rising_floor(frequency_hz, corner, exponent) * contact_filter(frequency_hz, high, 1.0) + 1e-30
+
+    taps = shape_taps(shape, MACHINE_TAPS, course.fs_hz)
+    return {name: ShapedNoise(taps, course.fs_hz, course.of_record(f"background.machines.{name}")) for name in MACHINES}
 
 
-def with_levels(section: BackgroundNumbers, drawn: BackgroundNumbers, course: Course) -> BackgroundNumbers:
+def with_levels(section: BackgroundNumbers, drawn: SpecimenBackground, course: Course) -> SpecimenBackground:
     """Return what was drawn for the gearbox, its noise drawn anew if levels belong to the record."""
     if section.redraw == "gearbox":
         return drawn
     levels = draw(section, course.level, "background")
-    return drawn.model_copy(update={"rubbing": levels.rubbing, "floor": levels.floor})
-
-
-def floor_labels(asked: Floor | None, floor: FloorNumbers) -> dict[str, object]:
-    """Return the labels of a drawn floor; one that was `asked` to have random levels says how large they are."""
-    random = asked is not None and asked.level_std != 0.0
-    return {
-        "floor_force_n_per_sqrt_hz": constant(floor.density_n_per_sqrt_hz),
-        "machine_force_n_per_sqrt_hz": constant(floor.machines_n_per_sqrt_hz),
-        **({"floor_level_std": constant(floor.level_std)} if random else {}),
-    }
+    own = drawn.section.model_copy(update={"rubbing": levels.rubbing, "machines": levels.machines})
+    bearings = bearings_of_shafts(section, course.level)
+    return replace(drawn, section=own, bearings=bearings)
 
 
 def line_forces(

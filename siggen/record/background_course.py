@@ -17,6 +17,7 @@ from siggen.planning.plan import PlannedRecord
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
+from siggen.specimen.asperities import asperity_share
 from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
 
@@ -26,8 +27,9 @@ class Course:
     """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
 
     Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ)
-    (length,) of both shafts, `orders` their turns per turn of the pinion. `level` gives uniforms of what noise levels
-    belong to, `uniform` those of the gearbox, `of_gearbox` and `of_record` generators.
+    (length,) of both shafts, `orders` their turns per turn of the pinion. `asperity_share` is that of the mean load at
+    the pitch point. `level` gives uniforms of what noise levels belong to, `uniform` those of the gearbox, `of_gearbox`
+    and `of_record` generators.
     """
 
     angle_rad: FloatArray
@@ -37,6 +39,7 @@ class Course:
     history: int
     pair: GearPair
     point: OperatingPoint
+    asperity_share: float
     uniform: Callable[[str], float]
     level: Callable[[str], float]
     of_gearbox: Callable[[str], np.random.Generator]
@@ -85,6 +88,7 @@ def course_at(config: Config, specimen: Specimen, record: PlannedRecord, first: 
         -first,
         pair,
         point,
+        asperity_share(specimen.dynamics.friction, pair, point),
         named_uniforms(config.seed, Stage.BACKGROUND, record.specimen_id),
         noise_levels(config, record) or named_uniforms(config.seed, Stage.BACKGROUND_NOISE, *owner),
         lambda name: named_generator(config.seed, Stage.BACKGROUND, record.specimen_id, name=name),

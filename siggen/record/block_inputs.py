@@ -15,8 +15,7 @@ from siggen.record.background import BackgroundBlocks
 from siggen.record.motion_blocks import MotionBlocks, delivered
 from siggen.sensing.block_filter import AHEAD, TOGETHER
 from siggen.sensing.inputs import Input
-from siggen.specimen.block_responses import BlockResponses, block_responses
-from siggen.specimen.instrument import Instrument, instrument_ways
+from siggen.specimen.instrument import Instrument
 
 
 class BlockInputs:
@@ -34,8 +33,6 @@ class BlockInputs:
         if background is not None:
             length = back + self._samples + AHEAD
             self._background = BackgroundBlocks(config, specimen, record, background, -back, length)
-            if background.section.redraw == "record":
-                self._filters = _with_floor(instrument, self._background).filters
         self._plain = {c.name: next(iter(c.seen)) for c in instrument.channels if c.is_plain}
         felt = dict.fromkeys(one for filters in self._filters.values() for one in filters)
         seen = tuple(dict.fromkeys([*felt, *self._plain.values()]))
@@ -98,8 +95,3 @@ def _refuse_undelivered(instrument: Instrument, delivered: tuple[Input, ...]) ->
                     f"sensor {channel.sensor.name}: shows {one.kind} {one.name}, which the model does not give "
                     f"(it gives {given})"
                 )
-
-
-def _with_floor(instrument: Instrument, background: BackgroundBlocks) -> BlockResponses:
-    """Return the filters with the floor of one record."""
-    return block_responses(instrument.blocks.grid, instrument_ways(instrument, background.floor))

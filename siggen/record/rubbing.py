@@ -1,7 +1,9 @@
-"""Force of rubbing roughness along the line of action: k r (n(t) √M(t) + bursts), part of n replayed by both gears.
+"""Force of rough flanks along the line of action: n(t) √M(t) + bursts, part of n replayed by both gears.
 
-Model: k the mean stiffness of the mesh, r the roughness averaged over the face, n noise of variance 1 behind the filter
-of the contact's width, M of mean 1 by mesh, shafts and chance (`siggen.sensing.modulation`).
+A flank carries its roughness with it; the rolling speed u turns its waves into frequencies (derived):
+S_F(f) = (k La^p)² S_z(f) |W(f)|², with k the mean stiffness of the mesh, La the share of the load on asperities,
+S_z the profile's spectrum at f = u κ/2π, and W the mean over the contact's width. So both corners move with the speed,
+and the film takes back a part. M of mean 1 by mesh, shafts and chance (`siggen.sensing.modulation`).
 """
 
 from __future__ import annotations
@@ -22,33 +24,30 @@ from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, sh
 from siggen.sensing.noise_spectrum import noise_spectrum
 from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
 from siggen.sensing.spectral_filter import frequencies
+from siggen.specimen.asperities import contact_half_width_m
 from siggen.specimen.background_numbers import MESH_STIFFNESS_N_PER_UM_MM, BurstNumbers, RubbingNumbers
 
-REFERENCE_SPEED_M_S = 3.0
-REFERENCE_LINE_LOAD_N_PER_M = 5e4
-"""Rolling speed at the pitch point and line load at which the force is k r."""
-CONTACT_TAPS = 1024
-"""Of the contact's filter, whose corner lies in the kilohertz: at 25.6 kHz 40 ms."""
+CONTACT_TAPS = 2048
+"""Of the filter of both corners: at 51.2 kHz 25 Hz apart."""
 
 
 class RubbingForce:
     """The force of one record from the first sample of `course` on, over `length` samples, and its labels."""
 
     def __init__(self, rubbing: RubbingNumbers, course: Course, length: int) -> None:
-        self._rubbing, self._size = rubbing, force_size_n(rubbing, course)
-        corner_hz, steepness = constant(rubbing.corner_hz), constant(rubbing.steepness)
-        unit = 1.0 / sqrt(contact_bandwidth_hz(corner_hz, steepness))
-        taps = shape_taps(lambda f: unit * contact_filter(f, corner_hz, steepness), CONTACT_TAPS, course.fs_hz)
+        self._rubbing, spectrum = rubbing, force_spectrum(rubbing, course)
+        taps = shape_taps(spectrum.density, CONTACT_TAPS, course.fs_hz)
         self._noise = ShapedNoise(taps, course.fs_hz, course.of_record("background.rubbing"))
         self._level = level_process(rubbing, course)
         self._share = constant(rubbing.replayed_share)
         self._patterns = {
-            shaft: shaft_pattern(corner_hz, steepness, course, shaft, order)
+            shaft: shaft_pattern(spectrum, course, shaft, order)
             for shaft, order in (course.orders.items() if self._share > 0.0 else ())
         }
         self._bursts = None if rubbing.bursts is None else drawn_bursts(rubbing.bursts, course, length)
         self._done = 0
-        self.labels = rubbing_labels(rubbing, self._size)
+        self._rms = spectrum.rms_n(0.5 * course.fs_hz)
+        self.labels = rubbing_labels(rubbing, self._rms, course.asperity_share)
         if self._bursts is not None:
             self.labels["burst_count"] = self._bursts.recorded
 
@@ -61,35 +60,58 @@ class RubbingForce:
         if self._bursts is not None:
             strength += burst_rise(self._bursts, self._done, course.length)
         self._done += course.length
-        return np.asarray(self._size * noise * strength)
+        return np.asarray(noise * strength)
 
 
-def rubbing_labels(rubbing: RubbingNumbers, size_n: float) -> dict[str, object]:
+def rubbing_labels(rubbing: RubbingNumbers, rms_n: float, asperity_share: float) -> dict[str, object]:
     """Return the labels but for bursts."""
     return {
-        "rubbing_force_n": size_n,
+        "rubbing_force_n": rms_n,
+        "rubbing_asperity_share": asperity_share,
         "rubbing_level_std": constant(rubbing.level_std),
         "rubbing_pinion_depth": constant(rubbing.pinion_depth),
         "rubbing_gear_depth": constant(rubbing.gear_depth),
     }
 
 
-def force_size_n(rubbing: RubbingNumbers, course: Course) -> float:
-    """Return the rms force [N] without bursts, over all frequencies."""
-    face_m = course.pair.face_width_m
-    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * face_m
-    averaged = max(face_m / (1e-3 * constant(rubbing.correlation_mm)), 1.0)
+class ForceSpectrum(NamedTuple):
+    """Force at no frequency [N] of all roughness, and where flanks' profile and contact cut [Hz]."""
+
+    rough_n: float
+    roll_off_hz: float
+    hurst_exponent: float
+    contact_hz: float
+
+    def density(self, frequency_hz: FloatArray) -> FloatArray:
+        """Return the one-sided density (k,) [N/√Hz]."""
+        steepness = self.hurst_exponent + 0.5
+        profile = contact_filter(frequency_hz, self.roll_off_hz, steepness)
+        profile /= sqrt(contact_bandwidth_hz(self.roll_off_hz, steepness))
+        return self.rough_n * profile * contact_filter(frequency_hz, self.contact_hz, 1.0)
+
+    def rms_n(self, highest_hz: float) -> float:
+        """Return the rms of what lies below a frequency."""
+        frequency = np.linspace(0.0, highest_hz, 20_001)
+        return float(np.sqrt(np.trapezoid(self.density(frequency) ** 2, frequency)))
+
+
+def force_spectrum(rubbing: RubbingNumbers, course: Course) -> ForceSpectrum:
+    """Return the spectrum at the nominal speed and torque."""
+    pair = course.pair
+    stiffness = 1e9 * MESH_STIFFNESS_N_PER_UM_MM * pair.face_width_m
+    averaged = max(pair.face_width_m / (1e-3 * constant(rubbing.correlation_mm)), 1.0)
     roughness_m = 1e-6 * constant(rubbing.roughness_um) / sqrt(averaged)
     # both flanks roll over the pitch point at R_b1 tan(α_w) Ω_1
-    pitch_m = course.pair.pinion.base_radius_m * tan(course.pair.working_pressure_angle_rad)
-    speed = 2.0 * pi * course.point.speed_hz * pitch_m / REFERENCE_SPEED_M_S
-    load = course.mesh_force_n / face_m / REFERENCE_LINE_LOAD_N_PER_M
-    return float(
-        stiffness * roughness_m * speed ** constant(rubbing.speed_exponent) * load ** constant(rubbing.load_exponent)
+    rolling_m_s = 2.0 * pi * course.point.speed_hz * pair.pinion.base_radius_m * tan(pair.working_pressure_angle_rad)
+    return ForceSpectrum(
+        rough_n=stiffness * roughness_m * course.asperity_share ** constant(rubbing.asperity_exponent),
+        roll_off_hz=rolling_m_s / (1e-3 * constant(rubbing.roll_off_mm)),
+        hurst_exponent=constant(rubbing.hurst_exponent),
+        contact_hz=rolling_m_s / (2.0 * pi * contact_half_width_m(pair, course.mesh_force_n)),
     )
 
 
-def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str, order: float) -> FloatArray:
+def shaft_pattern(spectrum: ForceSpectrum, course: Course, shaft: str, order: float) -> FloatArray:
     """Return what one gear replays over its revolution (points,), of the same density as n at the nominal speed.
 
     Four points per sample: read linearly between them, it is damped by 10 % at half the sampling rate at most.
@@ -98,13 +120,11 @@ def shaft_pattern(corner_hz: float, steepness: float, course: Course, shaft: str
     top = int(0.5 * course.fs_hz / shaft_hz)
     points = 8 * (top + 1)
     rate_hz = points * shaft_hz
-    density = contact_filter(frequencies(points, rate_hz), corner_hz, steepness)
-    density /= sqrt(contact_bandwidth_hz(corner_hz, steepness))
-    spectrum = np.zeros(points // 2 + 1, dtype=np.complex128)
-    spectrum[: top + 1] = noise_spectrum(
+    waves = np.zeros(points // 2 + 1, dtype=np.complex128)
+    waves[: top + 1] = noise_spectrum(
         1.0, 2 * top + 1, rate_hz, course.of_gearbox(f"background.rubbing.{shaft}.pattern")
     ) * sqrt(points / (2 * top + 1))
-    return np.asarray(np.fft.irfft(spectrum * density, points))
+    return np.asarray(np.fft.irfft(waves * spectrum.density(frequencies(points, rate_hz)), points))
 
 
 def level_process(rubbing: RubbingNumbers, course: Course) -> LevelCourse:

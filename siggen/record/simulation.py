@@ -37,10 +37,10 @@ from siggen.specimen.errors import SpecimenErrors, error_labels
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, settle_s, specimen_instrument
-from siggen.specimen.integration import time_grid
 from siggen.specimen.made_gears import MadeGears
-from siggen.specimen.motion import SpecimenMesh, specimen_motion
+from siggen.specimen.motion import SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
+from siggen.specimen.step_choice import stepped_motion
 from siggen.specimen.structure import structure
 
 __all__ = [
@@ -155,7 +155,7 @@ def record_response(
         If the integration did not stay finite and bounded, or a drawn number is beyond the model's limits.
     """
     with refused_as("outside_model"):
-        stream, point = _stream(config, specimen, state, record, internals=internals, driven=driven, motions=motions)
+        stream, point, _ = _stream(config, specimen, state, record, internals=internals, driven=driven, motions=motions)
         with stage("loop"):
             response = collected_response(stream)
     if response.status != "ok":
@@ -172,38 +172,35 @@ def _stream(
     internals: bool = False,
     driven: RecordDrive | None = None,
     motions: Collection[str] | None = None,
-) -> tuple[ResponseStream, OperatingPoint]:
-    """Return the response of one record before it is stepped, and its operating point."""
+) -> tuple[ResponseStream, OperatingPoint, dict[str, object]]:
+    """Return the response of one record before it is stepped, its operating point, and labels of how it is stepped."""
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
     driven = _driven(config, specimen, state, record) if driven is None else driven
-    with stage("inputs"):
-        step_s = 1.0 / (config.fs_hz * steps)
-        motion = specimen_motion(specimen.dynamics, state.mesh, point, step_s, driven, stride=stride)
     with stage("loop"):
+        grid, motion, error = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         stream = response_stream(
             motion,
             driven.rotation,
-            SampleGrid(config.fs_hz, config.samples, steps),
+            SampleGrid(config.fs_hz, config.samples, grid.per_sample),
             wanted=Wanted(internals, internals or config.has_plates or needs_forces(config.sensors), motions),
             excitation=driven.excitation,
             settle_s=_settle_s(config, specimen, motion),
             history_s=history_s(config, specimen),
             ahead=AHEAD,
         )
-    return stream, point
+    return stream, point, {} if error is None else {"integration_error": error}
 
 
 def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
     """Return the least time before the record; a motion that starts near its end needs its history behind it."""
     before_s = history_s(config, specimen)
-    return before_s + motion.transient_s if motion.coarse_inputs else settle_s(config, specimen)
+    return before_s + motion.transient_s if motion.starts_settled else settle_s(config, specimen)
 
 
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     angle_rad = start_angle_rad(config, state.pair, record)
-    return record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle_rad)
+    return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad)
 
 
 def simulated(
@@ -223,7 +220,9 @@ def simulated(
     if with_internals:
         seen |= {motion for motion in state.mesh.structure.motions if is_asked_for(config, acceleration_name(motion))}
     with refused_as("outside_model"):
-        stream, point = _stream(config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen)
+        stream, point, stepped = _stream(
+            config, specimen, state, planned, internals=with_internals, driven=driven, motions=seen
+        )
     response: _RefusedPieces | StreamedInternals = _RefusedPieces(stream)
     if with_internals:
         response = StreamedInternals(config, specimen, stream, response)
@@ -235,6 +234,7 @@ def simulated(
     labels = {
         **state.labels,
         **operating,
+        **stepped,
         **variation_labels(config, driven),
         "start_angle_rad": float(ends_rad[0]),
         "contact_loss_share": response.contact_loss_share,

@@ -91,8 +91,7 @@ def _factors(scales: PairScales) -> dict[str, dict[str, float]]:
         "background": {
             "base.mass_kg": mass,
             "base.gyration_m": scales.size,
-            "floor.density_n_per_sqrt_hz": scales.load,
-            "floor.machines_n_per_sqrt_hz": scales.load,
+            "machines.density_n_per_sqrt_hz": scales.load,
             "shafts.coupling_stiffness_n_per_um": scales.load,
             "shafts.rotor_mass_kg": mass,
             "second_stage.order": scales.gear_order,

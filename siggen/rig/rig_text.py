@@ -151,9 +151,7 @@ def _background(rig: Rig, numbers: RigNumbers) -> str:
     return f"""\
 background:                   # {ASSUMED}
   base: {{mass_kg: {_range((50.0 * mass, 300.0 * mass), "loguniform")}}}
-  floor:
-    density_n_per_sqrt_hz: {_range((0.03 * force, 0.3 * force), "loguniform")}
-    machines_n_per_sqrt_hz: {_range((0.16 * force, 1.6 * force), "loguniform")}
+  machines: {{density_n_per_sqrt_hz: {_range((0.16 * force, 1.6 * force), "loguniform")}}}
   # {SECOND_STAGE_TEETH[0]} to {SECOND_STAGE_TEETH[-1]} teeth on the gear's shaft, turns of that shaft times teeth
   second_stage: {{order: {{kind: choice, values: [{orders}]}}}}
 """

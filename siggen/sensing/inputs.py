@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-MOTION, FORCE, BACKGROUND, FLOOR = "motion", "force", "background", "floor"
+MOTION, FORCE, BACKGROUND = "motion", "force", "background"
 
 
 class Input(NamedTuple):
-    """What reaches channels: a motion of the model, a bearing force, a force or floor noise of the background."""
+    """What reaches channels: a motion of the model, a bearing force, a force of the background."""
 
     kind: str
     name: str

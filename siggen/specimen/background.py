@@ -13,8 +13,8 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.config import Background, Config, Dynamics
-from siggen.dynamics.drive.external_forces import bearing_direction, shaft_directions
+from siggen.config import Config, Dynamics
+from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direction, shaft_directions
 from siggen.dynamics.structure.body import Body
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.foundation import Base, on_base
@@ -27,10 +27,13 @@ from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.inputs import FORCE, MOTION, Input
+from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.background_numbers import (
     MESH_STIFFNESS_N_PER_UM_MM,
     BackgroundNumbers,
     BaseNumbers,
+    BearingNumbers,
+    ForeignNumbers,
     ShaftNumbers,
     background_numbers,
 )
@@ -44,8 +47,6 @@ AXES = ("horizontal", "vertical")
 SHAFTS = ("pinion", "gear")
 MACHINES = {"motor": "pinion", "load": "gear"}
 """What stands beside the gearbox, and the shaft that leads there."""
-FLOOR_INPUTS = ("mesh", *INPUTS, *MACHINES)
-"""Where noise of the floor acts."""
 BLOCK = 8192
 """Frequencies at a time: the responses of all motions and forces are ten times those of a channel."""
 
@@ -68,13 +69,14 @@ class ChannelWay:
 
 @dataclass(frozen=True, slots=True)
 class SpecimenBackground:
-    """A drawn section, `shafts` once for each of them, and channel -> response (inputs, k) in m/s² per N, by `inputs`.
+    """A drawn section, `shafts` and `bearings` once for each shaft, and channel -> response (inputs, k) in m/s² per N.
 
-    Responses end before the sensor.
+    Responses end before the sensor; those from bearings are per m/s of what moves in series with their springs.
     """
 
     section: BackgroundNumbers
     shafts: Mapping[str, ShaftNumbers]
+    bearings: Mapping[str, BearingNumbers]
     inputs: tuple[str, ...]
     responses: Mapping[str, ComplexArray]
 
@@ -121,9 +123,11 @@ def specimen_background(
             assembled = on_base(assembled, body, _base(section.base))
     uniform = named_uniforms(config.seed, Stage.BACKGROUND, specimen.specimen_id)
     directions = _directions(assembled, body, section, uniform)
-    shafts = _shafts(config.background, uniform)
+    assert config.background is not None
+    numbers = background_numbers(config.background)
+    shafts, bearings = _shafts(numbers, uniform), bearings_of_shafts(numbers, uniform)
     if not directions:
-        return SpecimenBackground(section, shafts, (), {})
+        return SpecimenBackground(section, shafts, bearings, (), {})
     ways = {name: _in_model(way, assembled) for name, way in channels.items()}
     seen = tuple(dict.fromkeys(motion for way in ways.values() for motion in _motions(way.shown)))
     mesh = mean_mesh(specimen.dynamics, pair, assembled.equivalent_mesh_mass_kg)
@@ -138,15 +142,47 @@ def specimen_background(
                 responses[name][:, block] = _response(names, turn_rad, forced, way, block)
             except KeyError as error:
                 raise ValueError(f"sensor of {name}: shows {error}, which the background does not reach") from error
-    return SpecimenBackground(section, shafts, names, responses)
+    for name, factor in _factors(assembled, section, names, frequency_hz).items():
+        for response in responses.values():
+            response[names.index(name)] *= factor
+    return SpecimenBackground(section, shafts, bearings, names, responses)
 
 
-def _shafts(section: Background | None, uniform: Callable[[str], float]) -> dict[str, ShaftNumbers]:
+def _shafts(section: BackgroundNumbers, uniform: Callable[[str], float]) -> dict[str, ShaftNumbers]:
     """Return the section of each shaft, each with its own draws."""
-    shafts = None if section is None else background_numbers(section).shafts
+    shafts = section.shafts
     if shafts is None:
         return {}
     return {shaft: draw(shafts, uniform, f"background.shafts.{shaft}") for shaft in SHAFTS}
+
+
+def bearings_of_shafts(section: BackgroundNumbers, uniform: Callable[[str], float]) -> dict[str, BearingNumbers]:
+    """Return the bearings of each shaft, each with their own draws."""
+    bearings = section.bearings
+    if bearings is None:
+        return {}
+    return {shaft: draw(bearings, uniform, f"background.bearings.{shaft}") for shaft in SHAFTS}
+
+
+def _factors(
+    assembled: Structure, section: BackgroundNumbers, names: tuple[str, ...], frequency_hz: FloatArray
+) -> dict[str, ComplexArray]:
+    """Return input -> what lies between it and the force that acts on the model (k,)."""
+    bearings = INPUTS if section.bearings is not None else ()
+    found = {name: _per_velocity(assembled, name, frequency_hz) for name in bearings}
+    for name in ("second_stage", "auxiliary_drive"):
+        mesh: ForeignNumbers | None = getattr(section, name)
+        if mesh is not None and name in names:
+            support = constant(mesh.support_hz), constant(mesh.support_damping)
+            found[name] = resonance_response(frequency_hz, *support)
+    return found
+
+
+def _per_velocity(assembled: Structure, name: str, frequency_hz: FloatArray) -> ComplexArray:
+    """Return the force (k,) between a shaft and its seat per velocity of what lies between them: k_b/iω, 0 at rest."""
+    stiffness = float(assembled.bearing_forces[name][0] @ shaft_direction(assembled, name))
+    turning = np.where(frequency_hz > 0.0, 2.0 * pi * frequency_hz, np.inf)
+    return np.asarray(-1j * stiffness / turning)
 
 
 def mean_mesh(dynamics: Dynamics, pair: GearPair, equivalent_mass_kg: float) -> MeanMesh:
@@ -171,12 +207,13 @@ def _directions(
 ) -> dict[str, FloatArray]:
     """Return input -> generalised force (n,) per newton, for the inputs that the section needs."""
     found: dict[str, FloatArray] = {}
-    if section.rubbing is not None or section.floor is not None:
+    if section.rubbing is not None:
         found["mesh"] = assembled.mesh_vector
-    if section.floor is not None:
-        found |= {name: _on_seat(assembled, name) for name in INPUTS}
+    if section.bearings is not None:
+        found |= {name: bearing_direction(assembled, *name.split("/")) for name in INPUTS}
+    if section.machines is not None:
         for name, shaft in MACHINES.items():
-            found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"floor.{name}"))
+            found[name] = _turned(_stand(assembled, shaft), _angle(uniform, f"machines.{name}"))
     if section.shafts is not None:
         for shaft in SHAFTS:
             rows = _on_rotor(assembled, shaft) - _on_base(assembled)
@@ -193,12 +230,6 @@ def _directions(
 def _entry(assembled: Structure, body: Body | None, name: str) -> FloatArray:
     """Return the generalised force (n,) of 1 N where another machine presses on the body; nothing without a body."""
     return vector(assembled.coordinates, {} if body is None else body.entries[name])
-
-
-def _on_seat(assembled: Structure, name: str) -> FloatArray:
-    """Return 1 N on the housing alone, at a bearing: what shafts bring in from outside."""
-    rotor = [coordinate in {"x_1", "y_1", "x_2", "y_2"} for coordinate in assembled.coordinates]
-    return np.where(rotor, 0.0, -bearing_direction(assembled, *name.split("/")))
 
 
 def _angle(uniform: Callable[[str], float], name: str) -> float:
@@ -255,8 +286,8 @@ def _response(
     if way.accelerance is not None:
         for name, row in zip(INPUTS, way.accelerance[:, block], strict=True):
             total += row * forced.bearing_force[name]
-            if name in inputs:
-                total[inputs.index(name)] += row
+            if name in inputs:  # a force between shaft and seat presses on the housing the other way
+                total[inputs.index(name)] -= row
     if way.entries is not None:
         stage, horizontal, vertical = way.entries[:, block]
         direct = {"second_stage": stage, "auxiliary_drive": cos(turn_rad) * horizontal + sin(turn_rad) * vertical}

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from typing import Annotated, TypeVar
 
-from siggen.config import Background, Base, Bursts, Floor, ForeignMesh, Rubbing, ShaftLines
+from siggen.config import Background, Base, Bearings, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 
 MESH_STIFFNESS_N_PER_UM_MM = 20.0
 """Mean stiffness per face width that the forces meet (source: ISO 6336-1, steel)."""
+BANDS = ("low_um_s", "middle_um_s", "high_um_s")
 FOREIGN_LINES = 15
 """Lines of another mesh (measured)."""
 
@@ -38,40 +39,51 @@ class BurstNumbers(Bursts):
 
 
 class RubbingNumbers(Rubbing):
-    """Of the force k r n(t) √M along the line of action.
+    """Of the force k r La^p √M along the line of action, r the roughness that passes the contact.
 
-    Roughness averages over face/correlation (assumed). n has the power (1 + (f/corner)²)^-steepness, from where the
-    contact's width cuts: rolling speed/(2 pi half-width) (assumed range). The force grows with the rolling speed, 1 at
-    3 m/s (source; exponent assumed), and with the line load, 1 at 50 N/mm (assumed); M with a power of the sliding
-    speed of a pair (assumed). The shafts modulate it (measured: 0.1 to 0.5 and 0.06 to 0.42), and a share of its power
-    returns with every turn of pinion and gear, half each (measured). The level changes within 10 ms (measured).
+    A flank's profile has the power spectrum (1 + (f/f_r)²)^-(H + 1/2), f_r the rolling speed over the roll-off length
+    (assumed, as H), and the contact passes (1 + (f/f_c)²)^-1, f_c the rolling speed over 2π half-widths of Hertz.
+    Across the face roughness averages over face/correlation (assumed). La is the asperities' share of the load; p
+    (assumed). M with a power of the sliding speed of a pair (assumed). The shafts modulate it: runout moves the load
+    and the film between teeth and across the face (assumed; machines had 0.1 to 0.5 and 0.06 to 0.42 of all noise), and
+    a share of its power returns with every turn of pinion and gear, half each (measured). The level changes within 10
+    ms (measured).
     """
 
     correlation_mm: Drawn = LogUniform(low=0.05, high=1.0)
-    corner_hz: Drawn = LogUniform(low=1500.0, high=5000.0)
-    steepness: Drawn = Uniform(low=1.0, high=2.0)
-    speed_exponent: Drawn = Uniform(low=0.5, high=1.0)
-    load_exponent: Drawn = Uniform(low=0.3, high=0.7)
+    roll_off_mm: Drawn = LogUniform(low=0.1, high=0.5)
+    hurst_exponent: Drawn = Uniform(low=0.5, high=1.0)
+    asperity_exponent: Drawn = Uniform(low=0.5, high=1.0)
     sliding_exponent: Drawn = Uniform(low=0.5, high=1.0)
-    pinion_depth: Drawn = LogUniform(low=0.05, high=0.8)
-    gear_depth: Drawn = LogUniform(low=0.03, high=0.4)
+    pinion_depth: Drawn = LogUniform(low=0.2, high=0.9)
+    gear_depth: Drawn = LogUniform(low=0.1, high=0.45)
     level_time_ms: Drawn = LogUniform(low=1.0, high=8.0)
     replayed_share: Drawn = LogUniform(low=0.01, high=0.08)
     bursts: BurstNumbers | None
 
 
-class FloorNumbers(Floor):
-    """Of noise of density √(1 + (low_corner/f)^low_exponent) (measured shape; assumed).
+class BearingNumbers(Bearings):
+    """Of both bearings of a shaft: rms velocities of the bands, and how the shaft modulates the noise (assumed).
 
-    `elsewhere` is the density at each bearing over the mesh's (assumed). A shaft modulates that of its bearings
-    (assumed), whose random level changes within 10 ms (measured).
+    The cage lags by a share that a record draws (assumed: 0.5 to 2 %). The level changes within 10 ms (measured).
     """
 
-    elsewhere: Drawn = Uniform(low=0.3, high=1.0)
-    low_corner_hz: Drawn = LogUniform(low=15.0, high=120.0)
-    low_exponent: Drawn = Uniform(low=2.0, high=3.0)
+    low_um_s: Drawn
+    middle_um_s: Drawn
+    high_um_s: Drawn
     shaft_depth: Drawn = LogUniform(low=0.03, high=0.4)
     level_time_ms: Drawn = LogUniform(low=1.0, high=8.0)
+
+
+class MachineNumbers(Machines):
+    """Of noise of density √(1 + (low_corner/f)^low_exponent) (measured shape; assumed), falling as 1/f above a corner.
+
+    Levels were measured from 40 to 80 Hz alone; far above, frames and mounts pass little (assumed).
+    """
+
+    low_corner_hz: Drawn = LogUniform(low=15.0, high=120.0)
+    low_exponent: Drawn = Uniform(low=2.0, high=3.0)
+    high_corner_hz: Drawn = LogUniform(low=200.0, high=1000.0)
 
 
 class ShaftNumbers(ShaftLines):
@@ -89,10 +101,19 @@ class ShaftNumbers(ShaftLines):
 
 
 class ForeignNumbers(ForeignMesh):
-    """Line h has h to minus `decay_exponent` of the first (measured), and two sidebands beside it (measured)."""
+    """Line h has h to minus `decay_exponent` of the first, and two sidebands beside it (measured).
 
-    decay_exponent: Drawn = Uniform(low=0.5, high=1.2)
+    Where teeth share the load along a ramp, forces fall as 1/h² (derived; assumed about it). On machines accelerations
+    fell with 0.5 to 1.2: the housing passes more of the higher lines.
+
+    Its gears pass it on through their own shafts on bearings, which isolate above their natural frequency (assumed: as
+    those that are simulated).
+    """
+
+    decay_exponent: Drawn = Uniform(low=1.5, high=2.2)
     sideband_db: Drawn = Uniform(low=-25.0, high=-10.0)
+    support_hz: Drawn = LogUniform(low=800.0, high=2500.0)
+    support_damping: Drawn = Uniform(low=0.02, high=0.07)
 
 
 class BackgroundNumbers(Background):
@@ -100,7 +121,8 @@ class BackgroundNumbers(Background):
 
     base: BaseNumbers | None
     rubbing: RubbingNumbers | None
-    floor: FloorNumbers | None
+    bearings: BearingNumbers | None
+    machines: MachineNumbers | None
     shafts: ShaftNumbers | None
     second_stage: ForeignNumbers | None
     auxiliary_drive: ForeignNumbers | None
@@ -110,12 +132,15 @@ def background_numbers(section: Background) -> BackgroundNumbers:
     """Return what a section says, and what no file says."""
     base, rubbing = section.base, section.rubbing
     mounts = {} if base is None else dict.fromkeys(("horizontal_hz", "vertical_hz", "rocking_hz"), base.mount_hz)
+    bearings = section.bearings
+    bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
     bursts = None if rubbing is None else _completed(BurstNumbers, rubbing.bursts)
     return BackgroundNumbers.model_construct(
         redraw=section.redraw,
         base=_completed(BaseNumbers, base, **mounts),
         rubbing=_completed(RubbingNumbers, rubbing, bursts=bursts),
-        floor=_completed(FloorNumbers, section.floor),
+        bearings=_completed(BearingNumbers, section.bearings, **bands),
+        machines=_completed(MachineNumbers, section.machines),
         shafts=_completed(ShaftNumbers, section.shafts),
         second_stage=_completed(ForeignNumbers, section.second_stage),
         auxiliary_drive=_completed(ForeignNumbers, section.auxiliary_drive),

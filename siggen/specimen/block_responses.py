@@ -8,14 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from siggen.arrays import ComplexArray, FloatArray
-from siggen.keys.number import constant
+from siggen.arrays import ComplexArray
 from siggen.sensing.block_filter import TOGETHER, BlockGrid, limited
-from siggen.sensing.force_density import rising_floor, tabulated
 from siggen.sensing.inputs import Input
-from siggen.sensing.shaped_noise import FINER, least_phase
-from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.background_numbers import FloorNumbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,19 +35,3 @@ def _filters(grid: BlockGrid, ways: Mapping[Input, ComplexArray]) -> dict[Input,
     names, responses = tuple(ways), tuple(ways.values())
     parts = (np.array(responses[k : k + TOGETHER]) for k in range(0, len(responses), TOGETHER))
     return dict(zip(names, (row for part in parts for row in limited(part, grid)), strict=True))
-
-
-def floor_shape(floor: FloorNumbers, frequency_hz: FloatArray) -> FloatArray:
-    """Return how all densities of a floor run over frequency (k,), 1 above the low corner."""
-    shape = rising_floor(frequency_hz, constant(floor.low_corner_hz), constant(floor.low_exponent))
-    if floor.spectrum is not None:
-        shape = shape * tabulated(frequency_hz, floor.spectrum.frequency_hz, floor.spectrum.density)
-    return shape
-
-
-def floor_response(floor: FloorNumbers, memory: int, fs_hz: float) -> ComplexArray:
-    """Return the causal response (memory // 2 + 1,) with this shape: what white noise passes before the paths.
-
-    Together with a path, which falls as f² towards frequency 0, it is remembered no longer than the path alone.
-    """
-    return least_phase(floor_shape(floor, frequencies(FINER * memory, fs_hz)))[::FINER]

@@ -47,7 +47,6 @@ class RecordDrive:
 def record_drive(
     config: Config,
     specimen: Specimen,
-    pair: GearPair,
     structure: Structure,
     point: OperatingPoint,
     record: PlannedRecord,
@@ -60,7 +59,7 @@ def record_drive(
     ValueError
         If the speed might reach zero, or a force has no bearing to act at.
     """
-    forces = force_sources(config, specimen, pair, structure, point, record)
+    forces = force_sources(config, specimen, structure)
     rotation = record_rotation(config, point, record, start_angle_rad)
     if not config.variation.active:
         return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)

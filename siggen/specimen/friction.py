@@ -7,19 +7,16 @@ from math import hypot, pi
 from siggen.config import Friction
 from siggen.dynamics.friction.asperity_table import asperity_table
 from siggen.dynamics.friction.contact_kinematics import effective_modulus
-from siggen.dynamics.friction.friction import FLUID_FRICTION, FrictionLaw, composite_friction, constant_friction
+from siggen.dynamics.friction.friction import FrictionLaw, composite_friction, constant_friction
 from siggen.dynamics.friction.lubrication import LubricatedMesh
 from siggen.dynamics.friction.oil import MINERAL_OILS
+from siggen.dynamics.friction.reversal import PitchPoint, slip_speed
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 
 LARGEST_FORCE = 10.0
 """End of the table's load axis over the static mesh force; beyond it the coefficient stays."""
-REGULAR_SPEED_M_S = 0.02
-"""Sliding speed over which friction builds up around the pitch point (assumed)."""
-BOUNDARY_COEFFICIENT = 0.11
-"""Friction of the asperities (reference: standard literature, 0.1 to 0.13)."""
 HARDNESS_PA = 7e9
 """Of case-hardened flanks (reference: standard literature)."""
 
@@ -31,18 +28,24 @@ def specimen_friction(
     if section.model == "off":
         return None
     if section.model == "constant":
-        return constant_friction(constant(section.coefficient), REGULAR_SPEED_M_S)
-    mesh = lubricated_mesh(section, pair, point)
+        return constant_friction(constant(section.coefficient))
+    mesh, force_n = lubricated_mesh(section, pair, point), point.torque_nm / pair.pinion.base_radius_m
     healthy_m, pitted_m = composite_roughness_m(section)
     table = asperity_table(
         mesh,
         [healthy_m, pitted_m] if rough_pits else [healthy_m],
-        FLUID_FRICTION,
         # Corners touch a little outside the path of contact; half-way to the base circles the radius is still finite.
         (0.5 * pair.contact_start_m, 0.5 * (pair.contact_end_m + pair.line_of_action_m)),
-        LARGEST_FORCE * point.torque_nm / pair.pinion.base_radius_m,
+        LARGEST_FORCE * force_n,
     )
-    return composite_friction(table, BOUNDARY_COEFFICIENT, REGULAR_SPEED_M_S)
+    return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
+
+
+def pitch_point(pair: GearPair, mesh: LubricatedMesh) -> PitchPoint:
+    """Return where a pair passes the pitch point; half a tooth lies behind either flank."""
+    return PitchPoint(
+        pair.pitch_point_m, mesh.speed_1_rad_s * pair.pinion.base_radius_m, 0.25 * pi * pair.pinion.module_m
+    )
 
 
 def composite_roughness_m(section: Friction) -> tuple[float, float]:
@@ -65,5 +68,7 @@ def lubricated_mesh(section: Friction, pair: GearPair, point: OperatingPoint) ->
         effective_modulus_pa=effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio),
         viscosity_pa_s=oil.viscosity_pa_s(temperature_c),
         pressure_viscosity_per_pa=oil.pressure_viscosity_per_pa(temperature_c),
+        viscosity_fall_per_k=oil.viscosity_fall_per_k(temperature_c),
+        inlet_temperature_k=temperature_c + 273.15,
         hardness_pa=HARDNESS_PA,
     )

@@ -311,9 +311,10 @@ SCATTER_MM = 15.0
 def _entries(
     box: Box, modes: HousingModes, seats: Mapping[str, Motion], pair: GearPair, uniform: Callable[[str], float]
 ) -> dict[str, Motion]:
-    """Return where other machines press: a second mesh as opposed forces on the seats, a flange at an end.
+    """Return where other machines press: a second mesh as opposed forces on the seats, another drive in the front wall.
 
     Both forces of the second mesh lie along the line of action of the one that is simulated, which stands for its own.
+    The other drive has bearings of its own, whose radial forces act in the plane of the wall.
     """
     angle = pair.working_pressure_angle_rad
     along = [
@@ -322,15 +323,15 @@ def _entries(
         .plus(seats[f"{s}_bearing/horizontal"], sin(angle))
         for s in ("pinion", "gear")
     ]
-    _, height, width = box.size_m
-    shares = [0.3 + 0.4 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
-    flange = {
+    length, height, _ = box.size_m
+    shares = [0.2 + 0.6 * uniform(f"housing.auxiliary_drive.{i}") for i in range(2)]
+    drive = {
         f"auxiliary_drive/{axis}": motion_at(
-            modes.halves, Place("pinion_end", shares[0] * height, shares[1] * width, AXES[axis])
+            modes.halves, Place("front", shares[0] * length, shares[1] * height, AXES[axis])
         )
         for axis in ("horizontal", "vertical")
     }
-    return {"second_stage": along[0].plus(along[1], -1.0), **flange}
+    return {"second_stage": along[0].plus(along[1], -1.0), **drive}
 
 
 def _from_middle(box: Box, x_m: float) -> Point:

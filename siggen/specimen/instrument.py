@@ -14,21 +14,19 @@ from siggen.dynamics.time.decimation import PASS_EDGE
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_uniforms
-from siggen.sensing.block_filter import BlockGrid, block_grid
-from siggen.sensing.inputs import BACKGROUND, FLOOR, FORCE, MOTION, Input
+from siggen.sensing.block_filter import block_grid
+from siggen.sensing.inputs import BACKGROUND, FORCE, MOTION, Input
 from siggen.sensing.spectral_filter import frequencies
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.sensor import AxisDraws, Sensor
 from siggen.specimen.background import (
-    FLOOR_INPUTS,
     ChannelWay,
     SpecimenBackground,
     background_history_s,
     drawn_background,
     specimen_background,
 )
-from siggen.specimen.background_numbers import FloorNumbers
-from siggen.specimen.block_responses import BlockResponses, block_responses, floor_response
+from siggen.specimen.block_responses import BlockResponses, block_responses
 from siggen.specimen.housing import SpecimenHousing, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 
@@ -119,45 +117,27 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     background = None
     if section is not None:
         background = specimen_background(config, specimen, section, ways, grid)
-    found = Instrument(blocks.memory, config.fs_hz, tuple(channels), block_responses(blocks, {}), background)
-    filters = _in_blocks(found, blocks)
-    if background is not None and background.section.redraw == "gearbox":  # nobody asks for them again
+    filters = block_responses(blocks, {channel.name: _ways(channel, background, grid.size) for channel in channels})
+    if background is not None:  # nobody asks for them again
         background = replace(background, responses={})
-    return replace(found, blocks=filters, background=background)
+    return Instrument(blocks.memory, config.fs_hz, tuple(channels), filters, background)
 
 
-def _in_blocks(instrument: Instrument, grid: BlockGrid) -> BlockResponses:
-    """Return the filters of all channels; those of the floor if it belongs to the gearbox."""
-    section = None if instrument.background is None else instrument.background.section
-    floor = section.floor if section is not None and section.redraw == "gearbox" else None
-    return block_responses(grid, instrument_ways(instrument, floor))
-
-
-def instrument_ways(instrument: Instrument, floor: FloorNumbers | None) -> dict[str, dict[Input, ComplexArray]]:
-    """Return channel -> input -> response (length // 2 + 1,), sensor included, but for motions of a plain one."""
-    shape = None if floor is None else floor_response(floor, instrument.length, instrument.fs_hz)
-    return {channel.name: _ways(instrument, channel, shape) for channel in instrument.channels}
-
-
-def _ways(instrument: Instrument, channel: ChannelInstrument, floor: ComplexArray | None) -> dict[Input, ComplexArray]:
+def _ways(channel: ChannelInstrument, background: SpecimenBackground | None, bins: int) -> dict[Input, ComplexArray]:
+    """Return input -> response (k,), sensor included, but for motions of a plain channel."""
     ways: dict[Input, ComplexArray] = {}
     sensed = channel.sensor_response
     if sensed is None:
-        sensed = np.ones(instrument.length // 2 + 1, dtype=np.complex128)
+        sensed = np.ones(bins, dtype=np.complex128)
     if not channel.is_plain:
         ways |= {one: weight * sensed for one, weight in channel.seen.items()}
     if channel.accelerance is not None:
         for name, row in zip(INPUTS, channel.accelerance, strict=True):
             force, through = Input(FORCE, name), row * sensed
             ways[force] = ways[force] + through if force in ways else through
-    background = instrument.background
-    if background is None or not background.inputs:
-        return ways
-    rows = dict(zip(background.inputs, background.responses[channel.name], strict=True))
-    ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows.items()}
-    if floor is not None:
-        shaped = sensed * floor
-        ways |= {Input(FLOOR, name): rows[name] * shaped for name in FLOOR_INPUTS}
+    if background is not None and background.inputs:
+        rows = zip(background.inputs, background.responses[channel.name], strict=True)
+        ways |= {Input(BACKGROUND, name): row * sensed for name, row in rows}
     return ways
 
 

@@ -1,9 +1,10 @@
-"""How many integration steps a sample of a gearbox takes: a rule without pilot runs, the same for all of its states.
+"""How many integration steps a sample takes, to begin with: a rule without pilot runs (`step_choice` checks it).
 
 Product integration and Runge-Kutta take the number of the file. The exponential integrator takes what its tolerance
 asks for. Its error falls with the square of the step (`python -m benchmarks precision`: friction and flanks that touch
-within steps set it), and two rates set its size: the highest natural frequency to which the
-mesh contributes, and the rate of the teeth. The faster one counts, at the highest speed of the set.
+within steps set it), and three rates set its size: the highest natural frequency to which the mesh contributes, the
+rate of the teeth, and the rate at which friction stops the sliding around the pitch point. The fastest one counts. All
+are those of the record: another operating point of the set does not change them.
 """
 
 from __future__ import annotations
@@ -11,12 +12,18 @@ from __future__ import annotations
 from math import ceil, pi, sqrt
 from typing import NamedTuple
 
-from siggen.config import Config
+import numpy as np
+
+from siggen.config import Config, Dynamics
+from siggen.dynamics.friction.friction import SLIP_SPEED_M_S
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import natural_modes
+from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.keys.number import bounds
-from siggen.planning.specimen import Specimen
+from siggen.keys.number import constant
+from siggen.planning.specimen import OperatingPoint
+from siggen.specimen.asperities import FrictionTurn, friction_turn
+from siggen.specimen.motion import SpecimenMesh
 
 MOST_RADIANS, LEAST_PER_PITCH = 1.4, 50.0
 """Radians of the mesh's vibration in one step, and steps per base pitch.
@@ -24,6 +31,13 @@ MOST_RADIANS, LEAST_PER_PITCH = 1.4, 50.0
 At 1.84 rad and 38 steps per pitch the worst of 24 records of quickstart erred by 1.15e-3; at half of that by 2.6e-4
 (`siggen verify DIR --physics 24`). The bound lies between: at 1.34 rad (35.2 kHz) the worst of 8 records errs by
 4.4e-4.
+"""
+MOST_STOPPED = 1.2
+"""Step over the time in which friction stops the sliding where it turns.
+
+Forces of friction follow from those of the iteration before, which converges where this is below 2: with 2.1 to 7.1
+six of 22 random gearboxes erred by 4e-2 to 16, with 0.01 to 0.95 the others by 1e-3 at most
+(`python -m benchmarks anywhere`).
 """
 USUAL_TOLERANCE = 1e-3
 MESH_SHARE = 0.05
@@ -40,27 +54,50 @@ class TimeGrid(NamedTuple):
     per_sample: int
     stride: int
 
+    @property
+    def steps(self) -> int:
+        """Steps of the integrator per sample."""
+        return self.per_sample // self.stride
 
-def time_grid(config: Config, specimen: Specimen, structure: Structure, tables: MeshTables) -> TimeGrid:
-    """Return where the states of a gearbox are.
 
-    Parameters
-    ----------
-    config, specimen, structure
-    tables : MeshTables
-        Of any state: what counts is the stiffest pair at every position, which is healthy.
+def exponential_grid(steps: int) -> TimeGrid:
+    """Return where states are with so many steps of the exponential integrator per sample."""
+    return TimeGrid(2, 2) if steps == 1 else TimeGrid(steps, 1)
+
+
+def rule_grid(config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> TimeGrid:
+    """Return where the states of a record are by the rule, for a drawn `dynamics` section.
+
+    The tables may be of any state: what counts is the stiffest pair at every position, which is healthy.
     """
-    dynamics = specimen.dynamics
     if dynamics.method != "exponential":
         return TimeGrid(dynamics.steps_per_sample, 1)
+    tables = mesh.tables
+    teeth_hz = float(tables.table_of_pair.shape[0]) * abs(point.speed_hz)
+    vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, tables) / MOST_RADIANS
+    stopping_per_s = _stopping_per_s(dynamics, mesh.structure, mesh.pair, point) / MOST_STOPPED
+    rate_hz = max(vibration_per_s, LEAST_PER_PITCH * teeth_hz, stopping_per_s)
+    finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
+    return exponential_grid(max(1, ceil(rate_hz / config.fs_hz * finer)))
+
+
+def _fastest_hz(structure: Structure, tables: MeshTables) -> float:
+    """Return the highest natural frequency to which the mesh contributes."""
     healthy = tables.pair_stiffness_n_per_m.max(axis=0)
     stiffness = float(healthy.mean()) * (tables.end_m - tables.start_m) / tables.base_pitch_m
     modes = natural_modes(structure, stiffness)
-    fastest_hz = float(modes.frequency_hz[modes.mesh_share >= MESH_SHARE].max(initial=0.0))
-    teeth_hz = float(tables.table_of_pair.shape[0]) * max(
-        bounds(point.speed_hz)[1] for point in config.operating_points
-    )
-    rate_hz = max(2.0 * pi * fastest_hz / MOST_RADIANS, LEAST_PER_PITCH * teeth_hz)
-    finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
-    steps = max(1, ceil(rate_hz / config.fs_hz * finer))
-    return TimeGrid(2, 2) if steps == 1 else TimeGrid(steps, 1)
+    return float(modes.frequency_hz[modes.mesh_share >= MESH_SHARE].max(initial=0.0))
+
+
+def _stopping_per_s(dynamics: Dynamics, structure: Structure, pair: GearPair, point: OperatingPoint) -> float:
+    """Return how fast friction under the static force stops the sliding where it turns: μ F/v_0 · r M⁻¹ r (derived)."""
+    turn = friction_turn(dynamics.friction, pair, point) if dynamics.rubbing == "mixed_ehl" else None
+    if dynamics.rubbing == "constant":
+        turn = FrictionTurn(constant(dynamics.friction.coefficient), SLIP_SPEED_M_S)
+    if turn is None:
+        return 0.0
+    force_n = abs(point.torque_nm) / pair.pinion.base_radius_m
+    r_0, r_1 = structure.sliding_vectors
+    sliding = r_0 + pair.pitch_point_m * r_1
+    by_mass = float(sliding @ np.linalg.solve(structure.mass, sliding))
+    return float(turn.coefficient * force_n / turn.slip_speed_m_s * by_mass)

@@ -30,8 +30,7 @@ from siggen.planning.specimen import Specimen, draw_operating_point, draw_specim
 from siggen.record.simulation import refused_as, specimen_state, start_angle_rad
 from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
-from siggen.specimen.integration import time_grid
-from siggen.specimen.motion import specimen_motion
+from siggen.specimen.step_choice import stepped_motion
 
 FORMAT_VERSION = 3
 """Raised when a key changes its meaning or goes away; new keys leave it."""
@@ -60,11 +59,10 @@ def exported_model(whole: Config, record_id: int) -> Model:
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = time_grid(config, specimen, state.mesh.structure, state.mesh.tables).per_sample
     with refused_as("outside_model"):
         angle = start_angle_rad(config, state.pair, record)
-        driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)
-        motion = specimen_motion(specimen.dynamics, state.mesh, point, 1.0 / (config.fs_hz * steps), driven)
+        driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
+        (steps, _), motion, _ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, driven.rotation, steps)
         start = motion.start(grid["start_pitches"])
     return {

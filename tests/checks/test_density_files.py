@@ -19,9 +19,7 @@ PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 
 
 def loaded(folder: Path, table: dict[str, object]) -> Config:
-    raw = minimal(
-        sensors=[{**PLAIN, "noise_spectrum": table}], background={"floor": {"spectrum": table}}, duration_s=1.0
-    )
+    raw = minimal(sensors=[{**PLAIN, "noise_spectrum": table}], duration_s=1.0)
     (folder / "set.yaml").write_text(yaml.safe_dump(raw))
     return load_config(folder / "set.yaml")
 
@@ -58,11 +56,9 @@ def test_a_sensor_shows_the_density_of_its_table(tmp_path: Path) -> None:
 
 
 def test_files_that_cannot_be_used_are_named(tmp_path: Path) -> None:
-    assert set(problems(tmp_path, {"file": "none.csv"})) == {
-        "sensors.0.noise_spectrum.file", "background.floor.spectrum.file"
-    }  # fmt: skip
+    assert set(problems(tmp_path, {"file": "none.csv"})) == {"sensors.0.noise_spectrum.file"}
     (tmp_path / "other.csv").write_text("hz,density\n10,1\n20,1\n")
-    assert "columns are missing" in problems(tmp_path, {"file": "other.csv"})["background.floor.spectrum.file"]
+    assert "columns are missing" in problems(tmp_path, {"file": "other.csv"})["sensors.0.noise_spectrum.file"]
     (tmp_path / "short.csv").write_text("frequency_hz,density\n10,1\n")
     assert "1 rows" in problems(tmp_path, {"file": "short.csv"})["sensors.0.noise_spectrum.file"]
 
@@ -71,4 +67,4 @@ def test_knots_that_fall_or_do_not_match_are_refused(tmp_path: Path) -> None:
     falling = problems(tmp_path, {"frequency_hz": [20.0, 10.0], "density": [1.0, 1.0]})
     assert "sensors.0.noise_spectrum.frequency_hz" in falling
     fewer = problems(tmp_path, {"frequency_hz": [10.0, 20.0, 30.0], "density": [1.0, 1.0]})
-    assert fewer["background.floor.spectrum.density"] == "3 frequencies, 2 densities"
+    assert fewer["sensors.0.noise_spectrum.density"] == "3 frequencies, 2 densities"

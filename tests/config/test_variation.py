@@ -57,9 +57,8 @@ def test_forces_of_shafts_need_bearings():
         "dynamics__model": "torsional",
         "sensors": [{"name": "rim", "place": "pinion_rim", "axes": ["tangential"]}],
         "dynamics__unbalance": {"grade_mm_s": 2.5},
-        "dynamics__bearing_tones": {"level": 0.01},
     }
-    assert paths(**changes) == ["dynamics.unbalance.grade_mm_s", "dynamics.bearing_tones.level"]
+    assert paths(**changes) == ["dynamics.unbalance.grade_mm_s"]
 
 
 def test_a_run_down_that_the_load_would_drive_is_refused_by_name():

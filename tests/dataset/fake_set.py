@@ -92,6 +92,7 @@ def fake_record(config: Config, planned: PlannedRecord) -> Record:
         "mesh_hz": 540.0,
         "mesh_stiffness_loss_as_simulated": 0.008 * pits,
         "start_angle_rad": float(rng.random()),
+        **({"integration_error": 2e-4} if config.dynamics.method == "exponential" else {}),
     }
     signals = {}
     for name in config.channels:

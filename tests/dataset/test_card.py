@@ -118,11 +118,8 @@ def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
     assert "healthy machine adds" not in noisy
     across = "The contact is solved across the face and depends on the load (`dynamics.mesh.law: pairs`). Shafts bend"
     assert across in rich
-    one = background_text(shipped("quickstart", "background={floor: {}}"))
-    assert (
-        one
-        == "A healthy machine adds force noise in mesh and bearings (`background`); the levels belong to the gearbox. "
-    )
+    one = background_text(shipped("quickstart", "background={machines: {}}"))
+    assert one == "A healthy machine adds noise of motor and load (`background`); the levels belong to the gearbox. "
     assert "rubbing of rough flanks, " in rich
     assert longest <= 118
 

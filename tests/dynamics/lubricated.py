@@ -30,6 +30,8 @@ def mesh(**other: float) -> LubricatedMesh:
         "effective_modulus_pa": MODULUS,
         "viscosity_pa_s": 0.115,
         "pressure_viscosity_per_pa": 2.2e-8,
+        "viscosity_fall_per_k": 0.052,
+        "inlet_temperature_k": 323.15,
         "hardness_pa": 7e9,
     }
     return LubricatedMesh(**(numbers | other))

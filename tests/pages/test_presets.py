@@ -86,7 +86,7 @@ def test_states_of_one_bench_gearbox_share_gears_speed_torque_and_levels_of_nois
         levels = (
             "noise_floor_lid_vertical_m_s2",
             "rubbing_force_n",
-            "floor_force_n_per_sqrt_hz",
+            "machine_force_n_per_sqrt_hz",
             "lead_misalignment_um",
         )
         for name in (*shared, *levels):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from siggen.config import Config
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import EXIT_MISMATCH, DatasetError
-from siggen.sets.precision import REFERENCE_STEPS, measure_precision
+from siggen.sets.precision import FIRST_STEPS, MOST_STEPS, measure_precision
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, file_bytes, simulate, write_fake_set
 
@@ -28,12 +29,30 @@ SECOND = Path(__file__).parent / "schema_2"
 def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[Record | RecordFailure]:
     """Stand in for the physics: the reference differs from everything else by a share of the signal."""
     results = simulate(config, record_ids)
-    if (config.dynamics.method, config.dynamics.steps_per_sample) == ("runge_kutta", REFERENCE_STEPS):
+    if config.dynamics.method == "runge_kutta":
         for result in results:
             assert isinstance(result, Record)
             name = next(iter(result.channels))
             result.channels[name] = (result.channels[name] / (1.0 + error)).astype(np.float32)
     return results
+
+
+def simulate_converging(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Stand in for a reference whose error falls with its steps alone, and slowly."""
+    steps = config.dynamics.steps_per_sample
+    return simulate_off_by(config, record_ids, 1e-3 * FIRST_STEPS / steps)
+
+
+def simulate_astray(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Stand in for a reference that finer steps lead away."""
+    return simulate_off_by(config, record_ids, 1e-5 * config.dynamics.steps_per_sample)
+
+
+def simulate_told(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
+    """Stand in for records that are off, with a label that says so."""
+    results = simulate_off_by(config, record_ids, 2e-3)
+    told = {"integration_error": 2.5e-3} if config.dynamics.method == "exponential" else {}
+    return [replace(one, labels={**one.labels, **told}) for one in results if isinstance(one, Record)]
 
 
 def simulate_rounded(config: Config, record_ids: Sequence[int]) -> list[Record | RecordFailure]:
@@ -86,6 +105,27 @@ def test_an_error_above_the_stated_one_ends_with_4(folder: Path, monkeypatch: py
     kept = folder / PHYSICS
     kept.write_text(kept.read_text().replace('"within": false', '"within": true'))
     assert [mismatch.what for mismatch in verify(folder).mismatches] == [PHYSICS]
+
+
+def test_the_reference_halves_its_steps_until_two_agree(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_converging)
+    found = measure_precision(folder, 3)
+    assert found.reference == f"runge_kutta, up to {16 * FIRST_STEPS} steps per sample"
+    assert found.apart == pytest.approx(1e-3 / 16, rel=1e-2)
+    assert found.largest == pytest.approx(1e-3 / 16, rel=1e-2)
+
+
+def test_a_reference_that_never_agrees_ends_and_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_astray)
+    found = measure_precision(folder, 3)
+    assert found.reference == f"runge_kutta, up to {MOST_STEPS} steps per sample"
+    assert found.apart == pytest.approx(0.5e-5 * MOST_STEPS, rel=1e-2)
+
+
+def test_an_error_that_its_label_tells_is_no_fault(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(siggen.record.simulation, "simulate_specimen", simulate_told)
+    found = measure_precision(folder, 3)
+    assert (found.told, found.untold, found.within) == (3, 0, True)
 
 
 def test_the_same_records_are_chosen_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

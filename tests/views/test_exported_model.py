@@ -97,7 +97,7 @@ def beginning(
     state = specimen_state(loaded, specimen, planned.state_id)
     point = draw_operating_point(loaded, planned.specimen_id, planned.operating_point_id)
     angle = start_angle_rad(loaded, state.pair, planned)
-    driven = record_drive(loaded, specimen, state.pair, state.mesh.structure, point, planned, angle)
+    driven = record_drive(loaded, specimen, state.mesh.structure, point, planned, angle)
     built = state.mesh.structure
     matrices = {name: change(getattr(built, name)) for name in MATRICES}
     mesh = replace(state.mesh, structure=replace(built, **matrices))

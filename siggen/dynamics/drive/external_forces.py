@@ -1,8 +1,7 @@
-"""External forces on any body as harmonics of the rotation: unbalance, tones of bearings, anything of that form.
+"""External forces on any body that come with the rotation: unbalance.
 
-Equations: centrifugal and tangential inertia of an eccentric mass, -m d²/dt² [e (cos Θ, sin Θ)] (derived); orders of
-rolling bearings (reference: standard literature). Angles are those of the pinion times an order, so the gear's shaft
-has the order z_1/z_2 and a cage a fraction of one; a phase may wander slowly about that.
+Equations: centrifugal and tangential inertia of an eccentric mass, -m d²/dt² [e (cos Θ, sin Θ)] (derived). Angles are
+those of the pinion times an order, so the gear's shaft has the order z_1/z_2.
 """
 
 from __future__ import annotations
@@ -13,40 +12,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
-from siggen.dynamics.drive.slow_variation import SlowVariation
 from siggen.dynamics.structure.structure import Structure
-
-
-@dataclass(frozen=True, slots=True)
-class Harmonic:
-    """amplitude cos(order Θ + phase + wander_rad n(t)); order per revolution of the pinion, n a slow variation."""
-
-    amplitude_n: float
-    order: float
-    phase_rad: float
-    wander_rad: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class HarmonicForce:
-    """Harmonics that act along one direction of the coordinates, (n,) per newton."""
-
-    direction: FloatArray
-    harmonics: tuple[Harmonic, ...]
-    wander: SlowVariation | None = None
-
-    @property
-    def vectors(self) -> FloatArray:
-        """The direction as (1, n)."""
-        return self.direction[None, :]
-
-    def inputs(self, turning: Turning) -> FloatArray:
-        """Return the force (k, 1) [N]."""
-        slow = 0.0 if self.wander is None else self.wander.value(turning.time_s)
-        force = np.zeros_like(turning.time_s)
-        for one in self.harmonics:
-            force += one.amplitude_n * np.cos(one.order * turning.angle_rad + one.phase_rad + one.wander_rad * slow)
-        return force[:, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +59,13 @@ def bearing_direction(structure: Structure, place: str, axis: str) -> FloatArray
 
 def shaft_directions(structure: Structure, place: str) -> FloatArray:
     """Return the generalised forces (2, n) of 1 N on the rotor at a bearing, horizontal and vertical."""
-    directions = [bearing_direction(structure, place, axis) for axis in ("horizontal", "vertical")]
-    return np.array([_on_shaft(structure, place, direction) for direction in directions])
+    return np.array([shaft_direction(structure, f"{place}/{axis}") for axis in ("horizontal", "vertical")])
+
+
+def shaft_direction(structure: Structure, name: str) -> FloatArray:
+    """Return the generalised force (n,) of 1 N on the rotor at a bearing along an axis, by place/axis."""
+    place, axis = name.split("/")
+    return _on_shaft(structure, place, bearing_direction(structure, place, axis))
 
 
 def turning_sense(structure: Structure, place: str) -> float:

@@ -87,7 +87,9 @@ class VaryingDrive:
         ends = self.angle_rad(np.array([0.0, duration_s])) / turn
         marks = np.arange(np.ceil(ends[0]), np.ceil(ends[1]) + 1.0)
         grid = np.linspace(0.0, duration_s, 8 * marks.size + 1)
-        times = np.interp(marks * turn, self.angle_rad(grid), grid)
+        # A mark behind the record may lie a slow revolution away, where nothing is drawn any more.
+        inside = marks <= ends[1]
+        times, marks = np.interp(marks * turn, self.angle_rad(grid), grid)[inside], marks[inside]
         for _ in range(NEWTON_STEPS):
             times = times - (self.angle_rad(times) - marks * turn) / self.speed_rad_s(times)
         # Rounding may put the root of a mark at time 0 a hair before it.

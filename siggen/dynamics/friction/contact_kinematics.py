@@ -69,3 +69,9 @@ def entrainment_speed(position_m: Values, line_m: float, speed_1_rad_s: Values, 
 def hertz_pressure(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
     """Return the peak pressure p_H [Pa] of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
     return np.sqrt(line_load_n_per_m * (0.5 * effective_modulus_pa) / (np.pi * radius_m))
+
+
+@njit(cache=True)
+def hertz_half_width(line_load_n_per_m: Values, radius_m: Values, effective_modulus_pa: float) -> Values:
+    """Return half the width b [m] of the contact of a line load F_l [N/m] on a relative radius R_e [m] (E' goes in)."""
+    return np.sqrt(line_load_n_per_m * radius_m * 8.0 / (np.pi * effective_modulus_pa))

@@ -2,9 +2,10 @@
 
 Derived (the composite law is standard): μ = La μ_b + (1 - La) min(μ_EHL, μ_b) with the asperity share La, so μ stays
 between μ_EHL and μ_b whatever the roughness of a pit; F = μ N tanh(v/v_0) with the sliding speed v of
-`contact_kinematics.sliding_speed`, which keeps the sign of v: the dissipated power F v is never negative. F acts in -x
-on the pinion (arm s) and in +x on the gear (arm T - s). A force N <= 0 gives no friction: on the back flank the line of
-action is another one.
+`contact_kinematics.sliding_speed`, which keeps the sign of v: the dissipated power F v is never negative. v_0 is of the
+asperities (`reversal`). The film turns round more slowly: μ_EHL (`film_traction`) is tabled over the place at the
+mean speeds and is 0 at the pitch point. F acts in -x on the pinion (arm s) and in +x on the gear (arm T - s). A force
+N <= 0 gives no friction: on the back flank the line of action is another one.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ import numpy as np
 
 from siggen.compiled import njit
 from siggen.dynamics.friction.asperity_table import AsperityTable, mixed_contact
+from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
 from siggen.lanes import Lanes, smaller
 
-BOUNDARY_FRICTION = 0.11
-FLUID_FRICTION = 0.02
 SLIP_SPEED_M_S = 0.02
+"""v_0 of a constant coefficient, of which nothing is known (assumed); lubricated flanks have their own (`reversal`)."""
 
 
 class FrictionLaw(NamedTuple):

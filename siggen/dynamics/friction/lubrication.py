@@ -57,8 +57,9 @@ class LubricatedMesh:
         Length of the contact across the face [m].
     effective_modulus_pa : float
         E' of `effective_modulus` [Pa].
-    viscosity_pa_s, pressure_viscosity_per_pa : float
-        Oil at the temperature of the inlet.
+    viscosity_pa_s, pressure_viscosity_per_pa, viscosity_fall_per_k : float
+        Oil at the temperature of the inlet: η_0, α_pv, and -d ln η_0/dT.
+    inlet_temperature_k : float
     hardness_pa : float
         Of the softer flank [Pa].
 
@@ -75,6 +76,8 @@ class LubricatedMesh:
     effective_modulus_pa: float
     viscosity_pa_s: float
     pressure_viscosity_per_pa: float
+    viscosity_fall_per_k: float
+    inlet_temperature_k: float
     hardness_pa: float
 
     def __post_init__(self) -> None:

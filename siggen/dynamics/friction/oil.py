@@ -68,6 +68,15 @@ class Oil:
         found: float = PIEZO_FACTOR * (self.kinematic_viscosity_m2_s(temperature_c) * 1e6) ** PIEZO_EXPONENT * 1e-9
         return found
 
+    def viscosity_fall_per_k(self, temperature_c: float) -> float:
+        """Return -d ln η_0/dT [1/K]; raises as `kinematic_viscosity_m2_s`."""
+        kelvin = temperature_c + 273.15
+        kinematic = self.kinematic_viscosity_m2_s(temperature_c) * 1e6
+        # Of log10(ν + 0.7) = 10^(m - n log10 T), and of the density.
+        walther = (1.0 + 0.7 / kinematic) * np.log(kinematic + 0.7) * self.walther_n / kelvin
+        relative_density = self.density_kg_per_m3(temperature_c) / self.density_15c_kg_per_m3
+        return float(walther - self.density_slope_per_k / relative_density)
+
 
 MINERAL_OILS = {
     oil.name: oil

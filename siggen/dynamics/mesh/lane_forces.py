@@ -110,6 +110,8 @@ def write_lane_forces(
     if bits(behind) & inside != 0:
         return NOT_HERE
     _write_springs(law, pairs, table, node, bits(depth > 0.0) & inside, inside, pair)
+    for s in range(SLOTS):
+        pairs[4 + s, columns.SPRUNG], pairs[4 + s, columns.STIFFNESS] = table[NORMAL, 4 + s], table[STIFFNESS, 4 + s]
     touching = _load(law, table, node)
     for s in range(SLOTS):
         if inside >> s & 1 != 0:
@@ -118,7 +120,6 @@ def write_lane_forces(
                 if pairs[i, columns.PAIR] != number:
                     engage(law, pairs, i, number)
             pairs[4 + s, columns.ALONE] = table[DEPTH, 4 + s]
-        pairs[4 + s, columns.NORMAL], pairs[4 + s, columns.STIFFNESS] = table[NORMAL, 4 + s], table[STIFFNESS, 4 + s]
     if law.places[layout.ROUGHNESSES] > 0:
         _rub(law, table, node)
     return touching
@@ -173,7 +174,7 @@ def _last(pairs: FloatArray, i: int, pair: int, depth: float) -> Before:
     """Return the same of the last node of the step before, zeros of another pair."""
     if pairs[i, columns.PAIR] != pair:
         return Before(0.0, 0.0, 0.0)
-    return Before(pairs[i, columns.NORMAL], pairs[i, columns.STIFFNESS], depth - pairs[i, columns.ALONE])
+    return Before(pairs[i, columns.SPRUNG], pairs[i, columns.STIFFNESS], depth - pairs[i, columns.ALONE])
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)

@@ -27,6 +27,7 @@ CROSS = next(_column)  # its derivative to the approach [N]
 TURNING = next(_column)  # and to the tilt [N m]
 YIELD = next(_column)  # stiffness to an approach of all pairs [N/m]
 ALONE = next(_column)  # penetration of a pair by itself [m]
+SPRUNG = next(_column)  # force of the spring without its damper [N]: what the next spring is guessed from
 PAIR = next(_column)  # global number
 ROW = next(_column)  # what is kept while it is engaged (`pair_places.Engaged`)
 STIFFNESS_AT = next(_column)

@@ -33,6 +33,7 @@ from siggen.dynamics.mesh.pair_columns import (
     ROUGH,
     ROW,
     SHARE,
+    SPRUNG,
     STIFFNESS,
     STIFFNESS_AT,
     TILT,
@@ -127,7 +128,7 @@ def engage(law: PairLaw, pairs: FloatArray, i: int, pair: int) -> None:
 def _write_many(law: PairLaw, pairs: FloatArray, base: int, before: int, slots: int) -> int:
     """Write the springs of more than two pairs, or with a back flank, without what others take from a tangent."""
     for i in range(slots):
-        pairs[base + i, NORMAL] = pairs[before + i, NORMAL]
+        pairs[base + i, NORMAL] = pairs[before + i, SPRUNG]
     _share(law, pairs[base : base + slots])
     return _write_alone(law, pairs, base, slots)
 
@@ -164,6 +165,7 @@ def _spring(law: PairLaw, pairs: FloatArray, i: int, penetration_m: float) -> Sp
 def _write(pairs: FloatArray, i: int, spring: Spring) -> None:
     touches = spring.force != 0.0
     pairs[i, NORMAL], pairs[i, STIFFNESS] = spring.force, spring.stiffness if touches else 0.0
+    pairs[i, SPRUNG] = spring.force
     pairs[i, YIELD], pairs[i, MOMENT] = spring.yielding if touches else 0.0, spring.moment
     pairs[i, CROSS], pairs[i, TURNING] = spring.cross, spring.turning
     pairs[i, CARRYING], pairs[i, ROUGH] = spring.carrying, spring.rough
@@ -192,7 +194,7 @@ def _before(pairs: FloatArray, i: int, before: int) -> Before:
     """Return the spring in a state near by; zeros of another pair."""
     if pairs[before, PAIR] != pairs[i, PAIR]:
         return Before(0.0, 0.0, 0.0)
-    return Before(pairs[before, NORMAL], pairs[before, STIFFNESS], pairs[i, ALONE] - pairs[before, ALONE])
+    return Before(pairs[before, SPRUNG], pairs[before, STIFFNESS], pairs[i, ALONE] - pairs[before, ALONE])
 
 
 @njit(cache=True, _nrt=False)

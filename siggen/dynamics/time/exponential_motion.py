@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.event_places import event_places
-from siggen.dynamics.mesh.pair_columns import FRICTION, POSITION
 from siggen.dynamics.mesh.pair_internals import PairContact
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.load_lock import LOCK_HZ
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.exponential_scheme import NODES, exponential_scheme
 from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, Loop, advance, fresh_memory, work_arrays
 from siggen.dynamics.time.pair_motion import MeanState, PairMotion
-from siggen.dynamics.time.transient import transient_s
 
 BEND_SHARE = 4e-2
 """Of the static force: how large its quadratic part over a step may be."""
-MEAN_ANGLES = 24
-GOLDEN = 0.6180339887498949
-"""Angles spread over all teeth and the path of contact."""
 
 
 class ExponentialMotion(PairMotion):
@@ -59,20 +49,13 @@ class ExponentialMotion(PairMotion):
         static_n, pitches_per_s = abs(self.equations.static_force), law.teeth * mean.speed_hz
         events = event_places(law, static_n / mean.stiffness_n_per_m, pitches_per_s * stride * step_s)
         self._loop = Loop(self.scheme, law, stride, speed_input, BEND_SHARE * static_n, events)
-        if law.places[layout.ROUGHNESSES] > 0:
-            self.transient_s = transient_s(structure, self.equations, damping, 2.0 * LOCK_HZ)
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
         self._work = work_arrays(self.scheme, law)
 
     def start(self, pitches: float) -> FloatArray:
-        """Return the state (2n,) at rest in which the pairs carry the torque, moved by their mean friction.
-
-        A load that is held softly turns by it, for which it would need a second. Forgets earlier steps.
-        """
+        """Return the state at the start, as all pair motions do; forgets earlier steps."""
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(self.law)] * NODES)
-        state = super().start(pitches)
-        state[: self._rest.size] += self._rest
-        return state
+        return super().start(pitches)
 
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_]:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m).
@@ -89,17 +72,3 @@ class ExponentialMotion(PairMotion):
     def steps_tried(self) -> int:
         """How many steps of any length were tried since the start."""
         return int(self._memory[CHANNELS, ATTEMPTS])
-
-    @cached_property
-    def _rest(self) -> FloatArray:
-        """The deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed."""
-        if self.law.places[layout.ROUGHNESSES] == 0:
-            return np.zeros(self.structure.mass.shape[0])
-        angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
-        pairs = self.pairs(np.stack([super(ExponentialMotion, self).start(angle) for angle in angles]), angles)
-        friction, structure = pairs[:, :, FRICTION], self.structure
-        r_0, r_1 = structure.sliding_vectors
-        push = -r_0 * friction.sum() - r_1 * (pairs[:, :, POSITION] * friction).sum()
-        p, stiffness = structure.mesh_vector, self.equations.reference_stiffness
-        loaded = structure.stiffness + stiffness * p[:, None] * p[None, :]
-        return static_solution(structure, loaded, push / MEAN_ANGLES)

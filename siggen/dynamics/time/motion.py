@@ -16,6 +16,7 @@ class Motion(Protocol):
     """A structure under some mesh law: what is stepped through time, and what can be asked about its states (2n,).
 
     `coarse_inputs`: whether inputs may be splines over a coarse grid; motions of older sets keep every bit without.
+    `starts_settled`: whether a motion starts near its end, on a whole sample and with its transient before any history.
     """
 
     structure: Structure
@@ -26,6 +27,7 @@ class Motion(Protocol):
     largest_approach_m: float
     internal_names: tuple[str, ...]
     coarse_inputs: bool
+    starts_settled: bool
 
     @property
     def law(self) -> NamedTuple:

@@ -9,6 +9,7 @@ centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -17,13 +18,16 @@ from numpy.typing import NDArray
 from siggen.arrays import FloatArray
 from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_columns as columns
+from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
 from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure, friction_tilt_vector, vector
-from siggen.dynamics.time.equations import Equations, equations_about, external_push, inverse_times
+from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
+from siggen.dynamics.structure.load_lock import LOCK_HZ
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.equations import equations_about, external_push
+from siggen.dynamics.time.pair_equations import PairEquations, pair_equations
 from siggen.dynamics.time.runge_kutta import runge_kutta_step
 from siggen.dynamics.time.transient import transient_s
 
@@ -31,25 +35,9 @@ LARGEST_SHIFT = 0.02
 """Of a base pitch: gears that shafts let move farther apart no longer mesh at their centre distance."""
 MOTION = ("approach_m", "approach_rate_m_s")
 ACROSS = ("mesh_tilt_rad", "mesh_moment_nm")
-
-
-class PairEquations(NamedTuple):
-    """Constant numbers of the equations of motion and how sliding enters them.
-
-    `rows` (2n + 6, n), one array for speed (see `packed_tables`): the columns of -M⁻¹K and of -M⁻¹C, p, r_0, r_1, and
-    M⁻¹ p, M⁻¹ r_0, M⁻¹ r_1; where gears tilt (2n + 9, n) with t, M⁻¹ t and M⁻¹ t_x behind; `static_tilt`: of the state;
-    `static_force`, `static_approach`: state that deviations count from; `rigid_sliding_0`,
-    `rigid_sliding_1`: sliding speed at s of the rigid rotation is the first plus s times the second [m/s, 1/s];
-    `external_input` (m, n): see `Equations`.
-    """
-
-    rows: FloatArray
-    static_force: float
-    static_approach: float
-    rigid_sliding_0: float
-    rigid_sliding_1: float
-    external_input: FloatArray
-    static_tilt: float
+MEAN_ANGLES = 24
+GOLDEN = 0.6180339887498949
+"""Angles spread over all teeth and the path of contact."""
 
 
 class MeanState(NamedTuple):
@@ -68,6 +56,7 @@ class PairMotion:
     """
 
     coarse_inputs = False
+    starts_settled = True
 
     def __init__(
         self,
@@ -86,9 +75,10 @@ class PairMotion:
         self.equations = equations_about(
             structure, mean.torque_nm, mean.stiffness_n_per_m, 0.0, -law.backlash_m, input_vectors
         )
-        self.pair_equations = _pair_equations(structure, self.equations, mean.speed_hz)
+        self.pair_equations = pair_equations(structure, self.equations, mean.speed_hz)
         damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
-        self.transient_s = transient_s(structure, self.equations, damping)
+        held_hz = 2.0 * LOCK_HZ if law.places[layout.ROUGHNESSES] > 0 else 0.0
+        self.transient_s = transient_s(structure, self.equations, damping, held_hz)
         self.teeth = law.teeth
         self.largest_approach_m = law.backlash_m
         self.base_pitch_m = law.base_pitch_m
@@ -102,7 +92,9 @@ class PairMotion:
         self._speed_input = speed_input
 
     def start(self, pitches: float) -> FloatArray:
-        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction.
+        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, moved by mean friction.
+
+        A load that is held softly turns by it, for which it would need a second.
 
         Raises
         ------
@@ -111,6 +103,12 @@ class PairMotion:
         """
         if self.tilts:
             self._refuse_soft_shafts()
+        state = self._standing(pitches)
+        state[: self._rest.size] += self._rest
+        return state
+
+    def _standing(self, pitches: float) -> FloatArray:
+        """Return the state (2n,) at rest in which the pairs at this angle carry the torque, without friction."""
         equations, p = self.equations, self.equations.mesh_vector
         approach = static_approach_m(self.law, equations.static_force, pitches)
         stiffness = equations.reference_stiffness
@@ -118,6 +116,22 @@ class PairMotion:
         moved = p * (stiffness * (approach - equations.static_approach))
         deviation = static_solution(self.structure, loaded, moved)
         return np.concatenate([deviation, np.zeros_like(deviation)])
+
+    @cached_property
+    def _rest(self) -> FloatArray:
+        """The deflection (n,) by the mean of friction and its moments over the mesh, at rest and mean speed.
+
+        None where nothing holds the load: friction then brakes it.
+        """
+        p = self.structure.mesh_vector
+        loaded = self.structure.stiffness + self.equations.reference_stiffness * p[:, None] * p[None, :]
+        if self.law.places[layout.ROUGHNESSES] == 0 or free_rotations(self.structure, loaded).shape[1] > 0:
+            return np.zeros_like(p)
+        angles = np.asarray(np.arange(MEAN_ANGLES) * self.teeth * GOLDEN % self.teeth, dtype=np.float64)
+        pairs = self.pairs(np.stack([self._standing(angle) for angle in angles]), angles)
+        friction, (r_0, r_1) = pairs[:, :, columns.FRICTION], self.structure.sliding_vectors
+        push = -r_0 * friction.sum() - r_1 * (pairs[:, :, columns.POSITION] * friction).sum()
+        return static_solution(self.structure, loaded, push / MEAN_ANGLES)
 
     def advance(self, pitches: FloatArray, inputs: FloatArray, trajectory: FloatArray) -> NDArray[np.bool_] | None:
         """Fill `trajectory` (steps + 1, 2n) after row 0; `pitches` (steps + 1,), `inputs` (steps + 1, m)."""
@@ -197,31 +211,6 @@ def _with_units(coordinates: Iterable[str]) -> tuple[str, ...]:
     units = {True: "rad", False: "m"}
     turning = ("theta", "phi")
     return tuple(f"{name}_{units[name.startswith(turning)]}" for name in coordinates)
-
-
-def _pair_equations(structure: Structure, equations: Equations, speed_hz: float) -> PairEquations:
-    omega = 2.0 * np.pi * speed_hz
-    p = dict(zip(structure.coordinates, structure.mesh_vector, strict=True))
-    rolling = {"theta_1": 1.0, "theta_2": -p["theta_1"] / p["theta_2"]}
-    rigid = structure.sliding_vectors @ vector(structure.coordinates, rolling) * omega
-    inputs = inverse_times(structure.mass, structure.sliding_vectors.T).T
-    parts = [-equations.stiffness_by_mass.T, -equations.damping_by_mass.T, equations.mesh_vector[None]]
-    parts += [structure.sliding_vectors, equations.mesh_input[None], inputs]
-    static_tilt = 0.0
-    if structure.tilt_vector is not None:
-        arms = np.stack([structure.tilt_vector, friction_tilt_vector(structure)], axis=1)
-        turned = inverse_times(structure.mass, arms).T
-        parts += [structure.tilt_vector[None], turned]
-        static_tilt = float(structure.tilt_vector @ equations.static_deflection)
-    return PairEquations(
-        np.ascontiguousarray(np.concatenate(parts)),
-        equations.static_force,
-        equations.static_approach,
-        float(rigid[0]),
-        float(rigid[1]),
-        equations.external_input,
-        static_tilt,
-    )
 
 
 @njit(cache=True)

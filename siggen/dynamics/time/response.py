@@ -154,6 +154,9 @@ def response_stream(
     """
     rate_hz = grid.fs_hz * grid.steps_per_sample
     settle = settling_steps(motion.transient_s, settle_s, rate_hz)
+    if motion.starts_settled:  # at the same time with any steps, so that the same motion is compared
+        samples = settling_steps(motion.transient_s, settle_s, grid.fs_hz) + half_length(1)
+        settle = samples * grid.steps_per_sample - half_length(grid.steps_per_sample)
     history = min(round(history_s * grid.fs_hz), settle // grid.steps_per_sample)
     acting: Excitation | SampledExcitation | None = excitation
     if excitation is not None and motion.coarse_inputs:

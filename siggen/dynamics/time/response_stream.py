@@ -127,11 +127,12 @@ class ResponseStream:
         half, structure = half_length(steps), run.motion.structure
         state = run.motion.start(run.pitches(-half - self._settle, 1)[0])
         begin = -half - self.before * steps
-        for _ in _blocks(run, state, -half - self._settle, begin):
+        for _ in stepped_blocks(run, state, -half - self._settle, begin):
             pass
         accelerations = acceleration_decimator(structure, run.motions, run.fs_hz, steps)
         forces = force_decimator(structure, steps) if self.places else None
-        for first, states, apart in _blocks(run, state, begin, (self.samples + self.ahead - 1) * steps + half + 1):
+        end = (self.samples + self.ahead - 1) * steps + half + 1
+        for first, states, apart in stepped_blocks(run, state, begin, end):
             piece = Piece(accelerations.take(states), self._forces(forces, states))
             self._count(first, states, apart)
             if piece.acceleration_m_s2.shape[1]:
@@ -161,7 +162,7 @@ def _steps_apart(run: Run, first: int, states: FloatArray, apart: NDArray[np.boo
     return int(apart[recorded].sum())
 
 
-def _blocks(
+def stepped_blocks(
     run: Run, state: FloatArray, start: int, stop: int
 ) -> Iterator[tuple[int, FloatArray, NDArray[np.bool_] | None]]:
     """Yield first step, states (steps, 2n) and where teeth are apart, if known, from step `start` up to without `stop`.

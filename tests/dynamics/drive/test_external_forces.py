@@ -8,14 +8,11 @@ import pytest
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.drive.excitation import Excitation, Source
 from siggen.dynamics.drive.external_forces import (
-    Harmonic,
-    HarmonicForce,
     Unbalance,
     bearing_direction,
     shaft_directions,
     turning_sense,
 )
-from siggen.dynamics.drive.slow_variation import slow_variation
 from siggen.dynamics.drive.speed_ramp import SpeedRamp
 from siggen.dynamics.drive.varying_drive import VaryingDrive
 from siggen.dynamics.structure.casing_structure import torsional
@@ -105,24 +102,6 @@ def test_a_bearing_pushes_shaft_and_casing_apart_with_equal_forces(place: str, a
         assert direction[f"{way}_{index}"] + direction[f"{way}_c"] == pytest.approx(0.0, abs=1e-12)
     along = shaft_directions(structure, place)
     np.testing.assert_allclose(along @ along.T, np.eye(2), atol=1e-12)
-
-
-def test_a_harmonic_is_a_line_at_its_order_with_its_amplitude(structure: Structure) -> None:
-    force = HarmonicForce(bearing_direction(structure, "pinion_bearing", "vertical"), (Harmonic(3.0, 3.5, 0.2),))
-    time = np.arange(51200) / FS
-    values = force.inputs(Drive(SPEED, 0.0).turning(time))[:, 0]
-    assert line(values, 3.5 * SPEED) == pytest.approx(3.0 * np.exp(0.2j), abs=1e-9)
-
-
-def test_a_wandering_phase_widens_the_line_but_keeps_the_power(structure: Structure) -> None:
-    wander = slow_variation(np.random.default_rng(2), 2.0, -7.0, 11.0)
-    direction = bearing_direction(structure, "pinion_bearing", "vertical")
-    still, moved = (HarmonicForce(direction, (Harmonic(1.0, 3.5, 0.0, jitter),), wander) for jitter in (0.0, 1.0))
-    turning = Drive(SPEED, 0.0).turning(np.arange(512000) / FS)
-    first, second = (one.inputs(turning)[:, 0] for one in (still, moved))
-    assert second.std() == pytest.approx(first.std(), rel=0.01)
-    # A Gaussian phase of 1 rad leaves e^(-1/2) of the line; 10 s at 2 Hz hold about 60 independent values.
-    assert abs(line(second, 3.5 * SPEED)) == pytest.approx(np.exp(-0.5), abs=0.2)
 
 
 def test_rotations_alone_have_no_bearings() -> None:

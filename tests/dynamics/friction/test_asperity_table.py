@@ -14,11 +14,12 @@ from siggen.dynamics.friction.asperity_table import (
     ratios_at,
 )
 from siggen.dynamics.friction.contact_kinematics import relative_radius
+from siggen.dynamics.friction.film_traction import film_traction
 from siggen.dynamics.friction.lubrication import LubricatedMesh
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh, mixed_share
 
 ROUGHNESS = (0.1e-6, 0.57e-6, 2.04e-6, 5e-6)
-TABLE = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4)
+TABLE = asperity_table(mesh(), ROUGHNESS, RANGE, 2e4)
 
 
 def asperity_table_error(
@@ -39,8 +40,8 @@ def asperity_table_error(
 
 @pytest.mark.parametrize("model", RATIO_MODELS)
 def test_the_table_is_as_accurate_as_it_says_and_of_second_order(model: str) -> None:
-    fine = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4, model)
-    coarse = asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4, model, (33, 33))
+    fine = asperity_table(mesh(), ROUGHNESS, RANGE, 2e4, model)
+    coarse = asperity_table(mesh(), ROUGHNESS, RANGE, 2e4, model, (33, 33))
     error = asperity_table_error(fine, mesh(), ROUGHNESS, model)
     # The stated bound.
     assert error < 1.2e-3
@@ -60,24 +61,45 @@ def test_interpolation_between_all_grid_points_keeps_the_stated_error(
 
 
 def test_grid_points_are_exact_and_the_ends_hold() -> None:
-    direct = mixed_share(mesh().groups(RANGE[0], FORCE, 0.57e-6))
-    held = asperity_share(TABLE, 1, RANGE[0] - 1e-3, FORCE)
-    assert held == asperity_share(TABLE, 1, RANGE[0], FORCE)
+    direct = mixed_share(mesh().groups(TABLE.start_m, FORCE, 0.57e-6))
+    held = asperity_share(TABLE, 1, TABLE.start_m - 1e-3, FORCE)
+    assert held == asperity_share(TABLE, 1, TABLE.start_m, FORCE)
     assert held == pytest.approx(float(direct), abs=1.2e-3)
     assert asperity_share(TABLE, 2, PITCH_POINT, 0.0) == asperity_share(TABLE, 2, PITCH_POINT, 1.0)
     assert asperity_share(TABLE, 1, PITCH_POINT, 1e9) <= asperity_share(TABLE, 1, PITCH_POINT, 2e4)
 
 
-def test_fluid_friction_may_depend_on_place_and_load() -> None:
-    ratio = np.zeros((1, 65, 65))
-    position = np.linspace(*RANGE, 65)
+def test_the_grid_reaches_over_the_range_with_a_line_at_the_pitch_point() -> None:
+    last = TABLE.start_m + 96 / TABLE.per_m
+    assert TABLE.start_m <= RANGE[0] < RANGE[1] <= last
+    assert last - TABLE.start_m < (RANGE[1] - RANGE[0]) * 97 / 95
+    line = (PITCH_POINT - TABLE.start_m) * TABLE.per_m
+    assert line == pytest.approx(round(line), abs=1e-9)
+
+
+def test_fluid_friction_is_that_of_the_film_and_may_depend_on_place_and_load() -> None:
+    ratio = np.zeros((1, 97, 65))
+    position = TABLE.start_m + np.arange(97) / TABLE.per_m
     lowest = TABLE.floor_n_per_m * relative_radius(position, TABLE.line_m)
     force = lowest[:, None] * np.exp(np.arange(65) / TABLE.per_log)
     table = TABLE._replace(ratio=ratio, fluid=position[:, None] + 0.01 * np.log(force))
     expected = PITCH_POINT + 0.01 * np.log(FORCE)
     # Linear in the position; in the load axis only up to the curvature of ln R_e along a cell, 1e-3 of 0.01.
     assert mixed_contact(table, 0, PITCH_POINT, FORCE)[1] == pytest.approx(expected, abs=2e-5)
-    assert mixed_contact(TABLE, 0, PITCH_POINT, FORCE)[1] == 0.02
+    assert mixed_contact(TABLE, 0, PITCH_POINT, FORCE)[1] == pytest.approx(0.0, abs=1e-12)
+    for place in (PITCH_POINT - 4e-3, PITCH_POINT + 3e-3):
+        share = float(mixed_share(mesh().groups(place, FORCE, ROUGHNESS[0])))
+        direct = film_traction(mesh(), place, FORCE, ROUGHNESS[0], share)
+        assert mixed_contact(TABLE, 0, place, FORCE)[1] == pytest.approx(float(direct), abs=1e-4)
+
+
+def test_beside_the_pitch_point_the_film_is_tabled_as_well_as_it_says() -> None:
+    for cells, bound in ((0.5, 1.2e-3), (1.5, 3e-4)):
+        place = PITCH_POINT + cells / TABLE.per_m
+        share = float(mixed_share(mesh().groups(place, FORCE, ROUGHNESS[1])))
+        table = asperity_table(mesh(), ROUGHNESS[1:2], RANGE, 2e4)
+        direct = film_traction(mesh(), place, FORCE, ROUGHNESS[1], share)
+        assert mixed_contact(table, 0, place, FORCE)[1] == pytest.approx(float(direct), abs=bound)
 
 
 def test_ratios_exceed_one_only_before_the_share_is_cut_off() -> None:
@@ -91,6 +113,7 @@ def test_ratios_exceed_one_only_before_the_share_is_cut_off() -> None:
     [
         ({"range_m": (-1e-3, 1e-2)}, "range_m"),
         ({"range_m": (1e-2, 5e-3)}, "range_m"),
+        ({"range_m": (1e-5, 5e-3)}, "range_m"),
         ({"roughness_m": []}, "roughness_m"),
         ({"roughness_m": [-1e-6]}, "roughness_m"),
         ({"model": "none"}, "model"),
@@ -100,6 +123,6 @@ def test_ratios_exceed_one_only_before_the_share_is_cut_off() -> None:
     ],
 )
 def test_impossible_tables_are_refused_by_name(change: dict, name: str) -> None:
-    arguments = {"roughness_m": [1e-6], "fluid_friction": 0.02, "range_m": RANGE, "largest_force_n": 1e4} | change
+    arguments = {"roughness_m": [1e-6], "range_m": RANGE, "largest_force_n": 1e4} | change
     with pytest.raises(ValueError, match=name):
         asperity_table(mesh(), **arguments)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.asperity_table import asperity_table
+from siggen.dynamics.friction.asperity_table import asperity_table, mixed_contact
 from siggen.dynamics.friction.friction import (
     composite_friction,
     constant_friction,
@@ -14,14 +14,15 @@ from siggen.dynamics.friction.friction import (
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 ROUGHNESS = (0.57e-6, 2.04e-6, 5e-6)
-COMPOSITE = composite_friction(asperity_table(mesh(), ROUGHNESS, 0.02, RANGE, 2e4))
+COMPOSITE = composite_friction(asperity_table(mesh(), ROUGHNESS, RANGE, 2e4))
 
 
 @settings(deadline=None)
 @given(layer=st.integers(0, 2), position=st.floats(*RANGE), force=st.floats(0.0, 1e5))
 def test_the_composite_coefficient_stays_between_fluid_and_boundary(layer: int, position: float, force: float) -> None:
+    fluid = mixed_contact(COMPOSITE.table, layer, position, force)[1]
     # Three operations round at 1e-16.
-    assert 0.02 - 1e-15 <= friction_coefficient(COMPOSITE, layer, position, force) <= 0.11 + 1e-15
+    assert fluid - 1e-15 <= friction_coefficient(COMPOSITE, layer, position, force) <= 0.11 + 1e-15
 
 
 @settings(deadline=None)
@@ -32,8 +33,8 @@ def test_a_rougher_flank_rubs_more(position: float, force: float) -> None:
 
 
 def test_a_fluid_friction_above_the_boundary_value_is_capped() -> None:
-    law = composite_friction(asperity_table(mesh(), [0.57e-6], 5.0, RANGE, 2e4))
-    assert friction_coefficient(law, 0, PITCH_POINT, FORCE) == 0.11
+    table = COMPOSITE.table._replace(fluid=np.full_like(COMPOSITE.table.fluid, 5.0))
+    assert friction_coefficient(composite_friction(table), 0, PITCH_POINT, FORCE) == 0.11
 
 
 def test_constant_friction_and_friction_off() -> None:

@@ -97,7 +97,7 @@ def test_impossible_numbers_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match="viscosity_pa_s"):
         mesh(viscosity_pa_s=0.0)
     with pytest.raises(ValueError, match="hardness_pa"):
-        LubricatedMesh(0.03, 100.0, 40.0, 0.02, 2e11, 0.1, 2e-8, float("nan"))
+        LubricatedMesh(0.03, 100.0, 40.0, 0.02, 2e11, 0.1, 2e-8, 0.05, 323.0, float("nan"))
 
 
 def test_notes_name_what_leaves_the_range() -> None:

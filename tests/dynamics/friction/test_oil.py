@@ -35,6 +35,13 @@ def test_the_pressure_viscosity_coefficient_is_that_of_mineral_oils() -> None:
     assert 1.5e-8 < VG220.pressure_viscosity_per_pa(50.0) < 2.5e-8
 
 
+@given(temperature_c=st.floats(-15.0, 145.0))
+def test_the_slope_of_the_viscosity_is_that_of_its_law(temperature_c: float) -> None:
+    above, below = (VG220.viscosity_pa_s(temperature_c + step) for step in (0.01, -0.01))
+    # Central difference over 0.02 K: an error of 1e-8 of the slope, and rounding.
+    assert VG220.viscosity_fall_per_k(temperature_c) == pytest.approx(np.log(below / above) / 0.02, rel=1e-6)
+
+
 def test_an_impossible_temperature_is_refused() -> None:
     with pytest.raises(ValueError, match="-20 to 150"):
         VG220.viscosity_pa_s(400.0)

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.asperity_table import asperity_table
-from siggen.dynamics.friction.friction import BOUNDARY_FRICTION, FLUID_FRICTION, composite_friction
+from siggen.dynamics.friction.asperity_table import asperity_table, mixed_contact
+from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
+from siggen.dynamics.friction.friction import composite_friction
 from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.pair_columns import (
@@ -33,7 +34,7 @@ from tests.gears.pit_shapes import chord_pit
 
 PAIR = gear_pair()
 HEALTHY_M, PITTED_M = 0.57e-6, 2.04e-6
-FRICTION_LAW = composite_friction(asperity_table(mesh(), [HEALTHY_M, PITTED_M], FLUID_FRICTION, RANGE, 10.0 * FORCE))
+FRICTION_LAW = composite_friction(asperity_table(mesh(), [HEALTHY_M, PITTED_M], RANGE, 10.0 * FORCE))
 DEDENDUM = PITCH_POINT - 3e-3
 """Well before the pitch point, where teeth slide."""
 HALF_PIT = (chord_pit(PAIR, 1e-3, DEDENDUM, semi_face_m=5e-3),)
@@ -59,11 +60,32 @@ def internals(pairs: np.ndarray, contact: PairContact | None) -> dict[str, float
 
 def test_edges_inside_damage_rub_more_and_never_above_the_boundary() -> None:
     healthy, pitted, through = (loaded(law(damage), 12e-6, ON_PIT)[0] for damage in ((), HALF_PIT, THROUGH))
-    assert FLUID_FRICTION < healthy[COEFFICIENT] < through[COEFFICIENT] < BOUNDARY_FRICTION
+    fluid = mixed_contact(FRICTION_LAW.table, 0, DEDENDUM, healthy[NORMAL])[1]
+    assert fluid < healthy[COEFFICIENT] < through[COEFFICIENT] < BOUNDARY_FRICTION
     assert (healthy[ROUGH], through[ROUGH]) == (0.0, 1.0)
     # Beside half a face of pit the other half carries, as smooth as ever: a little less friction at more line load.
     assert 0.0 < pitted[ROUGH] < 0.05
     assert 0.9 * healthy[COEFFICIENT] < pitted[COEFFICIENT] < healthy[COEFFICIENT]
+
+
+@pytest.mark.parametrize("place", [PITCH_POINT, PITCH_POINT + 5e-5, DEDENDUM])
+def test_friction_never_gives_power_and_turns_without_a_kink(place: float) -> None:
+    chosen, slip = law(), FRICTION_LAW.slip_speed_m_s
+    pitches = (place - PAIR.contact_start_m) / PAIR.base_pitch_m
+
+    def friction(slide: float) -> float:
+        pairs = pair_table(chosen)
+        pair_forces(chosen, 12e-6, 0.0, pitches, slide, 0.0, pairs)
+        return float(pairs[0, FRICTION])
+
+    slides = slip * np.linspace(-3.0, 3.0, 61)
+    found = np.array([friction(slide) for slide in slides])
+    assert (found * slides >= 0.0).all()
+    assert found[30] == 0.0
+    # One slope on either side of v = 0; of tanh it differs from the tangent by a third of 1e-3 squared.
+    left, right = (friction(side * 1e-3 * slip) / (side * 1e-3 * slip) for side in (-1.0, 1.0))
+    assert left == pytest.approx(right, rel=1e-9)
+    assert left == pytest.approx(friction(3e-3 * slip) / (3e-3 * slip), rel=1e-5)
 
 
 def test_friction_before_and_behind_a_pit_is_the_healthy_one_to_the_bit() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.drive import Drive
+from siggen.dynamics.drive.drive import Drive, Turning
 from siggen.dynamics.drive.excitation import Excitation
-from siggen.dynamics.drive.external_forces import Harmonic, HarmonicForce, bearing_direction
+from siggen.dynamics.drive.external_forces import bearing_direction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.forced_responses import TOGETHER
@@ -19,6 +19,16 @@ from tests.dynamics.casing_stage import make_structure
 
 FS = 51200.0
 MOTIONS = ("pinion_bearing/vertical", "casing_lid/vertical", "gear_bearing/horizontal")
+
+
+class HarmonicForce:
+    """A force that is a harmonic of the pinion's rotation."""
+
+    def __init__(self, direction: np.ndarray, amplitude_n: float, order: float) -> None:
+        self.vectors, self._amplitude, self._order = direction[None, :], amplitude_n, order
+
+    def inputs(self, turning: Turning) -> np.ndarray:
+        return (self._amplitude * np.cos(self._order * turning.angle_rad + 0.3))[:, None]
 
 
 def test_responses_solve_the_equations_of_motion() -> None:
@@ -46,7 +56,7 @@ def test_a_harmonic_force_moves_the_integrated_gearbox_as_the_response_says(
     structure = locked_load(make_structure())
     direction = structure.mesh_vector if name == "mesh" else bearing_direction(structure, *name.split("/"))
     order, speed_hz, samples = 9.0, 32.0, 25600
-    source = HarmonicForce(direction, (Harmonic(40.0, order, 0.3),))
+    source = HarmonicForce(direction, 40.0, order)
     excitation = Excitation((source,))
     motion = LinearMotion(
         structure, constant_tables, torque_nm=60.0, mesh_damping_ratio=0.07, backlash_m=80e-6, step_s=1.0 / (4 * FS),

@@ -1,0 +1,108 @@
+"""Noise and lines of rolling bearings in one record: what moves in series with each bearing's spring, as velocities.
+
+Waviness has a spectrum over the ring's angle. ISO 15242 measures it as rms velocities in three bands at 1,800 turns a
+minute (reference: standard, limits from memory). Derived: at another speed Ω the same waves pass sooner, their
+displacement S_e(f; Ω) = (Ω_0/Ω) S_e(f Ω_0/Ω; Ω_0), so their velocity S_v(f; Ω) = (Ω/Ω_0) S_v(f Ω_0/Ω; Ω_0). Between
+the middles of the bands, and beyond them, densities are straight in log-log; above the last one they fall as 1/f.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import pi, sqrt
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.dynamics.drive.comb import Comb, turns_of
+from siggen.keys.number import constant
+from siggen.record.background_course import Course
+from siggen.sensing.force_density import tabulated
+from siggen.sensing.modulation import LevelCourse, shaft_course
+from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+from siggen.specimen.background_numbers import BANDS, BearingNumbers
+from siggen.specimen.measured_path import INPUTS
+
+CLASS_SPEED_HZ = 30.0
+BAND_EDGES_HZ = (50.0, 300.0, 1800.0, 10_000.0)
+TAPS = 2048
+PHASE_SPREAD = 0.1
+"""Noise of one shaft's bearings rises at the same angle, within this share of a turn to either side."""
+SLIP = (0.005, 0.02)
+"""Share by which the cage lags (assumed)."""
+PASSING_LINES = 3
+"""Lines of passing balls, each half as large as the one before (assumed)."""
+WEAKEST = 0.2
+"""Displacements of passing balls lie between this share of the drawn one and all of it, by axis (assumed)."""
+
+
+def velocity_density(numbers: BearingNumbers, shaft_hz: float, frequency_hz: FloatArray) -> FloatArray:
+    """Return the one-sided density (k,) of a bearing's velocity at a speed of its shaft [m/s/√Hz]."""
+    edges = np.array(BAND_EDGES_HZ)
+    middles = np.sqrt(edges[:-1] * edges[1:])
+    velocity = np.array([1e-6 * constant(getattr(numbers, band)) for band in BANDS]) / np.sqrt(np.diff(edges))
+    far = 1e3 * middles[-1]
+    knots, values = np.append(middles, far), np.append(velocity, velocity[-1] * sqrt(middles[-1] / far))
+    ratio = shaft_hz / CLASS_SPEED_HZ
+    found = tabulated(frequency_hz / ratio, knots.tolist(), np.maximum(values, 1e-30).tolist())
+    return np.asarray(sqrt(ratio) * found)
+
+
+class BearingVelocities:
+    """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
+
+    def __init__(self, bearings: Mapping[str, BearingNumbers], course: Course) -> None:
+        self._bearings = bearings
+        self._noise = {name: self._shaped(name, course) for name in INPUTS}
+        self._levels = {shaft: _level(shaft, numbers, course) for shaft, numbers in bearings.items()}
+        self.labels = {
+            f"bearing_velocity_{shaft}_um_s": constant(numbers.high_um_s) for shaft, numbers in bearings.items()
+        }
+
+    def take(self, course: Course) -> dict[str, FloatArray]:
+        """Return the next velocities (k,) by input."""
+        random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
+        found = {}
+        for name, noise in self._noise.items():
+            shaft = shaft_of(name)
+            strength = _strength(self._bearings[shaft], course, name) * random[shaft]
+            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(name, course)
+        return found
+
+    def _shaped(self, name: str, course: Course) -> ShapedNoise:
+        shaft = shaft_of(name)
+        numbers, shaft_hz = self._bearings[shaft], course.point.speed_hz * course.orders[shaft]
+        taps = shape_taps(lambda f: velocity_density(numbers, shaft_hz, f), TAPS, course.fs_hz)
+        return ShapedNoise(taps, course.fs_hz, course.of_record(f"background.bearings.{name}"))
+
+    def _passing(self, name: str, course: Course) -> FloatArray:
+        """Return the velocity (k,) of a displacement with every ball that passes the loaded side."""
+        shaft = shaft_of(name)
+        numbers, path = self._bearings[shaft], f"background.bearings.{name}.passing"
+        slip = SLIP[0] + (SLIP[1] - SLIP[0]) * course.of_record(f"background.bearings.{shaft}.slip").random()
+        order = course.orders[shaft] * constant(numbers.ball_pass_order) * (1.0 - slip)
+        size_m = 1e-6 * constant(numbers.compliance_um) * (WEAKEST + (1.0 - WEAKEST) * course.uniform(path))
+        count = min(PASSING_LINES, int(course.top_order / order))
+        if count == 0:
+            return np.zeros(course.length)
+        number = np.arange(1.0, count + 1.0)
+        amplitude = size_m * np.power(0.5, number - 1.0) * 2.0 * pi * number * order * course.point.speed_hz
+        phase = 2.0 * pi * course.of_record(path).random(PASSING_LINES)[:count]
+        return Comb(order, amplitude, phase).force_n(turns_of(course.angle_rad, order))
+
+
+def shaft_of(name: str) -> str:
+    """Return the shaft of a bearing's input."""
+    return name.partition("_")[0]
+
+
+def _level(shaft: str, numbers: BearingNumbers, course: Course) -> LevelCourse:
+    memory = 1e-3 * constant(numbers.level_time_ms) * course.fs_hz
+    rng = course.of_record(f"background.bearings.{shaft}.level")
+    return LevelCourse(constant(numbers.level_std), memory, rng)
+
+
+def _strength(numbers: BearingNumbers, course: Course, name: str) -> FloatArray:
+    """Return the power (k,) of a bearing's noise, of mean 1, as its shaft turns."""
+    turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{name}.turn") - 1.0)
+    return shaft_course([course.shaft_lines(shaft_of(name), constant(numbers.shaft_depth), turn)])

@@ -1,0 +1,198 @@
+"""How many steps a record takes: the rule's, or more where a stretch of the record itself says so, with the error left.
+
+The rule knows speed, friction and natural frequencies, but not how often flanks part and how hard they meet again. So a
+stretch of the record is integrated twice from one state, with the steps at hand and with twice as many, and delivered
+accelerations are compared. Where they differ too much steps are refined. The stretch begins before a damaged pair
+enters, if one does, since such a pair may be rare. Its length follows from the speed and from how long motions ring.
+
+Errors fall with the square of the step, so a difference is three quarters of the error. Motions of sensors are left
+out: a sensor that is added must not change the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, inf, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config, Dynamics
+from siggen.dynamics.drive.sampled_excitation import SampledExcitation
+from siggen.dynamics.time.motion import Motion
+from siggen.dynamics.time.response_stream import Run
+from siggen.dynamics.time.stretch import LEAD, Stretch, state_at, stretch_accelerations
+from siggen.dynamics.time.transient import DECAY_TIMES
+from siggen.errors import SolverFailure
+from siggen.planning.specimen import OperatingPoint
+from siggen.specimen.drive import RecordDrive
+from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
+from siggen.specimen.motion import SpecimenMesh, specimen_motion
+
+MARGIN = 0.7
+"""Of the tolerance: what a stretch may err by, since the whole record may err by more."""
+LEAST_S, LEAST_PITCHES = 0.03, 5.0
+"""Length over which accelerations are compared."""
+LONGEST_RINGING_S = 0.1
+"""Before that, two motions from one state may part, one decay time long but no longer than this."""
+PITCHES_BEFORE = 1.0
+"""Before a damaged pair enters."""
+SHRINKS = 4.0 / 3.0
+"""Error over the difference from half the step."""
+MOST_STEPS = 64
+"""Per sample."""
+HOPELESS = 0.5
+"""Of the error with four times the step: a motion that does not come nearer depends on every rounding."""
+SPREAD_POINTS = 1024
+
+
+class Stepped(NamedTuple):
+    """Where the states of a record are, its motion, and its error by a stretch; None where the integrator states none.
+
+    The motion may have been stepped: `start` makes it forget that.
+    """
+
+    grid: TimeGrid
+    motion: Motion
+    error: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Probe:
+    """A record that can be integrated with any steps."""
+
+    config: Config
+    dynamics: Dynamics
+    mesh: SpecimenMesh
+    point: OperatingPoint
+    driven: RecordDrive
+
+    def motion(self, grid: TimeGrid) -> Motion:
+        """Return the motion for a grid."""
+        step_s = 1.0 / (self.config.fs_hz * grid.per_sample)
+        return specimen_motion(self.dynamics, self.mesh, self.point, step_s, self.driven, stride=grid.stride)
+
+    def inputs(self, first: int, end: int, rate_hz: float) -> SampledExcitation | None:
+        """Return what acts between two samples and as far around them as filters reach."""
+        acting, fs_hz = self.driven.excitation, self.config.fs_hz
+        if acting is None:
+            return None
+        return SampledExcitation(acting, self.driven.rotation, (first - LEAD) / fs_hz, (end + LEAD) / fs_hz, rate_hz)
+
+    def run(self, motion: Motion, steps: int, acting: SampledExcitation | None) -> Run:
+        """Return a motion with so many states per sample."""
+        return Run(motion, self.driven.rotation, self.config.fs_hz, steps, acting, _compared(motion))
+
+    def ringing(self, motion: Motion) -> int:
+        """Return the samples in which two motions from one state part as far as they will."""
+        return ceil(min(motion.transient_s / DECAY_TIMES, LONGEST_RINGING_S) * self.config.fs_hz)
+
+    def stretch(self, motion: Motion) -> Stretch:
+        """Return where the record is looked at."""
+        pitches_hz = motion.teeth * abs(self.point.speed_hz)
+        compared_s = max(LEAST_S, LEAST_PITCHES / pitches_hz)
+        ringing = self.ringing(motion)
+        count = max(2, min(ceil(compared_s * self.config.fs_hz), self.config.samples))
+        return Stretch(self._first(motion) - ringing, ringing + count)
+
+    def _first(self, motion: Motion) -> int:
+        """Return the sample before the first damaged pair enters; without one the first of the record."""
+        samples = np.linspace(0.0, self.config.samples, SPREAD_POINTS)
+        turned = self.driven.rotation.angle_rad(samples / self.config.fs_hz) * motion.teeth / (2.0 * np.pi)
+        kinds = self.mesh.tables.table_of_pair
+        pairs = np.arange(ceil(turned[0] + PITCHES_BEFORE), int(turned[-1]))
+        damaged = pairs[kinds[pairs % kinds.shape[0], pairs % kinds.shape[1]] > 0]
+        return int(np.interp(damaged[0] - PITCHES_BEFORE, turned, samples)) if damaged.size else 0
+
+
+def stepped_motion(
+    config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint, driven: RecordDrive
+) -> Stepped:
+    """Return the motion of a record with its steps, for a drawn `dynamics` section.
+
+    Raises
+    ------
+    ValueError
+        If the motion cannot start, as `specimen_motion` and `Motion.start`.
+    """
+    probe = Probe(config, dynamics, mesh, point, driven)
+    grid = rule_grid(config, dynamics, mesh, point)
+    motion = probe.motion(grid)
+    if dynamics.method != "exponential":
+        return Stepped(grid, motion, None)
+    try:
+        errors = _Errors(probe, grid, motion)
+    except SolverFailure:
+        return Stepped(grid, motion, inf)
+    steps, error = refined_steps(errors, grid.steps, MARGIN * dynamics.integration_tolerance)
+    if steps > grid.steps:
+        grid = exponential_grid(steps)
+        motion = probe.motion(grid)
+    return Stepped(grid, motion, error)
+
+
+class _Errors:
+    """Steps per sample -> error of a stretch that begins with a motion; what was integrated last is kept.
+
+    Raises
+    ------
+    SolverFailure
+        If the motion diverges before the stretch.
+    """
+
+    def __init__(self, probe: Probe, grid: TimeGrid, motion: Motion) -> None:
+        self._probe, self._stretch, self._ringing = probe, probe.stretch(motion), probe.ringing(motion)
+        first, end = self._stretch.first, self._stretch.first + self._stretch.samples
+        settling = ceil(motion.transient_s * probe.config.fs_hz)
+        self._acting = probe.inputs(first - settling, end, probe.config.fs_hz * grid.per_sample)
+        run = probe.run(motion, grid.per_sample, self._acting)
+        self._state = state_at(run, first - settling, first)
+        self._last = grid.steps, self._accelerations(run)
+
+    def __call__(self, steps: int) -> float:
+        """Return the error of the worst motion, infinite where a motion diverges."""
+        coarse = self._last[1] if self._last[0] == steps else self._with(steps)
+        fine = self._with(2 * steps)
+        self._last = 2 * steps, fine
+        if coarse is None or fine is None:
+            return inf
+        apart = ((coarse - fine)[:, self._ringing :] ** 2).mean(axis=1)
+        whole = (fine[:, self._ringing :] ** 2).mean(axis=1)
+        return SHRINKS * float(np.sqrt(apart / np.maximum(whole, np.finfo(float).tiny)).max(initial=0.0))
+
+    def _with(self, steps: int) -> FloatArray | None:
+        grid = exponential_grid(steps)
+        return self._accelerations(self._probe.run(self._probe.motion(grid), grid.per_sample, self._acting))
+
+    def _accelerations(self, run: Run) -> FloatArray | None:
+        try:
+            return stretch_accelerations(run, self._state, self._stretch)
+        except SolverFailure:
+            return None
+
+
+def refined_steps(errors: Callable[[int], float], steps: int, allowed: float) -> tuple[int, float]:
+    """Return steps per sample, no fewer than given, with which the error is allowed, and the error with them.
+
+    Where no steps lead there the given ones stay, with the largest error that was seen, or the finest are taken.
+    """
+    tried: list[tuple[int, float]] = []
+    while True:
+        error = errors(steps)
+        tried.append((steps, error))
+        if error <= 4.0 * allowed:
+            enough = max(steps, ceil(steps * sqrt(error / allowed)))
+            return enough, error * (steps / enough) ** 2
+        finest = 2 * steps > MOST_STEPS
+        if (finest and error == inf) or (len(tried) > 2 and not error <= HOPELESS * tried[-3][1]):
+            return tried[0][0], max(error for _, error in tried)
+        if finest:
+            return steps, error
+        steps *= 2
+
+
+def _compared(motion: Motion) -> tuple[str, ...]:
+    """Return the motions that are compared: those of the bearings."""
+    return tuple(name for name in motion.structure.motions if not name.startswith("casing_"))

@@ -1,0 +1,93 @@
+"""Steps of a record: the rule follows its own operating point, a stretch refines them, and the error left is told."""
+
+from __future__ import annotations
+
+from math import inf
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import siggen
+from siggen.config import Config, by_reference
+from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.simulation import simulate, specimen_state, start_angle_rad
+from siggen.specimen.drive import record_drive
+from siggen.specimen.integration import rule_grid
+from siggen.specimen.motion import specimen_motion
+from siggen.specimen.step_choice import MARGIN, MOST_STEPS, refined_steps, stepped_motion
+
+QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
+FINE_STEPS = 64
+
+
+def loaded(*overrides: str) -> Config:
+    """Return quickstart, short, with some overrides."""
+    return siggen.load_config(QUICKSTART, ["duration_s=0.1", "specimens=1", *overrides])
+
+
+def steps_of(config: Config) -> int:
+    """Return the steps of the rule for the first operating point of the first gearbox."""
+    specimen = draw_specimen(config, 0)
+    mesh = specimen_state(config, specimen, 0).mesh
+    return rule_grid(config, specimen.dynamics, mesh, draw_operating_point(config, 0, 0)).steps
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [(0.5, (3, 0.5)), (3.0, (6, 0.75)), (30.0, (17, 30.0 * (3 / 17) ** 2)), (0.0, (3, 0.0))],
+)
+def test_steps_are_refined_by_the_square_of_the_step_until_the_error_is_allowed(error, expected) -> None:
+    steps, left = refined_steps(lambda tried: error * (3 / tried) ** 2, 3, 1.0)
+    assert (steps, left) == pytest.approx(expected)
+
+
+def test_a_motion_that_comes_no_nearer_keeps_its_steps_and_tells_its_largest_error() -> None:
+    found = {2: 1.3, 4: 1.7, 8: 0.9}
+    assert refined_steps(found.__getitem__, 2, 1e-3) == (2, 1.7)
+    assert refined_steps(lambda _: inf, 2, 1e-3) == (2, inf)
+
+
+def test_the_finest_steps_tell_an_error_that_is_still_too_large() -> None:
+    steps, error = refined_steps(lambda tried: 1e3 / tried**2, 2, 1e-3)
+    assert steps == MOST_STEPS
+    assert error == 1e3 / MOST_STEPS**2
+
+
+def test_another_operating_point_changes_no_steps() -> None:
+    point = "{speed_hz: 33, torque_nm: 30}"
+    alone = steps_of(loaded(f"operating_points=[{point}]"))
+    assert steps_of(loaded(f"operating_points=[{point}, {{speed_hz: 37, torque_nm: 60}}]")) == alone
+
+
+def test_friction_that_stops_light_gears_at_once_takes_more_steps() -> None:
+    light = ["dynamics.pinion.mass_kg=0.05", "operating_points=[{speed_hz: 33, torque_nm: 60}]"]
+    assert steps_of(loaded(*light)) > steps_of(loaded(*light, "dynamics.friction.model=off"))
+
+
+def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
+    config = loaded()
+    record = planned_record(config, 3)
+    specimen = draw_specimen(config, 0)
+    state = specimen_state(config, specimen, record.state_id)
+    point = draw_operating_point(config, 0, record.operating_point_id)
+    angle = start_angle_rad(config, state.pair, record)
+    driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
+    chosen = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
+    dynamics, step_s = by_reference(specimen.dynamics), 1.0 / (config.fs_hz * FINE_STEPS)
+    fine = specimen_motion(dynamics, state.mesh, point, step_s, driven)
+    found, wanted = (
+        response_of(
+            motion, driven.rotation, SampleGrid(config.fs_hz, config.samples, steps),
+            wanted=Wanted(bearing_forces=False), excitation=driven.excitation,
+        ).acceleration_m_s2
+        for motion, steps in ((chosen.motion, chosen.grid.per_sample), (fine, FINE_STEPS))
+    )  # fmt: skip
+    error = max(float(np.sqrt(np.mean((found[n] - wanted[n]) ** 2) / np.mean(wanted[n] ** 2))) for n in wanted)
+    assert chosen.error is not None
+    assert 0.5 * error <= chosen.error <= 2.0 * error
+    assert chosen.error <= MARGIN * config.dynamics.integration_tolerance
+    (made,) = simulate(config, [3])
+    assert made.labels["integration_error"] == chosen.error
