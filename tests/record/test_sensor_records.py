@@ -62,7 +62,7 @@ def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
     for name in ("lid_vertical", "wall_vertical", "wall_axial"):
         rows = housing.accelerance(housing.motions[f"casing_{name.replace('_', '/')}"], INPUTS, grid)
         expected = np.fft.irfft((rows * spectra).sum(axis=0), length)[behind - config.samples : behind]
-        # filters end where 1e-3 of the slowest mode is left; behind the record a filter knows what comes, here forces break off
+        # filters end where 1e-3 of the slowest mode is left; here forces break off with the record
         error = (channels[name] - expected)[:-512]
         assert np.abs(error).max() < 1e-2 * expected.std()
     # along the shafts nothing pushes; a wall that bends moves that way all the same
