@@ -103,7 +103,7 @@ def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
 
 
 def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
-    plain, rich, noisy = (making(shipped(name)) for name in ("linear_pits", "quickstart", "transfer_path"))
+    plain, rich, noisy = (making(shipped(name)) for name in ("linear_pits", "quickstart", "industrial"))
     longest = max(map(len, [*plain.splitlines(), *rich.splitlines()]))
     plain, rich, noisy = (" ".join(text.split()) for text in (plain, rich, noisy))
     assert "no friction between the flanks" in plain

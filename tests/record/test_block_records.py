@@ -20,9 +20,7 @@ from siggen.sensing.inputs import MOTION
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import minimal
 
-SENSOR = {"place": "casing", "bits": None, "range_m_s2": 1e6}
-LID = {**SENSOR, "name": "lid", "axes": ["vertical"], "position_mm": [60.0, 50.0], "cross_axis": 0.04,
-       "path": {"kind": "modal", "delay_us": 63.0}, "high_pass_hz": 2.0,
+LID = {"name": "lid", "place": "lid", "bits": None, "range_m_s2": 1e6, "cross_axis": 0.04, "high_pass_hz": 2.0,
        "mounting": {"frequency_hz": 9000.0, "damping_ratio": 0.05}}  # fmt: skip
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 BASE = {"mount_hz": 40.0}
@@ -33,7 +31,7 @@ VARYING = {"speed": {"random_rms": 0.005, "ripple_once": 0.001}, "torque": {"ran
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
     changes = {"dynamics__model": "casing", "duration_s": 0.4, "specimens": 2, "fs_hz": 25600.0, **changes}
-    changes = {"housing": {"settle_s": 0.4}, "variation": VARYING, **changes}
+    changes = {"variation": VARYING, **changes}
     return load_config(minimal(sensors=list(sensors or (LID, PLAIN)), **changes))
 
 

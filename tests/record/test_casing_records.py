@@ -94,13 +94,13 @@ def test_the_set_labels_healthy_pitted_and_spalled_gearboxes_at_three_speeds(con
     }  # fmt: skip
 
 
-def test_internals_of_a_record_behind_a_transfer_path_hold_what_the_set_does() -> None:
+def test_internals_of_a_record_on_a_housing_of_plates_hold_what_the_set_does() -> None:
     overrides = [*SHORT, *STIFF, "dynamics.steps_per_sample=1"]
-    config = load_config("configs/transfer_path.yaml", overrides)
+    config = load_config("industrial", overrides)
     table = internals_table(config, 0)
     result = simulate(config, [0])[0]
     assert isinstance(result, Record)
-    assert table["accel_side_axial_m_s2"].to_numpy().tobytes() == result.channels["side_axial"].tobytes()
+    assert table["accel_lid_axial_m_s2"].to_numpy().tobytes() == result.channels["lid_axial"].tobytes()
     assert table.num_rows == config.samples
 
 

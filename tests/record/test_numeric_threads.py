@@ -21,7 +21,6 @@ THREADS = (1, 3, 16)
 SHORT = ["duration_s=0.02", "specimens=1"]
 CONFIGS = {
     "linear_pits": [*SHORT, "internals.records=all"],  # product integration
-    "transfer_path": SHORT,  # filters of paths and sensors
     "bench": SHORT,  # tooth pairs across the face, 47 teeth with errors and waves, coupling, the linearised gearbox
 }
 

@@ -31,13 +31,14 @@ def test_its_teeth_rub_as_lubricated_ones_do() -> None:
     ).mean()
     # Loss factor 0.171 μ of 11.3 kW with equal sharing, μ from 0.02 (film) to 0.11 (boundary).
     assert 0.171 * 0.02 * 11310.0 * 0.5 < power < 0.171 * 0.11 * 11310.0
-    assert "phi_c_rad" in table.column_names
+    assert "y_2_m" in table.column_names
+    assert not [name for name in table.column_names if name.startswith("eta")]  # gearboxes differ in them
 
 
-def test_all_supports_swing() -> None:
+def test_all_supports_swing_and_the_lowest_modes_of_the_housing() -> None:
     # As stiff as the plain sum of pairs: the softer the mesh, the more the supports count.
     found = specimen_modes(load_config(minimal(stiffness__coupling="none")))
-    assert len(found.coordinates) == 11
+    assert 8 + 6 <= len(found.coordinates) <= 8 + 9
     assert (np.diff(found.modes.frequency_hz) > 0.0).all()
     inertia = dict(zip(found.coordinates, np.diag(found.mass), strict=True))
     radius_1, radius_2 = (0.5 * 3e-3 * teeth * np.cos(np.radians(20.0)) for teeth in (18, 47))

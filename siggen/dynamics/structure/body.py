@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.structure import Element
+from siggen.dynamics.structure.structure import MODE, Element
 
 Point = tuple[float, float]
 """Horizontal and vertical distance from the casing's centre of gravity [m]."""
@@ -107,7 +107,7 @@ def rigid_body(casing: Casing, gear_place_m: Point, angle_rad: float) -> Body:
 
 def modal_body(modal: ModalBody, angle_rad: float) -> Body:
     """Return the lowest modes of a box as coordinates η_1 ... η_n."""
-    names = tuple(f"eta_{r + 1}" for r in range(modal.frequency_hz.size))
+    names = tuple(f"{MODE}{r + 1}" for r in range(modal.frequency_hz.size))
     omega = 2.0 * np.pi * modal.frequency_hz
     supports = (
         Element({name: 1.0}, float(w * w), float(2.0 * ratio * w))

@@ -25,6 +25,10 @@ class Element:
     damping: float
 
 
+MODE = "eta_"
+"""How the names of coordinates begin that are modes of a housing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Structure:
     """Linear part of the model without the gear mesh, and where forces act and motions are seen.
@@ -57,6 +61,11 @@ class Structure:
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
     bearing_directions: Mapping[str, FloatArray]
     tilt_vector: FloatArray | None = None
+
+    @property
+    def bodies(self) -> list[int]:
+        """Numbers of the coordinates that move a body; modes of a housing move many, and gearboxes differ in them."""
+        return [i for i, name in enumerate(self.coordinates) if not name.startswith(MODE)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -83,7 +84,9 @@ class PairMotion:
         self.base_pitch_m = law.base_pitch_m
         self.tilts = structure.tilt_vector is not None
         across = ACROSS if self.tilts else ()
-        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *_names(structure))
+        self._bodies = structure.bodies
+        moved = (structure.coordinates[i] for i in self._bodies)
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *_with_units(moved))
         self._pairs = pair_table(law)
         self._step_s = step_s
         self._speed_input = speed_input
@@ -199,15 +202,15 @@ class PairMotion:
         ]
         if self.tilts:
             approach += [pairs[:, 0, columns.TILT], pairs[:, :, columns.MOMENT].sum(axis=1)]
-        moved = states[:, :n] + self.equations.static_deflection
+        moved = (states[:, :n] + self.equations.static_deflection)[:, self._bodies]
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
 
 
-def _names(structure: Structure) -> tuple[str, ...]:
-    """Return the names of the coordinates with their units."""
+def _with_units(coordinates: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of coordinates with their units."""
     units = {True: "rad", False: "m"}
     turning = ("theta", "phi")
-    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in structure.coordinates)
+    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in coordinates)
 
 
 @njit(cache=True)
