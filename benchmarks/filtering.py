@@ -14,7 +14,7 @@ from benchmarks.shipped import ROOT, shipped
 from siggen.arrays import FloatArray
 from siggen.dynamics.time.decimation import Decimator, second_difference_taps, value_taps
 from siggen.planning.plan import planned_record
-from siggen.planning.specimen import draw_specimen
+from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import specimen_state
 from siggen.sensors.sensor import needs_forces
 from siggen.specimen.instrument import specimen_instrument
@@ -94,7 +94,7 @@ def _outputs(name: str) -> Outputs:
     state = specimen_state(config, specimen, planned.state_id)
     built = state.mesh.structure
     seen = {motion for channel in specimen_instrument(config, specimen).channels for motion in channel.motions}
-    steps, _ = time_grid(config, specimen, built, state.mesh.tables)
+    steps, _ = time_grid(config, specimen, built, state.mesh.tables, draw_operating_point(config, 0, 0))
     forces = [np.concatenate(pair) for pair in built.bearing_forces.values()] if needs_forces(config.sensors) else []
     return Outputs(
         np.array([row for motion, row in built.motions.items() if motion in seen]),

@@ -51,7 +51,7 @@ class Case:
     def own_steps(self) -> int:
         """Return the steps of integration per sample that the rule takes."""
         mesh = self.state.mesh
-        grid = time_grid(self.config, self.specimen, mesh.structure, mesh.tables)
+        grid = time_grid(self.config, self.specimen, mesh.structure, mesh.tables, self.point)
         return grid.per_sample // grid.stride
 
     def response(self, integrator: str, steps: int, settle_s: float = 0.0) -> Response:

@@ -36,7 +36,7 @@ def _loop_s(case: RecordCase, integrator: str, steps: int | None) -> float:
     mesh = case.state.mesh
     grid = TimeGrid(steps or 1, 1)
     if steps is None:
-        grid = time_grid(case.config, case.specimen, mesh.structure, mesh.tables)
+        grid = time_grid(case.config, case.specimen, mesh.structure, mesh.tables, case.point)
     motion = case.motion(integrator, grid.per_sample, stride=grid.stride)
     _, pitches, inputs = case.course(motion, grid.per_sample, 0.0, LOOP_S)
     states = np.empty((pitches.size, 2 * len(motion.structure.coordinates)))

@@ -106,8 +106,7 @@ class PairLaw:
         self.lead = self.model["contact.lead_m"]
         self.alone = 0 if self.model["film_n_s_per_m"] > 0.0 else 1
         self.before = {}
-        nodes, reach = len(self.model["contact.curves"][0]), self.model["contact.reach_m"]
-        self.nodes = [reach * (k / (nodes - 1)) ** 2 for k in range(nodes)]
+        self.nodes = [self.model["contact.unit_m"] * k**2 for k in range(len(self.model["contact.curves"][0]))]
 
     def forces(self, state, pitches):
         """Return the forces of a state at a pinion angle in base pitches."""

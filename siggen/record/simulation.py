@@ -175,7 +175,7 @@ def _stream(
 ) -> tuple[ResponseStream, OperatingPoint]:
     """Return the response of one record before it is stepped, and its operating point."""
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
+    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables, point)
     driven = _driven(config, specimen, state, record) if driven is None else driven
     with stage("inputs"):
         step_s = 1.0 / (config.fs_hz * steps)

@@ -3,7 +3,7 @@
 Product integration and Runge-Kutta take the number of the file. The exponential integrator takes what its tolerance
 asks for. Its error falls with the square of the step (`python -m benchmarks precision`: friction and flanks that touch
 within steps set it), and two rates set its size: the highest natural frequency to which the
-mesh contributes, and the rate of the teeth. The faster one counts, at the highest speed of the set.
+mesh contributes, and the rate of the teeth. The faster one counts, at the record's own speed.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from siggen.config import Config
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.modes import natural_modes
 from siggen.gears.stiffness.mesh_tables import MeshTables
-from siggen.keys.number import bounds
-from siggen.planning.specimen import Specimen
+from siggen.planning.specimen import OperatingPoint, Specimen
 
 MOST_RADIANS, LEAST_PER_PITCH = 1.4, 50.0
 """Radians of the mesh's vibration in one step, and steps per base pitch.
@@ -41,14 +40,18 @@ class TimeGrid(NamedTuple):
     stride: int
 
 
-def time_grid(config: Config, specimen: Specimen, structure: Structure, tables: MeshTables) -> TimeGrid:
-    """Return where the states of a gearbox are.
+def time_grid(
+    config: Config, specimen: Specimen, structure: Structure, tables: MeshTables, point: OperatingPoint
+) -> TimeGrid:
+    """Return where the states of a gearbox at an operating point are.
 
     Parameters
     ----------
     config, specimen, structure
     tables : MeshTables
         Of any state: what counts is the stiffest pair at every position, which is healthy.
+    point : OperatingPoint
+        As drawn: steps are those of this point alone.
     """
     dynamics = specimen.dynamics
     if dynamics.method != "exponential":
@@ -57,9 +60,7 @@ def time_grid(config: Config, specimen: Specimen, structure: Structure, tables: 
     stiffness = float(healthy.mean()) * (tables.end_m - tables.start_m) / tables.base_pitch_m
     modes = natural_modes(structure, stiffness)
     fastest_hz = float(modes.frequency_hz[modes.mesh_share >= MESH_SHARE].max(initial=0.0))
-    teeth_hz = float(tables.table_of_pair.shape[0]) * max(
-        bounds(point.speed_hz)[1] for point in config.operating_points
-    )
+    teeth_hz = float(tables.table_of_pair.shape[0]) * abs(point.speed_hz)
     rate_hz = max(2.0 * pi * fastest_hz / MOST_RADIANS, LEAST_PER_PITCH * teeth_hz)
     finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
     steps = max(1, ceil(rate_hz / config.fs_hz * finer))

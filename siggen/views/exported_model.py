@@ -60,7 +60,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     specimen = draw_specimen(config, record.specimen_id)
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps = time_grid(config, specimen, state.mesh.structure, state.mesh.tables).per_sample
+    steps = time_grid(config, specimen, state.mesh.structure, state.mesh.tables, point).per_sample
     with refused_as("outside_model"):
         angle = start_angle_rad(config, state.pair, record)
         driven = record_drive(config, specimen, state.pair, state.mesh.structure, point, record, angle)

@@ -75,7 +75,8 @@ def errors(preset: str, number: int) -> np.ndarray:
     specimen = draw_specimen(config, record.specimen_id)
     assert specimen.dynamics.method == "exponential"
     state = specimen_state(config, specimen, record.state_id)
-    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables)
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    steps, stride = time_grid(config, specimen, state.mesh.structure, state.mesh.tables, point)
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
     fast = accelerations(config, record_id, state, "exponential", steps, stride)
     return np.asarray(np.sqrt(np.mean((fast - fine) ** 2, axis=0) / np.mean(fine**2, axis=0)))

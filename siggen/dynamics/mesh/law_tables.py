@@ -92,7 +92,7 @@ def _contact(law: PairLaw) -> dict[str, Any]:
         "contact.column": _numbers(law, layout.COLUMN_AT, (rows + 1, points - 1)),
         "contact.gain": _numbers(law, layout.GAIN_AT, (rows + 1, points - 1)),
         "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, values)),
-        "contact.reach_m": float(law.scalars[layout.CONTACT_REACH]),
+        "contact.unit_m": float(law.scalars[layout.CONTACT_UNIT]),
         "contact.lead_m": float(law.scalars[layout.LEAD_M]),
     }
 

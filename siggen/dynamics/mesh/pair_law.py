@@ -60,7 +60,6 @@ LUBRICATED_START = next(_scalar)
 LUBRICATED_PER_M = next(_scalar)
 LUBRICATED_FLOOR = next(_scalar)
 LUBRICATED_PER_LOG = next(_scalar)
-CONTACT_REACH = next(_scalar)  # approach of the last node of the table of the contact [m]
 CONTACT_TILT = next(_scalar)  # tilt up to which it holds [rad]
 CONTACT_UNIT = next(_scalar)  # approach of its second node [m]
 SCALARS = next(_scalar)
@@ -266,9 +265,8 @@ def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTab
         (TOUCH_AT, contact.touch_m), (COLUMN_AT, contact.column), (GAIN_AT, contact.gain), (CURVES_AT, contact.curves),
     ):  # fmt: skip
         packed.add(place, values)
-    scalars[CONTACT_REACH], scalars[LEAD_M] = contact.reach_m, contact.lead_m
+    scalars[CONTACT_UNIT], scalars[LEAD_M] = contact.unit_m, contact.lead_m
     scalars[CONTACT_TILT] = contact.largest_tilt_rad
-    scalars[CONTACT_UNIT] = contact.reach_m / (contact.curves.shape[1] - 1.0) ** 2
 
 
 def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:

@@ -14,7 +14,8 @@ are derivatives of one energy: no closed loop in (d, θ) does work. Loaded tilts
 misalignment takes away stands in the lead, not in θ. The expansion holds where the whole face touches: up to tilts that
 lift its ends by `TOUCHING` of the reach.
 
-Nodes lie at D (k/(n - 1))² up to the largest approach D; beyond it the force goes on with the last slope.
+Nodes lie at u k², u of the pair alone: a larger force of the set adds nodes at the end, and what the others hold, where
+columns are and what a slice is stay as they were. Beyond the last node the force goes on with the last slope.
 """
 
 from __future__ import annotations
@@ -37,7 +38,9 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
 BEND = 4e-3
-"""Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest."""
+"""Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest.
+
+Up to the reference force: where columns are may not depend on how far they go."""
 
 
 class ContactTable(NamedTuple):
@@ -45,7 +48,7 @@ class ContactTable(NamedTuple):
 
     `touch_m` (rows, points): approach at which a pair of this kind first touches [m]; `column`, `gain` (rows, points -
     1): column at the start of a fine interval, and how many columns it spans; `curves` (columns, nodes, 4 or 8): see
-    FORCE; `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add;
+    FORCE; `unit_m`: u; `lead_m`: least missing material across the face, which every pair has to add;
     `largest_tilt_rad`: up to which the expansion holds, 0 where gears stay parallel.
     """
 
@@ -53,7 +56,7 @@ class ContactTable(NamedTuple):
     column: FloatArray
     gain: FloatArray
     curves: FloatArray
-    reach_m: float
+    unit_m: float
     lead_m: float = 0.0
     largest_tilt_rad: float = 0.0
 
@@ -101,7 +104,7 @@ def contact_table(
     joined = np.concatenate(curves)
     tilt = largest_tilt_rad(solver) if options.tilts else 0.0
     table = ContactTable(
-        np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()), tilt
+        np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.unit_m, float(lead.min()), tilt
     )
     for array in table[:4]:
         array.setflags(write=False)
@@ -118,14 +121,14 @@ def _healthy(
     curves = column_curves(solver, row, chosen)
     at = np.interp(np.arange(points), chosen, np.arange(chosen.size))
     touch = first_touch(pair, row, np.arange(points), solver.lead_m)
-    return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[-1])), row
+    return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[1])), row
 
 
 def _damaged(
     solver: TableSolver, row: KindRow, healthy_row: KindRow, healthy: ContactTable, first: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return touch (points,), column and gain (points - 1,) and the curves of one kind, numbered from `first`."""
-    differs = felt(solver.pair, row, healthy_row, solver.options.largest_force_n)
+    differs = felt(solver.pair, row, healthy_row)
     column, gain = healthy.column[0].copy(), healthy.gain[0].copy()
     parts = [np.zeros((0, *healthy.curves.shape[1:]))]
     for run in _runs(np.flatnonzero(differs[1:] | differs[:-1])):
@@ -158,11 +161,19 @@ def _refined(solver: TableSolver, row: KindRow, run: IntArray) -> tuple[IntArray
         bent = [
             (low, middle, high)
             for (low, high), middle in zip(intervals, middles, strict=True)
-            if not _is_mean(found[low], found[middle], found[high], (middle - low) / (high - low))
+            if not _is_mean(*_judged(solver, found, low, middle, high), (middle - low) / (high - low))
         ]
         intervals = [part for low, middle, high in bent for part in ((low, middle), (middle, high))]
     ends = np.array(sorted(found), dtype=np.int64)
     return ends, np.stack([found[i] for i in ends.tolist()])
+
+
+def _judged(
+    solver: TableSolver, found: dict[int, FloatArray], low: int, middle: int, high: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return three columns up to the reference force."""
+    end = solver.reference + 1
+    return found[low][:end], found[middle][:end], found[high][:end]
 
 
 def _is_mean(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:

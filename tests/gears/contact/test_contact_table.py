@@ -25,8 +25,10 @@ from siggen.gears.contact.table_columns import (
     SLOPE,
     TURNING,
     TURNING_SLOPE,
+    TYPICAL_SHARE,
+    node_places_m,
 )
-from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import Spall
@@ -41,7 +43,7 @@ from tests.gears.damage.test_kind_without_outline import Hinge
 STIFFNESS = StiffnessOptions()
 FORCE_N = 1200.0
 OPTIONS = TableOptions(largest_force_n=3.0 * FORCE_N)
-TYPICAL = 0.25 * OPTIONS.largest_force_n / 20e-3
+TYPICAL = TYPICAL_SHARE * reference_force_n(gear_pair()) / 20e-3
 POINTS = 1025
 SLICES = face_slices(gear_pair(), OPTIONS)
 
@@ -74,7 +76,7 @@ def from_table(found: ContactTable, row: int, place: float, approach_m: np.ndarr
     touch = found.touch_m[row, cell] * (1.0 - weight) + found.touch_m[row, cell + 1] * weight
     column = found.column[row, cell] + found.gain[row, cell] * weight
     first = min(int(column), len(found.curves) - 2)
-    node = found.reach_m * (np.arange(OPTIONS.nodes) / (OPTIONS.nodes - 1.0)) ** 2
+    node = node_places_m(found.unit_m, found.curves.shape[1])
     values = [
         CubicHermiteSpline(node, curve[:, FORCE], curve[:, SLOPE])(approach_m - touch)
         for curve in found.curves[first : first + 2]
@@ -195,7 +197,7 @@ def test_missing_material_across_the_face_is_carried_by_the_near_end_first() -> 
 @pytest.mark.parametrize("damage", [(), skewed()], ids=["healthy", "skewed, with land"])
 def test_the_expansion_in_the_tilt_gives_force_and_moment_of_the_solver(damage: Damage) -> None:
     tilting = contact_table(gear_pair(), damage, STIFFNESS, OPTIONS._replace(tilts=True), POINTS)
-    node = tilting.reach_m * (np.arange(OPTIONS.nodes) / (OPTIONS.nodes - 1.0)) ** 2
+    node = node_places_m(tilting.unit_m, tilting.curves.shape[1])
     row = len(tilting.touch_m) - 1
     place = float(np.flatnonzero(tilting.column[row] >= OPTIONS.healthy_columns)[40]) if damage else 512.0
     # A column of the table, so that only the expansion is judged.
