@@ -101,7 +101,7 @@ def _beyond_touch_m(
     column = table.column[row, cell] + (place - cell) * table.gain[row, cell]
     first: IntArray = np.minimum(column.astype(np.int64), len(table.curves) - 2)
     share = (column - first)[:, None]
-    low, high = table.curves[first], table.curves[first + 1]
+    low, high = table.upright[first], table.upright[first + 1]
     force = (1.0 - share) * low[:, :, FORCE] + share * high[:, :, FORCE]
     slope = (1.0 - share) * low[:, :, SLOPE] + share * high[:, :, SLOPE]
     node = node_places_m(table.unit_m, force.shape[1])

@@ -84,6 +84,6 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     beyond = approach - float(table.touch_m[number, cell : cell + 2].mean())
     low, high = (
         CubicHermiteSpline(solver.node_m, curve[:, FORCE], curve[:, SLOPE])(np.clip(beyond, 0.0, solver.node_m[-1]))
-        for curve in table.curves[first : first + 2]
+        for curve in table.upright[first : first + 2]
     )
     return np.asarray(low + (column - first) * (high - low) - direct.force_n)

@@ -62,7 +62,7 @@ def test_the_force_of_a_single_pair_is_that_of_its_column() -> None:
             column = place * (table.curves.shape[0] - 1)
             node = node_places_m(table.unit_m, table.curves.shape[1])
             low, high = (
-                np.interp(pairs[i, PENETRATION], node, table.curves[k, :, 0]) for k in (int(column), int(column) + 1)
+                np.interp(pairs[i, PENETRATION], node, table.upright[k, :, 0]) for k in (int(column), int(column) + 1)
             )
             # Straight lines between nodes lie above the cubic by some per cent of a force.
             assert pairs[i, NORMAL] == pytest.approx(low + (column - int(column)) * (high - low), rel=0.03)
