@@ -80,8 +80,8 @@ def test_the_tilt_of_plan_is_that_of_the_motion() -> None:
 @pytest.mark.parametrize(
     "pinion",
     [
-        {"diameter_mm": 20.0, "bearing_span_mm": 200.0, "gear_position": 0.3},
-        {"diameter_mm": 10.0, "gear_position": 0.3},
+        {"diameter_mm": 8.0, "bearing_span_mm": 200.0, "gear_position": 0.2},
+        {"diameter_mm": 5.0, "gear_position": 0.3},
     ],
 )
 def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_with_what_would_do(
@@ -103,8 +103,8 @@ def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_w
 
 def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_middle() -> None:
     around = {"kind": "uniform", "low": 0.4, "high": 0.6}
-    with pytest.raises(ConfigError, match=r"pinion.diameter_mm: received 8.0.* from [\d.]+ mm on"):
-        load_config(with_shafts(diameter_mm=8.0, gear_position=around))
+    with pytest.raises(ConfigError, match=r"pinion.diameter_mm: received 5.0.* from [\d.]+ mm on"):
+        load_config(with_shafts(diameter_mm=5.0, bearing_span_mm=140.0, gear_position=around))
 
 
 @pytest.mark.parametrize("which", ["bench", "industrial", "quickstart", "paper_b"])
