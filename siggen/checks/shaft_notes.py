@@ -21,7 +21,7 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
         if tilts.largest_rad > tilts.limit_rad:
             notes.append(
                 f"at the bounds of shafts and bearings {tilts.torque_nm:.3g} N m tilt the flanks by "
-                f"{1e6 * tilts.largest_rad:.3g} urad; at {1e6 * tilts.limit_rad:.3g} an end meets the other flank: "
+                f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
     return tuple(notes)

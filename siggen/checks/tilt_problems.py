@@ -152,11 +152,11 @@ def _problem(dynamics: Dynamics, pair: GearPair, tilts: FlankTilts) -> Problem:
     shaft: Shaft = getattr(dynamics.shafts, which)
     thin, thick = bounds(shaft.diameter_mm)[0], 2e3 * pair.member(which).root_radius_m
     received = (
-        f"{_rounded(shaft.diameter_mm)}, with which the flanks tilt by {1e6 * tilt(None):.3g} urad under "
+        f"{_rounded(shaft.diameter_mm)}, with which the flanks tilt by {1e6 * tilt(None):.0f} urad under "
         f"{torque_nm:g} N m, with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
         f"dynamics.{which}.bearing_stiffness_x_n_per_m {getattr(dynamics, which).bearing_stiffness_x_n_per_m}"
     )
-    allowed = f"allowed: a tilt of at most {1e6 * limit:.3g} urad, where an end of the face meets the other flank"
+    allowed = f"allowed: a tilt of at most {1e6 * limit:.0f} urad, where an end of the face meets the other flank"
     if tilt(thick) > limit:
         advice = "no diameter below that of the root does; move gear_position nearer to 0.5, or take stiffer bearings"
         return Problem(f"dynamics.shafts.{which}.diameter_mm", received, f"{allowed}; {advice}")

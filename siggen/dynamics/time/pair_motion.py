@@ -165,8 +165,8 @@ class PairMotion:
         worst = int(np.argmax(beyond)) if tilt_rad.size and half_face > 0.0 else -1
         if worst >= 0 and not beyond[worst] <= 0.0:
             raise ValueError(
-                f"dynamics.shafts: the flanks tilt by {1e6 * abs(tilt_rad[worst]):.3g} urad {when}; allowed: at most "
-                f"{1e6 * (backlash + approach_m[worst]) / half_face:.3g}, where an end of the face meets the other "
+                f"dynamics.shafts: the flanks tilt by {1e6 * abs(tilt_rad[worst]):.0f} urad {when}; allowed: at most "
+                f"{1e6 * (backlash + approach_m[worst]) / half_face:.0f}, where an end of the face meets the other "
                 "flank. Take thicker or shorter shafts, a gear nearer the middle, a narrower face, more backlash or a "
                 "smaller torque"
             )
