@@ -106,8 +106,7 @@ class PairLaw:
         self.lead = self.model["contact.lead_m"]
         self.alone = 0 if self.model["film_n_s_per_m"] > 0.0 else 1
         self.before = {}
-        nodes, reach = len(self.model["contact.curves"][0]), self.model["contact.reach_m"]
-        self.nodes = [reach * (k / (nodes - 1)) ** 2 for k in range(nodes)]
+        self.nodes = [self.model["contact.unit_m"] * k**2 for k in range(len(self.model["contact.curves"][0]))]
 
     def forces(self, state, pitches):
         """Return the forces of a state at a pinion angle in base pitches."""
@@ -148,8 +147,9 @@ class PairLaw:
                 number=number,
             )  # fmt: skip
             pair.penetration = state.approach - pair.missing
-            pair.side = 1 if pair.penetration > 0.0 else 0
-            if not pair.side and state.approach - offset < -law["backlash_m"]:
+            ahead = abs(state.tilt) * law["contact.half_face_m"]  # of one end of the face
+            pair.side = 1 if pair.penetration + ahead > 0.0 else 0
+            if pair.penetration <= 0.0 and state.approach - offset < -law["backlash_m"]:
                 pair.side, pair.penetration = -1, state.approach - offset + law["backlash_m"]
             found.append(pair)
             number -= 1
@@ -181,8 +181,6 @@ class PairLaw:
         """Return the spring of a pair at a penetration."""
         if pair.side < 0:
             return Spring(pair.whole * depth, pair.whole) if depth < 0.0 else Spring()
-        if depth <= 0.0:
-            return Spring()
         return self.spring_of_face(pair, depth - self.touch(pair), tilt)
 
     def touch(self, pair):
@@ -191,30 +189,70 @@ class PairLaw:
 
     def spring_of_face(self, pair, approach, tilt):
         """Return the spring from the table of the contact across the face."""
+        law = self.model
+        if law["contact.half_face_m"] > 0.0:
+            return self.tilted(pair, approach, tilt * law["contact.half_face_m"])
         if approach <= 0.0:
             return Spring()
+        ends, over, span = self.ends(pair, approach, 0)
+        t = min(over / span, 1.0)
+        force, slope, _ = cubic(ends[0][0:2], ends[1][0:2], over, span)
+        return Spring(force, slope, *(ends[0][k] * (1.0 - t) + ends[1][k] * t for k in (2, 3)))
+
+    def ends(self, pair, way, ray):
+        """Return the values of a ray at the nodes before and behind a way, the way behind the first, the span."""
         law, nodes = self.model, self.nodes
         column = law["contact.column"][pair.row][pair.cell] + law["contact.gain"][pair.row][pair.cell] * pair.weight
         whole = min(int(column), len(law["contact.curves"]) - 2)
-        node = min(int(math.sqrt(approach / nodes[1])), len(nodes) - 2)
-        share, span, over = column - whole, nodes[node + 1] - nodes[node], approach - nodes[node]
-        ends = [
-            [a * (1.0 - share) + b * share for a, b in zip(*both, strict=True)]
-            for both in (
-                (law["contact.curves"][whole][k], law["contact.curves"][whole + 1][k]) for k in (node, node + 1)
-            )
-        ]
-        t = min(over / span, 1.0)
-        force, slope, _ = cubic(ends[0][0:2], ends[1][0:2], over, span)
-        spring = Spring(force, slope, *(ends[0][k] * (1.0 - t) + ends[1][k] * t for k in (2, 3)))
-        if len(ends[0]) == 8:
-            moment, cross, bend = cubic(ends[0][4:6], ends[1][4:6], over, span)
-            turning, turning_slope, turning_bend = cubic(ends[0][6:8], ends[1][6:8], over, span)
-            spring.force = max(force + tilt * (cross + 0.5 * tilt * turning_slope), 0.0)
-            spring.slope = max(slope + tilt * (bend + 0.5 * tilt * turning_bend), 0.0)
-            spring.moment, spring.cross = moment + turning * tilt, cross + turning_slope * tilt
-            spring.turning = turning
+        node = min(int(math.sqrt(way / nodes[1])), len(nodes) - 2)
+        share, span, over = column - whole, nodes[node + 1] - nodes[node], way - nodes[node]
+        pairs = ((law["contact.curves"][whole + k][n][ray] for k in (0, 1)) for n in (node, node + 1))
+        found = [[a * (1.0 - share) + b * share for a, b in zip(*both, strict=True)] for both in pairs]
+        return found, over, span
+
+    def tilted(self, pair, approach, lift):
+        """Return the spring from the energy along rays of approach and lift of the ends of the face."""
+        radius = math.hypot(approach, lift)
+        if radius <= 1e-15 or abs(lift) >= RAYS[-1] * (radius + approach):
+            return Spring()
+        place = lift / (radius + approach)
+        ray = max(k for k in range(len(RAYS) - 1) if RAYS[k] <= place)
+        low, high = (self.along(pair, radius, k) for k in (ray, ray + 1))
+        width = RAYS[ray + 1] - RAYS[ray]
+        x = (place - RAYS[ray]) / width
+        # Hermite's cubic in the place between two rays, for the energy and its derivatives to the radius.
+        ends = ((low[0][k], low[1][k], high[0][k], high[1][k]) for k in range(3))
+        found = [cubic((a, b), (c, d), x * width, width) for a, b, c, d in ends]
+        (_, w_p, w_pp), (w_r, w_rp, _), (w_rr, _, _) = found
+        turn = 0.5 * (1.0 + place**2)  # dp/dφ
+        per_angle, per_angle_2 = turn * w_p, turn * (turn * w_pp + place * w_p)
+        # Second derivatives along and across the radius, cut to what a convex energy has.
+        along, across = max(w_rr, 0.0), max(per_angle_2 / radius**2 + w_r / radius, 0.0)
+        most = math.sqrt(along * across)
+        mixed = min(max((turn * w_rp - per_angle / radius) / radius, -most), most)
+        c, s, half = approach / radius, lift / radius, self.model["contact.half_face_m"]
+        force = c * w_r - s * per_angle / radius
+        if force <= 0.0:
+            return Spring()
+        spring = Spring(force, c * c * along - 2.0 * c * s * mixed + s * s * across)
+        spring.moment = half * (s * w_r + c * per_angle / radius)
+        spring.cross = half * (c * s * (along - across) + (c * c - s * s) * mixed)
+        spring.turning = half**2 * (s * s * along + 2.0 * c * s * mixed + c * c * across)
+        spring.carrying, spring.rough = (a * (1.0 - x) + b * x for a, b in zip(low[2], high[2], strict=True))
         return spring
+
+    def along(self, pair, radius, ray):
+        """Return W, W_r, W_rr of a ray, the same of its derivative to the place, and both shares."""
+        (first, second), over, span = self.ends(pair, radius, ray)
+        pushed = cubic((first[0], first[1]), (second[0], second[1]), over, span)
+        across = cubic((first[4], first[5]), (second[4], second[5]), over, span)
+        within = min(over, span)
+        t, rise = within / span, (second[0] - first[0]) / span
+        bend, twist = 3.0 * rise - 2.0 * first[1] - second[1], first[1] + second[1] - 2.0 * rise
+        energy = first[6] + within * (first[0] + within * (first[1] / 2.0 + t * (bend / 3.0 + t * twist / 4.0)))
+        energy += (over - within) * (second[0] + 0.5 * (over - within) * second[1])
+        shares = [first[k] * (1.0 - t) + second[k] * t for k in (2, 3)]
+        return (energy, *pushed[:2]), across, shares
 
     def add(self, sums, pair, spring, state, shared):
         """Add the forces of a pair that touches: spring, damper, moment, friction."""
@@ -274,6 +312,10 @@ class PairLaw:
         gap = self.touch(pair) - pair.penetration
         radius = pair.position * (law["line_of_action_m"] - pair.position) / law["line_of_action_m"]
         return law["film_n_s_per_m"] * (0.5 * radius / max(gap, law["film_floor_m"])) ** 1.5 * rate
+
+
+RAYS = [-1.0 - math.sqrt(2.0), -1.5, -0.8, -0.3, 0.0, 0.3, 0.8, 1.5, 1.0 + math.sqrt(2.0)]
+"""tan(φ/2) of the rays, φ the angle from no tilt in the plane of approach and lift."""
 
 
 def cubic(left, right, over, span):

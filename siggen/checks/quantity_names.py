@@ -12,6 +12,7 @@ from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables
 from siggen.keys.drawing import corners
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.specimen.motion import SpecimenMesh, specimen_motion, teeth_missing
 from siggen.specimen.structure import structure
@@ -51,7 +52,7 @@ def available_quantities(config: Config) -> tuple[str, ...]:
         pair,
         structure(own, specimen),
         mesh_tables(pair, (), stiffness_options(specimen.stiffness), points=TABLE_POINTS),
-        teeth_missing(specimen.dynamics, pair, TABLE_POINTS),
+        WavyTeeth(teeth_missing(specimen.dynamics, pair, TABLE_POINTS), pair),
     )
     step_s = 1.0 / (config.fs_hz * specimen.dynamics.steps_per_sample)
     dynamics = specimen.dynamics

@@ -14,14 +14,14 @@ def shaft_notes(config: Config) -> tuple[str, ...]:
         notes.append("contact across the face: load-dependent, with elastic edges of damage (dynamics.mesh.law: pairs)")
     if config.dynamics.shafts is not None:
         notes.append(
-            "shafts bend and gears tilt (dynamics.shafts); a tilt that lifts the ends of the face by more than 4 % of "
-            "the largest approach (100 to 200 urad for 20 mm) is outside_model"
+            "shafts bend and gears tilt (dynamics.shafts), down to no load; only a tilt at which an end of the face "
+            "meets the other flank is outside_model"
         )
         tilts = flank_tilts({name: getattr(config, name) for name in NEEDED}, gear_pair(config.gears))
         if tilts.largest_rad > tilts.limit_rad:
             notes.append(
                 f"at the bounds of shafts and bearings {tilts.torque_nm:.3g} N m tilt the flanks by "
-                f"{1e6 * tilts.largest_rad:.3g} urad, the model holds to {1e6 * tilts.limit_rad:.3g}: such gearboxes "
-                "end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
+                f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
+                "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
     return tuple(notes)

@@ -1,10 +1,12 @@
-"""Shafts so soft that the gears tilt beyond the contact's expansion already under the steady torque.
+"""Shafts so soft that an end of the face meets the other flank already under the steady torque.
 
 Derived: springs k at the distances l from the gear's middle (`tilting_shaft`), a force F in that middle, towards the
 bearings, and no moment give, per axis, the tilt F S_1/(S_0 S_2 - S_1²) with S_j = Σ k l^j. The flanks' tilt is the sum
 over axes and gears, each times the squared share of the line of action along the axis; bounds of the numbers enter gear
-by gear. Refused is what tilts too far in half of the gearboxes of a set; where fewer do, plan says so. How far a motion
-swings about that is known only when it is simulated: it then ends as `outside_model`.
+by gear. Half the face times the tilt is how far an end is behind: beyond approach and backlash together it meets the
+other flank, of which the contact across the face knows nothing. Refused is what tilts too far in half of the gearboxes
+of a set; where fewer do, plan says so. How far a motion swings about that is known only when it is simulated: it then
+ends as `outside_model`.
 """
 
 from __future__ import annotations
@@ -20,10 +22,10 @@ from siggen.config import Dynamics, Rotor, Shaft
 from siggen.dynamics.structure.tilting_shaft import Shaft as Beam
 from siggen.dynamics.structure.tilting_shaft import cantilever_compliance_m_per_n
 from siggen.errors import Problem
-from siggen.gears.contact.table_columns import largest_tilt_rad, table_solver
+from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, at, bounds
-from siggen.specimen.contact import face_options, largest_force_n
+from siggen.specimen.contact import largest_force_n
 from siggen.specimen.gears import stiffness_options
 
 NEEDED = ("dynamics", "operating_points", "stiffness")
@@ -47,7 +49,7 @@ def tilt_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Ite
 
 
 class FlankTilts(NamedTuple):
-    """Tilts of a pair's flanks under the largest steady torque, and how far the contact's expansion holds."""
+    """Tilts of a pair's flanks under the largest steady torque, and at which an end meets the other flank."""
 
     torque_nm: float
     limit_rad: float
@@ -63,12 +65,12 @@ class FlankTilts(NamedTuple):
 
 def flank_tilts(sections: Mapping[str, Any], pair: GearPair) -> FlankTilts:
     """Return the tilts of a pair under the largest torque of all operating points, over the bounds of the numbers."""
-    dynamics, points = sections["dynamics"], sections["operating_points"]
-    torque_nm = _largest_torque_nm(sections)
-    options = face_options(dynamics, largest_force_n(points, pair))
-    solver = table_solver(pair, stiffness_options(sections["stiffness"]), options, np.zeros(1))
+    dynamics, torque_nm = sections["dynamics"], _largest_torque_nm(sections)
+    force_n = torque_nm / pair.pinion.base_radius_m
+    approach_m = approach_under_m(pair, stiffness_options(sections["stiffness"]), force_n) if force_n > 0.0 else 0.0
+    room_m = 1e-6 * at(dynamics.backlash_um, 0.5) + approach_m
     ranges = {which: static_tilts_rad(dynamics, which, pair, torque_nm) for which in MEMBERS}
-    return FlankTilts(torque_nm, largest_tilt_rad(solver), ranges)
+    return FlankTilts(torque_nm, 2.0 * room_m / pair.face_width_m, ranges)
 
 
 def median_tilt_rad(sections: Mapping[str, Any], pair: GearPair) -> float:
@@ -150,11 +152,11 @@ def _problem(dynamics: Dynamics, pair: GearPair, tilts: FlankTilts) -> Problem:
     shaft: Shaft = getattr(dynamics.shafts, which)
     thin, thick = bounds(shaft.diameter_mm)[0], 2e3 * pair.member(which).root_radius_m
     received = (
-        f"{_rounded(shaft.diameter_mm)}, with which the flanks tilt by {1e6 * tilt(None):.3g} urad under "
+        f"{_rounded(shaft.diameter_mm)}, with which the flanks tilt by {1e6 * tilt(None):.0f} urad under "
         f"{torque_nm:g} N m, with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
         f"dynamics.{which}.bearing_stiffness_x_n_per_m {getattr(dynamics, which).bearing_stiffness_x_n_per_m}"
     )
-    allowed = f"allowed: a tilt of at most {1e6 * limit:.3g} urad (4 % of the largest approach)"
+    allowed = f"allowed: a tilt of at most {1e6 * limit:.0f} urad, where an end of the face meets the other flank"
     if tilt(thick) > limit:
         advice = "no diameter below that of the root does; move gear_position nearer to 0.5, or take stiffer bearings"
         return Problem(f"dynamics.shafts.{which}.diameter_mm", received, f"{allowed}; {advice}")

@@ -107,7 +107,7 @@ def force_spectrum(rubbing: RubbingNumbers, course: Course) -> ForceSpectrum:
         rough_n=stiffness * roughness_m * course.asperity_share ** constant(rubbing.asperity_exponent),
         roll_off_hz=rolling_m_s / (1e-3 * constant(rubbing.roll_off_mm)),
         hurst_exponent=constant(rubbing.hurst_exponent),
-        contact_hz=rolling_m_s / (2.0 * pi * contact_half_width_m(pair, course.mesh_force_n)),
+        contact_hz=rolling_m_s / (2.0 * pi * contact_half_width_m(pair, course.point)),
     )
 
 

@@ -12,13 +12,12 @@ from siggen.dynamics.friction.film_traction import BOUNDARY_FRICTION
 from siggen.dynamics.friction.reversal import slip_speed
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.specimen import OperatingPoint
-from siggen.specimen.contact import LEAST_LINE_LOAD_N_PER_M
-from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, pitch_point
+from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, mean_force_n, pitch_point
 
 
 def asperity_share(section: Friction, pair: GearPair, point: OperatingPoint) -> float:
     """Return the share of the mean load that asperities of healthy flanks carry at the pitch point, whatever rubs."""
-    force_n = mean_force_n(pair, point.torque_nm / pair.pinion.base_radius_m)
+    force_n = mean_force_n(pair, point)
     groups = lubricated_mesh(section, pair, point).groups(
         pair.pitch_point_m, force_n, composite_roughness_m(section)[0]
     )
@@ -34,19 +33,14 @@ class FrictionTurn(NamedTuple):
 
 def friction_turn(section: Friction, pair: GearPair, point: OperatingPoint) -> FrictionTurn:
     """Return how the friction of a mixed film turns at the pitch point: asperities do, the film is at rest there."""
-    force_n = mean_force_n(pair, point.torque_nm / pair.pinion.base_radius_m)
+    force_n = mean_force_n(pair, point)
     mesh = lubricated_mesh(section, pair, point)
     speed = slip_speed(mesh, pitch_point(pair, mesh), force_n, composite_roughness_m(section)[0])
     return FrictionTurn(asperity_share(section, pair, point) * BOUNDARY_FRICTION, speed)
 
 
-def contact_half_width_m(pair: GearPair, force_n: float) -> float:
-    """Return the half width of Hertz's line contact at the pitch point [m]: √(8 F R/(π L E'))."""
+def contact_half_width_m(pair: GearPair, point: OperatingPoint) -> float:
+    """Return the half width of Hertz's line contact under the mean load at the pitch point [m]: √(8 F R/(π L E'))."""
     radius = relative_radius(pair.pitch_point_m, pair.line_of_action_m)
     modulus = effective_modulus(pair.youngs_modulus_pa, pair.poisson_ratio)
-    return float(sqrt(8.0 * mean_force_n(pair, force_n) * radius / (pi * pair.face_width_m * modulus)))
-
-
-def mean_force_n(pair: GearPair, force_n: float) -> float:
-    """Return a force on the flanks, at least that of a light contact: without a load they still touch now and then."""
-    return max(abs(force_n), LEAST_LINE_LOAD_N_PER_M * pair.face_width_m)
+    return float(sqrt(8.0 * mean_force_n(pair, point) * radius / (pi * pair.face_width_m * modulus)))

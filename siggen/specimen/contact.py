@@ -11,16 +11,13 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.config import Dynamics, OperatingRange
 from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.body_coupling import body_coupling
 from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables, pair_kinds, table_of_pair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.number import bounds, constant
-
-LEAST_LINE_LOAD_N_PER_M = 1e3
-"""Where the configuration has next to no torque: a Hertz band of some 10 µm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,13 +90,9 @@ def _healthy_tables(pair: GearPair, options: StiffnessOptions, points: int) -> M
 
 
 def largest_force_n(points: Sequence[OperatingRange], pair: GearPair) -> float:
-    """Return the force up to which contacts are tabulated [N]: three times that of the largest torque of a set."""
+    """Return the force up to which contacts are tabulated [N]: three times the largest torque's, or the pair's own.
+
+    The tables hold the same numbers up to any force, so that no operating point acts on the records of another.
+    """
     torque = max(abs(limit) for point in points for limit in bounds(point.torque_nm))
-    return max(3.0 * torque / pair.pinion.base_radius_m, LEAST_LINE_LOAD_N_PER_M * pair.face_width_m)
-
-
-def mean_line_load_n_per_m(points: Sequence[OperatingRange], pair: GearPair) -> float:
-    """Return the line load of the mean torque of a set [N/m]: its Hertz band smooths waves on the flanks."""
-    torques = [abs(0.5 * sum(bounds(point.torque_nm))) for point in points]
-    force = sum(torques) / len(torques) / pair.pinion.base_radius_m
-    return max(force / pair.face_width_m, LEAST_LINE_LOAD_N_PER_M)
+    return max(3.0 * torque / pair.pinion.base_radius_m, reference_force_n(pair))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.seeding import Stage, named_generator
-from siggen.specimen.contact import mean_line_load_n_per_m
 
 CLAMPING = (2, 3, 4)
 """Waves per revolution that the jaws of a chuck leave."""
@@ -37,6 +37,10 @@ OWN_UM = LogUniform(low=0.1, high=1.0)
 """The amplitude of each tooth's own form (assumed: at four cycles the size of a ghost)."""
 OWN_EXPONENT = Uniform(low=0.9, high=1.6)
 """Its fall (measured: sidebands pass mesh lines above mesh 5)."""
+LEAST_LINE_LOAD_N_PER_M = 1e3
+"""Where there is next to no torque: a Hertz band of some 10 µm."""
+KEPT_POINTS = 8
+"""Operating points whose waves are kept, each of some megabytes; states and repeats share them."""
 REFERENCE_OVER_TEETH = 2.3
 """Waves over teeth at which a ghost has the amplitude that is drawn; more make it smaller in proportion (assumed)."""
 
@@ -64,14 +68,24 @@ def specimen_waves(config: Config, pair: GearPair, specimen_id: int, state_id: i
     return SpecimenWaves(pinion, gear, counts)
 
 
-def wavy_teeth(
-    missing: MissingMaterial, config: Config, pair: GearPair, waves: SpecimenWaves | None
-) -> MissingMaterial:
-    """Return the missing material of the same teeth with their waves, in contact under the set's mean load."""
-    if waves is None:
-        return missing
-    load = mean_line_load_n_per_m(config.operating_points, pair)
-    return with_waves(missing, pair, waves.pinion, waves.gear, load)
+class WavyTeeth:
+    """Missing material of teeth with waves, which the Hertz band of a record's own torque smooths."""
+
+    def __init__(self, missing: MissingMaterial, pair: GearPair, waves: SpecimenWaves | None = None) -> None:
+        self._plain, self._pair, self._waves = missing, pair, waves
+        # not over instances: what belongs to a gearbox ends with it
+        self._with_waves = lru_cache(maxsize=KEPT_POINTS)(self._smoothed)
+
+    def under(self, torque_nm: float) -> MissingMaterial:
+        """Return the missing material in contact under a torque at the pinion."""
+        return self._with_waves(abs(torque_nm))
+
+    def _smoothed(self, torque_nm: float) -> MissingMaterial:
+        if self._waves is None:
+            return self._plain
+        pair = self._pair
+        load = max(torque_nm / pair.pinion.base_radius_m / pair.face_width_m, LEAST_LINE_LOAD_N_PER_M)
+        return with_waves(self._plain, pair, self._waves.pinion, self._waves.gear, load)
 
 
 def wave_labels(waves: SpecimenWaves | None) -> dict[str, object]:

@@ -17,6 +17,8 @@ from siggen.planning.specimen import OperatingPoint
 
 LARGEST_FORCE = 10.0
 """End of the table's load axis over the static mesh force; beyond it the coefficient stays."""
+LEAST_LINE_LOAD_N_PER_M = 1e3
+"""A Hertz band of some 10 µm."""
 HARDNESS_PA = 7e9
 """Of case-hardened flanks (reference: standard literature)."""
 
@@ -29,7 +31,7 @@ def specimen_friction(
         return None
     if section.model == "constant":
         return constant_friction(constant(section.coefficient))
-    mesh, force_n = lubricated_mesh(section, pair, point), point.torque_nm / pair.pinion.base_radius_m
+    mesh, force_n = lubricated_mesh(section, pair, point), mean_force_n(pair, point)
     healthy_m, pitted_m = composite_roughness_m(section)
     table = asperity_table(
         mesh,
@@ -39,6 +41,11 @@ def specimen_friction(
         LARGEST_FORCE * force_n,
     )
     return composite_friction(table, slip_speed_m_s=slip_speed(mesh, pitch_point(pair, mesh), force_n, healthy_m))
+
+
+def mean_force_n(pair: GearPair, point: OperatingPoint) -> float:
+    """Return the mean force of the teeth [N], at least that of a light contact: idling flanks touch now and then."""
+    return max(abs(point.torque_nm) / pair.pinion.base_radius_m, LEAST_LINE_LOAD_N_PER_M * pair.face_width_m)
 
 
 def pitch_point(pair: GearPair, mesh: LubricatedMesh) -> PitchPoint:

@@ -7,12 +7,11 @@ from functools import cache
 from siggen.config import Config
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
 from siggen.specimen.damage import grown_damage
 from siggen.specimen.errors import SpecimenErrors, erroneous_teeth, specimen_errors
-from siggen.specimen.flank_waves import SpecimenWaves, specimen_waves, wavy_teeth
+from siggen.specimen.flank_waves import SpecimenWaves, WavyTeeth, specimen_waves
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.motion import teeth_missing
 
@@ -45,8 +44,8 @@ class MadeGears:
         """Return the waves; None without them."""
         return self._waves_and_missing(self._drawn_for(state_id))[0]
 
-    def missing(self, state_id: int) -> MissingMaterial:
-        """Return the missing material of relief, errors and waves."""
+    def missing(self, state_id: int) -> WavyTeeth:
+        """Return the missing material of relief, errors and waves, under any torque."""
         return self._waves_and_missing(self._drawn_for(state_id))[1]
 
     def damage(self, state_id: int) -> Damage:
@@ -69,8 +68,8 @@ class MadeGears:
     def _computed_errors(self, drawn_for: int) -> SpecimenErrors | None:
         return specimen_errors(self._config, self.pair, self._specimen.specimen_id, drawn_for)
 
-    def _computed_missing(self, drawn_for: int) -> tuple[SpecimenWaves | None, MissingMaterial]:
+    def _computed_missing(self, drawn_for: int) -> tuple[SpecimenWaves | None, WavyTeeth]:
         config, specimen, pair = self._config, self._specimen, self.pair
         plain = teeth_missing(specimen.dynamics, pair, TABLE_POINTS)
         waves = specimen_waves(config, pair, specimen.specimen_id, drawn_for)
-        return waves, wavy_teeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), config, pair, waves)
+        return waves, WavyTeeth(erroneous_teeth(plain, pair, self._errors(drawn_for)), pair, waves)

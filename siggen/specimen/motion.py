@@ -28,6 +28,7 @@ from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.drive import RecordDrive
+from siggen.specimen.flank_waves import WavyTeeth
 from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
 
 RELIEF_LENGTH = 0.25
@@ -45,7 +46,7 @@ class SpecimenMesh:
     pair: GearPair
     structure: Structure
     tables: MeshTables
-    missing: MissingMaterial
+    missing: WavyTeeth
     coupling_m_per_n: NDArray[np.float64] | None = None
     contact: ContactTable | None = None
 
@@ -113,7 +114,7 @@ def _law(dynamics: Dynamics, mesh: SpecimenMesh, point: OperatingPoint) -> PairL
     film = SqueezeFilm(FILM_VISCOSITY_PA_S, mesh.pair.face_width_m, FILM_FLOOR_M)
     return pair_law(
         mesh.tables,
-        mesh.missing,
+        mesh.missing.under(point.torque_nm),
         MeshConstants(
             mesh.pair.line_of_action_m, mesh.structure.equivalent_mesh_mass_kg, 1e-6 * constant(dynamics.backlash_um)
         ),

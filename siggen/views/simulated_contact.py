@@ -9,7 +9,7 @@ import numpy as np
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.contact.face_gaps import face_gaps
-from siggen.gears.contact.table_columns import FORCE, SLOPE
+from siggen.gears.contact.table_columns import FORCE, SLOPE, node_places_m
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -101,10 +101,10 @@ def _beyond_touch_m(
     column = table.column[row, cell] + (place - cell) * table.gain[row, cell]
     first: IntArray = np.minimum(column.astype(np.int64), len(table.curves) - 2)
     share = (column - first)[:, None]
-    low, high = table.curves[first], table.curves[first + 1]
+    low, high = table.upright[first], table.upright[first + 1]
     force = (1.0 - share) * low[:, :, FORCE] + share * high[:, :, FORCE]
     slope = (1.0 - share) * low[:, :, SLOPE] + share * high[:, :, SLOPE]
-    node = table.reach_m * (np.arange(force.shape[1]) / (force.shape[1] - 1.0)) ** 2
+    node = node_places_m(table.unit_m, force.shape[1])
     end = np.clip(np.sum(force < force_n, axis=1), 1, node.size - 1)
     rows, step = np.arange(end.size), node[end] - node[end - 1]
     values = (force[rows, end - 1], force[rows, end], slope[rows, end - 1] * step, slope[rows, end] * step)

@@ -67,6 +67,7 @@ from siggen.lanes import (
     bits,
     extract,
     load,
+    magnitude,
     select,
     shuffle,
     splat,
@@ -109,6 +110,8 @@ def write_lane_forces(
     behind = (depth <= 0.0) & (approach - load(table, OFFSET * LANES) < -scalars[layout.BACKLASH_M])
     if bits(behind) & inside != 0:
         return NOT_HERE
+    if law.scalars[layout.CONTACT_HALF_FACE] > 0.0:  # how far one end of the face is ahead
+        depth = depth + magnitude(of_pairs(load(node, NODE_TILT * LANES))) * law.scalars[layout.CONTACT_HALF_FACE]
     _write_springs(law, pairs, table, node, bits(depth > 0.0) & inside, inside, pair)
     for s in range(SLOTS):
         pairs[4 + s, columns.SPRUNG], pairs[4 + s, columns.STIFFNESS] = table[NORMAL, 4 + s], table[STIFFNESS, 4 + s]

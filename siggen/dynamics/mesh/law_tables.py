@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_law import PairLaw
+from siggen.gears.contact.table_columns import TILTING_VALUES
 
 NUMBERS = {
     "contact_ratio": layout.CONTACT_RATIO,
@@ -91,10 +92,16 @@ def _contact(law: PairLaw) -> dict[str, Any]:
         "contact.touch_m": _numbers(law, layout.TOUCH_AT, (rows + 1, points)),
         "contact.column": _numbers(law, layout.COLUMN_AT, (rows + 1, points - 1)),
         "contact.gain": _numbers(law, layout.GAIN_AT, (rows + 1, points - 1)),
-        "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, values)),
-        "contact.reach_m": float(law.scalars[layout.CONTACT_REACH]),
+        "contact.curves": _numbers(law, layout.CURVES_AT, (columns, nodes, *_rays(values))),
+        "contact.unit_m": float(law.scalars[layout.CONTACT_UNIT]),
         "contact.lead_m": float(law.scalars[layout.LEAD_M]),
+        "contact.half_face_m": float(law.scalars[layout.CONTACT_HALF_FACE]),
     }
+
+
+def _rays(values: int) -> tuple[int, int]:
+    """Return how many rays in approach and tilt have how many values each."""
+    return (1, values) if values < TILTING_VALUES else (values // TILTING_VALUES, TILTING_VALUES)
 
 
 def _friction(law: PairLaw) -> dict[str, NDArray[Any]]:

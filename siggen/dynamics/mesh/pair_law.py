@@ -60,8 +60,7 @@ LUBRICATED_START = next(_scalar)
 LUBRICATED_PER_M = next(_scalar)
 LUBRICATED_FLOOR = next(_scalar)
 LUBRICATED_PER_LOG = next(_scalar)
-CONTACT_REACH = next(_scalar)  # approach of the last node of the table of the contact [m]
-CONTACT_TILT = next(_scalar)  # tilt up to which it holds [rad]
+CONTACT_HALF_FACE = next(_scalar)  # half the face width where gears tilt, else 0 [m]
 CONTACT_UNIT = next(_scalar)  # approach of its second node [m]
 SCALARS = next(_scalar)
 
@@ -93,7 +92,7 @@ TOUCH_AT = next(_place)  # in `numbers` again
 COLUMN_AT = next(_place)
 GAIN_AT = next(_place)
 CURVES_AT = next(_place)
-CONTACT_VALUES = next(_place)  # per node; 4 without tilt, 8 with
+CONTACT_VALUES = next(_place)  # per node; 4 without tilt, 8 for every ray with
 HEAD = next(_place)
 
 
@@ -128,9 +127,9 @@ class PairLaw(NamedTuple):
         return float(self.scalars[LINE_M])
 
     @property
-    def largest_tilt_rad(self) -> float:
-        """Tilt up to which the table of the contact holds; 0 without one [rad]."""
-        return float(self.scalars[CONTACT_TILT])
+    def half_face_m(self) -> float:
+        """Half the face width where gears tilt, else 0 [m]."""
+        return float(self.scalars[CONTACT_HALF_FACE])
 
     @property
     def backlash_m(self) -> float:
@@ -261,14 +260,13 @@ def _pack_contact(packed: PackedTables, scalars: FloatArray, contact: ContactTab
         )
     packed.head(CONTACT_COLUMNS, contact.curves.shape[0])
     packed.head(CONTACT_NODES, contact.curves.shape[1])
-    packed.head(CONTACT_VALUES, contact.curves.shape[2])
+    packed.head(CONTACT_VALUES, contact.curves.shape[2] * contact.curves.shape[3])
     for place, values in (
         (TOUCH_AT, contact.touch_m), (COLUMN_AT, contact.column), (GAIN_AT, contact.gain), (CURVES_AT, contact.curves),
     ):  # fmt: skip
         packed.add(place, values)
-    scalars[CONTACT_REACH], scalars[LEAD_M] = contact.reach_m, contact.lead_m
-    scalars[CONTACT_TILT] = contact.largest_tilt_rad
-    scalars[CONTACT_UNIT] = contact.reach_m / (contact.curves.shape[1] - 1.0) ** 2
+    scalars[CONTACT_UNIT], scalars[LEAD_M] = contact.unit_m, contact.lead_m
+    scalars[CONTACT_HALF_FACE] = contact.half_face_m
 
 
 def _pack_coupling(packed: PackedTables, coupling_m_per_n: FloatArray, points: int) -> None:

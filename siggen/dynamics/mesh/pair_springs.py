@@ -68,6 +68,7 @@ def write_springs(
     for i in range(base, base + slots):
         pairs[i, WHOLE], pairs[i, POSITION], pairs[i, PENETRATION] = 0.0, 0.0, 0.0
     first, second, near, back = -1, -1, 0, False
+    lift = abs(pairs[base, TILT]) * law.scalars[layout.CONTACT_HALF_FACE]  # how far one end of the face is ahead
     pair = int(np.floor(pitches + law.scalars[layout.REACH_BEFORE]))
     while pitches - pair < law.scalars[layout.CONTACT_RATIO] + law.scalars[layout.REACH_AFTER]:
         i = base + pair % slots
@@ -77,7 +78,7 @@ def write_springs(
         if depth <= 0.0 and approach_m - pairs[i, OFFSET] < -law.scalars[layout.BACKLASH_M]:
             depth, flank, back = approach_m - pairs[i, OFFSET] + law.scalars[layout.BACKLASH_M], -1.0, True
         pairs[i, PENETRATION], pairs[i, ALONE], pairs[i, FLANK] = depth, depth, flank
-        if depth > 0.0 or flank < 0.0:
+        if depth + lift > 0.0 or flank < 0.0:
             near += 1
             first, second = (i, second) if first < 0 else (first, i)
     if law.places[layout.APART] == 0 or near < 2:

@@ -146,7 +146,7 @@ class PairMotion:
         return rate
 
     def refuse_outside(self, states: FloatArray) -> None:
-        """Raise if the gears tilt beyond the expansion of the contact in any of the states (k, 2n).
+        """Raise if the gears tilt so far in any of the states (k, 2n) that an end of the face meets the other flank.
 
         Raises
         ------
@@ -156,7 +156,8 @@ class PairMotion:
         if self.structure.tilt_vector is not None:
             n = self.structure.tilt_vector.size
             tilt = self.pair_equations.static_tilt + states[:, :n] @ self.structure.tilt_vector
-            self._refuse_tilt(float(np.abs(tilt).max(initial=0.0)), "in motion")
+            approach = self.pair_equations.static_approach + states[:, :n] @ self.equations.mesh_vector
+            self._refuse_tilt(tilt, approach, "in motion")
 
     def steps_apart(self, states: FloatArray, pitches: FloatArray) -> int:
         """Return at how many states no pair carries."""
@@ -164,7 +165,8 @@ class PairMotion:
 
     def _refuse_soft_shafts(self) -> None:
         """Raise where the static deflection alone is beyond the model."""
-        self._refuse_tilt(abs(self.pair_equations.static_tilt), "under the mean torque")
+        static = self.pair_equations
+        self._refuse_tilt(np.array([static.static_tilt]), np.array([static.static_approach]), "under the mean torque")
         moved = dict(zip(self.structure.coordinates, self.equations.static_deflection, strict=True))
         shift = max(abs(moved[name]) for name in ("x_1", "y_1", "x_2", "y_2"))
         if not shift <= LARGEST_SHIFT * self.base_pitch_m:
@@ -173,12 +175,16 @@ class PairMotion:
                 f"{1e3 * LARGEST_SHIFT * self.base_pitch_m:.3g} mm. Take thicker or shorter shafts, or a smaller torque"
             )
 
-    def _refuse_tilt(self, tilt_rad: float, when: str) -> None:
-        limit = self.law.largest_tilt_rad
-        if not tilt_rad <= limit:
+    def _refuse_tilt(self, tilt_rad: FloatArray, approach_m: FloatArray, when: str) -> None:
+        """Raise where an end of the face lies behind the flank that it faces by more than the backlash."""
+        half_face, backlash = self.law.half_face_m, self.law.backlash_m
+        beyond = half_face * np.abs(tilt_rad) - approach_m - backlash
+        worst = int(np.argmax(beyond)) if tilt_rad.size and half_face > 0.0 else -1
+        if worst >= 0 and not beyond[worst] <= 0.0:
             raise ValueError(
-                f"dynamics.shafts: the flanks tilt by {1e6 * tilt_rad:.3g} urad {when}; allowed: at most "
-                f"{1e6 * limit:.3g}. Take thicker or shorter shafts, a gear nearer the middle, a narrower face or a "
+                f"dynamics.shafts: the flanks tilt by {1e6 * abs(tilt_rad[worst]):.0f} urad {when}; allowed: at most "
+                f"{1e6 * (backlash + approach_m[worst]) / half_face:.0f}, where an end of the face meets the other "
+                "flank. Take thicker or shorter shafts, a gear nearer the middle, a narrower face, more backlash or a "
                 "smaller torque"
             )
 

@@ -6,29 +6,27 @@ approach beyond first touch: what a gap without land does most, the sink of the 
 fine grid of the stiffness, so that columns only carry how the load spreads. Away from damage all kinds share the
 columns of the healthy pair.
 
-Where gears tilt, the energy is expanded about no tilt, W = W_0(d) + M(d) θ + ½ M_θ(d) θ², so that force and moment,
+Where gears tilt, the table holds the stored energy along rays in the plane of approach and tilt (`tilt_rays`), from no
+load to a face that rests on one end; force and moment are its derivatives. What misalignment takes away stands in the
+lead, not in the tilt. The ray without tilt is the curve of parallel gears.
 
-    F = W_0' + M' θ + ½ M_θ' θ²,   moment = M + M_θ θ,
-
-are derivatives of one energy: no closed loop in (d, θ) does work. Loaded tilts are small beside the approach; what
-misalignment takes away stands in the lead, not in θ. The expansion holds where the whole face touches: up to tilts that
-lift its ends by `TOUCHING` of the reach.
-
-Nodes lie at D (k/(n - 1))² up to the largest approach D; beyond it the force goes on with the last slope.
+Nodes lie at u k², u of the pair alone: a larger force of the set adds nodes at the end, and what the others hold, where
+columns are and what a slice is stay as they were. Beyond the last node the force goes on with the last slope.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
+from siggen.gears.contact.column_halving import halved
 from siggen.gears.contact.kind_row import KindRow, felt, first_touch, kind_row, pits_of_kind, touch_along
-from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, largest_tilt_rad, table_solver
+from siggen.gears.contact.table_columns import FORCE, TableSolver, column_curves, table_solver
 from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.contact.tilted_columns import tilted_columns
 from siggen.gears.damage.tooth_damage import Damage, has_extent
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds
@@ -37,25 +35,32 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 COARSEST = 64
 """Intervals of the fine grid per column near damage before refining."""
 BEND = 4e-3
-"""Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest."""
+"""Largest deviation of a column's forces from the mean of its neighbours, of the force and a tenth of the largest.
+
+Up to the reference force: where columns are may not depend on how far they go."""
 
 
 class ContactTable(NamedTuple):
     """Tables on the fine grid of the stiffness, `points` positions from s_A to s_E.
 
     `touch_m` (rows, points): approach at which a pair of this kind first touches [m]; `column`, `gain` (rows, points -
-    1): column at the start of a fine interval, and how many columns it spans; `curves` (columns, nodes, 4 or 8): see
-    FORCE; `reach_m`: D; `lead_m`: least missing material across the face, which every pair has to add;
-    `largest_tilt_rad`: up to which the expansion holds, 0 where gears stay parallel.
+    1): column at the start of a fine interval, how many columns it spans; `curves` (columns, nodes, rays, values): see
+    FORCE; `unit_m`: u; `lead_m`: least missing material across the face, which every pair has to add;
+    `half_face_m`: h of `tilt_rays`, 0 where gears stay parallel.
     """
 
     touch_m: FloatArray
     column: FloatArray
     gain: FloatArray
     curves: FloatArray
-    reach_m: float
+    unit_m: float
     lead_m: float = 0.0
-    largest_tilt_rad: float = 0.0
+    half_face_m: float = 0.0
+
+    @property
+    def upright(self) -> FloatArray:
+        """Curves without tilt (columns, nodes, values), whose first four are force, slope and shares."""
+        return self.curves[:, :, self.curves.shape[2] // 2]
 
 
 def contact_table(
@@ -99,9 +104,9 @@ def contact_table(
         parts.append(_damaged(solver, damaged, row, healthy, first))
     touch, column, gain, curves = (list(values) for values in zip(*parts, strict=True))
     joined = np.concatenate(curves)
-    tilt = largest_tilt_rad(solver) if options.tilts else 0.0
+    half_face = 0.5 * pair.face_width_m if options.tilts else 0.0
     table = ContactTable(
-        np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.reach_m, float(lead.min()), tilt
+        np.stack(touch), np.stack(column), np.stack(gain), joined, healthy.unit_m, float(lead.min()), half_face
     )
     for array in table[:4]:
         array.setflags(write=False)
@@ -115,17 +120,17 @@ def _healthy(
     solver = table_solver(pair, stiffness, options, np.array(lead_m))
     row = kind_row(pair, stiffness, options, points)
     chosen = np.round(np.linspace(0, points - 1, min(options.healthy_columns, points))).astype(np.int64)
-    curves = column_curves(solver, row, chosen)
+    curves = tilted_columns(solver, row, chosen, column_curves(solver, row, chosen))
     at = np.interp(np.arange(points), chosen, np.arange(chosen.size))
     touch = first_touch(pair, row, np.arange(points), solver.lead_m)
-    return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[-1])), row
+    return ContactTable(touch[None], at[None, :-1], np.diff(at)[None], curves, float(solver.node_m[1])), row
 
 
 def _damaged(
     solver: TableSolver, row: KindRow, healthy_row: KindRow, healthy: ContactTable, first: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return touch (points,), column and gain (points - 1,) and the curves of one kind, numbered from `first`."""
-    differs = felt(solver.pair, row, healthy_row, solver.options.largest_force_n)
+    differs = felt(solver.pair, row, healthy_row)
     column, gain = healthy.column[0].copy(), healthy.gain[0].copy()
     parts = [np.zeros((0, *healthy.curves.shape[1:]))]
     for run in _runs(np.flatnonzero(differs[1:] | differs[:-1])):
@@ -150,23 +155,16 @@ def _refined(solver: TableSolver, row: KindRow, run: IntArray) -> tuple[IntArray
     """Return fine points and curves of the columns of a run: halved where the middle is not the mean of the ends."""
     first, last = int(run[0]), int(run[-1]) + 1
     wanted = np.unique(np.append(np.arange(first, last, COARSEST), last)).tolist()
-    found = dict(zip(wanted, column_curves(solver, row, np.array(wanted)), strict=True))
-    intervals = list(pairwise(wanted))
-    while intervals := [(low, high) for low, high in intervals if high - low > solver.options.finest]:
-        middles = [(low + high) // 2 for low, high in intervals]
-        found |= dict(zip(middles, column_curves(solver, row, np.array(middles)), strict=True))
-        bent = [
-            (low, middle, high)
-            for (low, high), middle in zip(intervals, middles, strict=True)
-            if not _is_mean(found[low], found[middle], found[high], (middle - low) / (high - low))
-        ]
-        intervals = [part for low, middle, high in bent for part in ((low, middle), (middle, high))]
-    ends = np.array(sorted(found), dtype=np.int64)
-    return ends, np.stack([found[i] for i in ends.tolist()])
+    end = solver.reference + 1
+
+    def bent(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:
+        return not _is_mean(low[:end, 0, FORCE], middle[:end, 0, FORCE], high[:end, 0, FORCE], weight)
+
+    ends, curves = halved(wanted, lambda places: column_curves(solver, row, places), bent, solver.options.finest)
+    return ends, tilted_columns(solver, row, ends, curves)
 
 
 def _is_mean(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:
-    """Whether a column's forces are those between its neighbours'."""
-    mean = (1.0 - weight) * low[:, FORCE] + weight * high[:, FORCE]
-    scale = middle[:, FORCE] + 0.1 * middle[-1, FORCE]
-    return bool(np.all(np.abs(mean - middle[:, FORCE]) <= BEND * scale))
+    """Whether forces (nodes,) of a column without tilt are those between its neighbours'."""
+    mean = (1.0 - weight) * low + weight * high
+    return bool(np.all(np.abs(mean - middle) <= BEND * (middle + 0.1 * middle[-1])))

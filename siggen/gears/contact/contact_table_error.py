@@ -19,7 +19,7 @@ from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 
 APPROACHES = (0.12, 0.25, 0.4, 0.6)
-"""Of the largest approach, at which forces are compared."""
+"""Of the approach of the reference force, at which forces are compared."""
 
 
 class ContactTableError(NamedTuple):
@@ -74,7 +74,7 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
 
     place = np.array([2 * cell + 1])
     touch = float(first_touch(solver.pair, row, place, solver.lead_m)[0])
-    approach = touch + np.array(APPROACHES) * table.reach_m
+    approach = touch + np.array(APPROACHES) * solver.node_m[solver.reference]
     slices = row_faces(solver, row, place)[0]
     direct = force_curve(
         slices, approach, 0.0, np.zeros(solver.lead_m.size), solver_room(solver.lead_m.size), NO_ENERGY
@@ -83,7 +83,7 @@ def _errors_at(solver: TableSolver, row: KindRow, table: ContactTable, number: i
     first = min(int(column), len(table.curves) - 2)
     beyond = approach - float(table.touch_m[number, cell : cell + 2].mean())
     low, high = (
-        CubicHermiteSpline(solver.node_m, curve[:, FORCE], curve[:, SLOPE])(np.clip(beyond, 0.0, table.reach_m))
-        for curve in table.curves[first : first + 2]
+        CubicHermiteSpline(solver.node_m, curve[:, FORCE], curve[:, SLOPE])(np.clip(beyond, 0.0, solver.node_m[-1]))
+        for curve in table.upright[first : first + 2]
     )
     return np.asarray(low + (column - first) * (high - low) - direct.force_n)

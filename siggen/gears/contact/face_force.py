@@ -86,6 +86,10 @@ def face_force(
         square = 0.0
         for i in range(loads_m.size):
             square += loads_m[i] * loads_m[i]
+        if square == 0.0 and passes > 1:  # a guess far too large let go of every slice: begin anew
+            _first_guess(slices, approach_m, tilt_rad, loads_m)
+            for i in range(loads_m.size):
+                square += loads_m[i] * loads_m[i]
         if square == 0.0:
             return FaceForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, passes)
         work, bend = _prepare(slices, loads_m, square, room)

@@ -1,4 +1,4 @@
-"""ForceCurve: answers of a tooth pair at one position to ascending approaches, each solved from the ones before."""
+"""ForceCurve: answers of a tooth pair at one position along approaches and tilts, each solved from the ones before."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TOLERANCE = 1e-3
 
 
 class ForceCurve(NamedTuple):
-    """Answers to ascending approaches, (k,) each, as in `FaceForce`, and the stored energy W [J]."""
+    """Answers along a way, (k,) each, as in `FaceForce`, and the stored energy W [J]."""
 
     energy_j: FloatArray
     force_n: FloatArray
@@ -40,7 +40,21 @@ def force_curve(
     nodes: FloatArray,
     tolerance: float = TOLERANCE,
 ) -> ForceCurve:
-    """Return the answers to ascending approaches (k,) [m] at one tilt.
+    """Return the answers to ascending approaches (k,) [m] at one tilt; the rest as `curve_along`."""
+    return curve_along(slices, approach_m, np.full(approach_m.size, tilt_rad), loads_m, room, nodes, tolerance)
+
+
+@njit(cache=True)
+def curve_along(
+    slices: FaceSlices,
+    approach_m: FloatArray,
+    tilt_rad: FloatArray,
+    loads_m: FloatArray,
+    room: SolverRoom,
+    nodes: FloatArray,
+    tolerance: float = TOLERANCE,
+) -> ForceCurve:
+    """Return the answers to approaches (k,) [m] and tilts (k,) [rad] that lie on a straight way.
 
     `loads_m` (n,): guess at the first approach (zeros are allowed), the loads there afterwards. Every solution starts
     from the line through the two before it. `nodes`: of `energy_nodes`; with an empty (2, 0) no energy is computed (it
@@ -58,20 +72,20 @@ def force_curve(
     loads = loads_m.copy()
     for j in range(count):
         if j > 1:
-            ratio = (approach_m[j] - approach_m[j - 1]) / (approach_m[j - 1] - approach_m[j - 2])
+            ratio = _step_ratio(approach_m, tilt_rad, j)
             for i in range(loads_m.size):
                 if loads[i] > 0.0 and before[i] > 0.0:
                     loads[i] = max(loads[i] + ratio * (loads[i] - before[i]), 0.1 * loads[i])
         if j > 0:
             before[:] = last
-        answer = face_force(slices, approach_m[j], tilt_rad, loads, room, tolerance)
+        answer = face_force(slices, approach_m[j], tilt_rad[j], loads, room, tolerance)
         if answer.passes < 0:
             raise ValueError("the contact across the face was not solved; allowed: finite slices and approaches")
         last[:] = loads
         if j == 0:
             loads_m[:] = loads
         if nodes.shape[1]:
-            out[0, j] = stored_energy(slices, approach_m[j], tilt_rad, loads, room, nodes)
+            out[0, j] = stored_energy(slices, approach_m[j], tilt_rad[j], loads, room, nodes)
         out[1, j] = answer.force_n
         out[2, j] = answer.moment_n_m
         out[3, j] = answer.stiffness_n_per_m
@@ -80,3 +94,15 @@ def force_curve(
         out[6, j] = answer.carrying_m
         out[7, j] = answer.on_damage
     return ForceCurve(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7])
+
+
+@njit(cache=True)
+def _step_ratio(approach_m: FloatArray, tilt_rad: FloatArray, j: int) -> float:
+    """Return the step to place j over the one before it."""
+    before = approach_m[j - 1] - approach_m[j - 2]
+    if before != 0.0:
+        risen: float = (approach_m[j] - approach_m[j - 1]) / before
+        return risen
+    turned = tilt_rad[j - 1] - tilt_rad[j - 2]
+    ratio: float = (tilt_rad[j] - tilt_rad[j - 1]) / turned if turned != 0.0 else 0.0
+    return ratio

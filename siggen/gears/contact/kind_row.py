@@ -12,7 +12,7 @@ import numpy as np
 from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
 from siggen.gears.contact.pair_rest import PairRest, pair_rest
-from siggen.gears.contact.table_options import TableOptions, face_slices, half_width
+from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.tooth_damage import Damage, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
@@ -84,15 +84,15 @@ def kind_row(
     stated = np.concatenate([radius.ravel() for c in chords for radius in (c.low_radius_m, c.high_radius_m)])
     stated = stated[stated > 0.0]
     edge_radius = float(stated.mean()) if stated.size else options.edge_radius_m
-    window = slice(0, points) if healthy is None else _window(pair, chords, position, options.largest_force_n)
+    window = slice(0, points) if healthy is None else _window(pair, chords, position)
     gaps = face_gaps(pair, chords[0], chords[1], position[window])
     return KindRow(position, gaps, window.start, gaps if healthy is None else healthy.elsewhere, rest, edge_radius)
 
 
-def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray, force_n: float) -> slice:
+def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -> slice:
     """Return the points from the first to the last at which damage of either flank may be felt."""
     along = (position_m, pair.line_of_action_m - position_m)
-    reach = FELT_HALF_WIDTHS * half_width(pair, position_m, force_n)
+    reach = FELT_HALF_WIDTHS * half_width(pair, position_m, reference_force_n(pair))
     near = np.zeros(position_m.size, dtype=bool)
     for flank, path in zip(chords, along, strict=True):
         holds = np.arange(flank.low.shape[1]) < flank.intervals[:, None]
@@ -104,14 +104,14 @@ def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray, f
     return slice(int(found[0]), int(found[-1]) + 1) if found.size else slice(0, 0)
 
 
-def felt(pair: GearPair, row: KindRow, healthy: KindRow, force_n: float) -> np.ndarray:
-    """Return at which fine points (points,) a kind differs from a healthy pair under loads up to a force."""
+def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
+    """Return at which fine points (points,) a kind differs from a healthy pair under the reference force."""
     everywhere = not np.array_equal(row.rest.tooth_m_per_n, healthy.rest.tooth_m_per_n)
     found = np.full(row.position_m.size, everywhere)
     window = slice(row.first, row.first + len(row.gaps.left_m))
     left, right = row.gaps.left_m, row.gaps.right_m
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])
-    reach = FELT_HALF_WIDTHS * half_width(pair, row.position_m[window], force_n)
+    reach = FELT_HALF_WIDTHS * half_width(pair, row.position_m[window], reference_force_n(pair))
     found[window] |= np.any(other & (-np.minimum(left, right) < reach[:, None]), axis=1)
     return found
 

@@ -14,16 +14,23 @@ from siggen.gears.stiffness.mesh_stiffness import rolls_at
 FEWEST_SLICES, MOST_SLICES = 40, 100
 
 
+REFERENCE_BAND = 1.0 / 40.0
+"""Hertz half width over the relative radius of the flanks under the reference force: 1.4 GPa on steel."""
+
+
 class TableOptions(NamedTuple):
     """How finely the contact is tabulated.
 
-    `largest_force_n`: at which the nodes end; `edge_radius_m`: of damage; `cell_widths`: width of a slice in Hertz half
-    widths of that force; `nodes`: approaches; `healthy_columns`; `finest`: intervals of the fine grid below which
-    columns are not refined; `section_loss`: whether damage also weakens the tooth's sections; `coupled`: whether slices
-    feel each other; `tilts`: whether gears do.
+    `largest_force_n`: up to which the nodes go, if it is above the reference force; `edge_radius_m`: of damage;
+    `cell_widths`: width of a slice in Hertz half widths of the reference force; `nodes`: approaches up to that of the
+    reference force; `healthy_columns`; `finest`: intervals of the fine grid below which columns are not refined;
+    `section_loss`: whether damage also weakens the tooth's sections; `coupled`: whether slices feel each other;
+    `tilts`: whether gears do.
+
+    All but the last nodes follow from the pair alone, so that no load moves the numbers of a smaller one.
     """
 
-    largest_force_n: float
+    largest_force_n: float = 0.0
     edge_radius_m: float = 0.1e-3
     cell_widths: float = 1.6
     nodes: int = 19
@@ -34,10 +41,21 @@ class TableOptions(NamedTuple):
     tilts: bool = False
 
 
+def reference_force_n(pair: GearPair) -> float:
+    """Return the force that sets slices and nodes [N]: in the middle of the path its band is `REFERENCE_BAND` wide.
+
+    Derived from Hertz: a² = 4 F R/(π E* b), so that the pair alone says what is a large force.
+    """
+    middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
+    radius = middle * (pair.line_of_action_m - middle) / pair.line_of_action_m
+    modulus = 0.5 * pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
+    return 0.25 * np.pi * modulus * REFERENCE_BAND**2 * radius * pair.face_width_m
+
+
 def face_slices(pair: GearPair, options: TableOptions) -> int:
     """Return the number of slices: cells of the width at which the kernel holds, within bounds of cost."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
-    width = options.cell_widths * float(half_width(pair, middle, options.largest_force_n)[0])
+    width = options.cell_widths * float(half_width(pair, middle, reference_force_n(pair))[0])
     return int(np.clip(round(pair.face_width_m / width), FEWEST_SLICES, MOST_SLICES))
 
 

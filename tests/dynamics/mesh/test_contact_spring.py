@@ -10,6 +10,7 @@ from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, sta
 from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.gears.contact.contact_table import ContactTable, contact_table
+from siggen.gears.contact.table_columns import node_places_m
 from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.damage.outlines import rectangle
 from siggen.gears.damage.spall import Spall
@@ -59,9 +60,9 @@ def test_the_force_of_a_single_pair_is_that_of_its_column() -> None:
                 gear_pair().contact_end_m - gear_pair().contact_start_m
             )
             column = place * (table.curves.shape[0] - 1)
-            node = table.reach_m * np.linspace(0.0, 1.0, table.curves.shape[1]) ** 2
+            node = node_places_m(table.unit_m, table.curves.shape[1])
             low, high = (
-                np.interp(pairs[i, PENETRATION], node, table.curves[k, :, 0]) for k in (int(column), int(column) + 1)
+                np.interp(pairs[i, PENETRATION], node, table.upright[k, :, 0]) for k in (int(column), int(column) + 1)
             )
             # Straight lines between nodes lie above the cubic by some per cent of a force.
             assert pairs[i, NORMAL] == pytest.approx(low + (column - int(column)) * (high - low), rel=0.03)

@@ -38,7 +38,7 @@ def test_names_give_back_every_input_of_the_law() -> None:
     cells = (ROWS, POINTS - 1)
     contact = ContactTable(
         touch_m=RNG.uniform(0.0, 8e-6, (ROWS, POINTS)), column=RNG.uniform(size=cells), gain=RNG.uniform(size=cells),
-        curves=RNG.uniform(size=(9, 7, 8)), reach_m=4e-5, lead_m=2e-6,
+        curves=RNG.uniform(size=(9, 7, 9, 8)), half_face_m=1e-2, unit_m=1e-6, lead_m=2e-6,
     )  # fmt: skip
     lubricated = AsperityTable(RNG.uniform(size=(2, 5, 6)), RNG.uniform(size=(5, 6)), 0.03, 0.001, 300.0, 9.0, 2.0)
     coupling = coupling_table(0.1, 0.02)
@@ -59,7 +59,8 @@ def test_names_give_back_every_input_of_the_law() -> None:
         "kind_of_tooth_1": missing.pinion.kind_of_tooth, "kind_of_tooth_2": missing.gear.kind_of_tooth,
         "offset_1": missing.pinion.offset_m, "offset_2": missing.gear.offset_m, "line_of_action_m": 0.033,
         "contact.touch_m": contact.touch_m, "contact.column": contact.column, "contact.gain": contact.gain,
-        "contact.curves": contact.curves, "contact.reach_m": 4e-5, "contact.lead_m": 2e-6, "rubs": True,
+        "contact.curves": contact.curves, "contact.unit_m": 1e-6, "contact.lead_m": 2e-6,
+        "contact.half_face_m": 1e-2, "rubs": True,
         "contact_ratio": 1.6,
         "friction.table.ratio": lubricated.ratio, "friction.table.fluid": lubricated.fluid, "friction.boundary": 0.11,
         "friction.slip_speed_m_s": 0.02, "friction.table.per_log": 2.0, "damping_structure_root_kg": 0.04,

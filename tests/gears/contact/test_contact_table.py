@@ -17,16 +17,17 @@ from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
 from siggen.gears.contact.pair_rest import pair_rest
 from siggen.gears.contact.table_columns import (
+    ACROSS,
     CARRYING,
+    ENERGY,
     FORCE,
-    MOMENT,
-    MOMENT_SLOPE,
     NO_ENERGY,
     SLOPE,
-    TURNING,
-    TURNING_SLOPE,
+    TYPICAL_SHARE,
+    node_places_m,
 )
-from siggen.gears.contact.table_options import TableOptions, face_slices
+from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
+from siggen.gears.contact.tilt_rays import UPRIGHT
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import Spall
@@ -41,7 +42,7 @@ from tests.gears.damage.test_kind_without_outline import Hinge
 STIFFNESS = StiffnessOptions()
 FORCE_N = 1200.0
 OPTIONS = TableOptions(largest_force_n=3.0 * FORCE_N)
-TYPICAL = 0.25 * OPTIONS.largest_force_n / 20e-3
+TYPICAL = TYPICAL_SHARE * reference_force_n(gear_pair()) / 20e-3
 POINTS = 1025
 SLICES = face_slices(gear_pair(), OPTIONS)
 
@@ -74,10 +75,10 @@ def from_table(found: ContactTable, row: int, place: float, approach_m: np.ndarr
     touch = found.touch_m[row, cell] * (1.0 - weight) + found.touch_m[row, cell + 1] * weight
     column = found.column[row, cell] + found.gain[row, cell] * weight
     first = min(int(column), len(found.curves) - 2)
-    node = found.reach_m * (np.arange(OPTIONS.nodes) / (OPTIONS.nodes - 1.0)) ** 2
+    node = node_places_m(found.unit_m, found.curves.shape[1])
     values = [
         CubicHermiteSpline(node, curve[:, FORCE], curve[:, SLOPE])(approach_m - touch)
-        for curve in found.curves[first : first + 2]
+        for curve in found.upright[first : first + 2]
     ]
     return values[0] + (column - first) * (values[1] - values[0])
 
@@ -144,11 +145,11 @@ def test_a_crack_that_shows_on_no_flank_is_felt_along_the_whole_path() -> None:
 def test_forces_rise_from_first_touch_with_a_continuous_slope() -> None:
     for damage in ((), through_the_face(), skewed()):
         found = table(damage)
-        assert (np.diff(found.curves[:, :, FORCE], axis=1) > 0.0).all()
-        assert (found.curves[:, 0, FORCE] == 0.0).all()
-        assert (found.curves[:, 0, SLOPE] == 0.0).all()
-        assert (found.curves[:, 1:, SLOPE] > 0.0).all()
-        assert (found.curves[:, :, CARRYING] <= 1.0 + 1e-9).all()
+        assert (np.diff(found.upright[:, :, FORCE], axis=1) > 0.0).all()
+        assert (found.upright[:, 0, FORCE] == 0.0).all()
+        assert (found.upright[:, 0, SLOPE] == 0.0).all()
+        assert (found.upright[:, 1:, SLOPE] > 0.0).all()
+        assert (found.upright[:, :, CARRYING] <= 1.0 + 1e-9).all()
 
 
 def test_a_spall_through_the_face_sinks_by_its_rigid_sink_at_first_touch() -> None:
@@ -188,43 +189,18 @@ def test_missing_material_across_the_face_is_carried_by_the_near_end_first() -> 
     even = table(())
     assert tilted.lead_m == pytest.approx(lead.min())
     middle = OPTIONS.healthy_columns // 2
-    assert tilted.curves[middle, 4, CARRYING] < 0.5 * even.curves[middle, 4, CARRYING]
-    assert tilted.curves[middle, 4, FORCE] < even.curves[middle, 4, FORCE]
-
-
-@pytest.mark.parametrize("damage", [(), skewed()], ids=["healthy", "skewed, with land"])
-def test_the_expansion_in_the_tilt_gives_force_and_moment_of_the_solver(damage: Damage) -> None:
-    tilting = contact_table(gear_pair(), damage, STIFFNESS, OPTIONS._replace(tilts=True), POINTS)
-    node = tilting.reach_m * (np.arange(OPTIONS.nodes) / (OPTIONS.nodes - 1.0)) ** 2
-    row = len(tilting.touch_m) - 1
-    place = float(np.flatnonzero(tilting.column[row] >= OPTIONS.healthy_columns)[40]) if damage else 512.0
-    # A column of the table, so that only the expansion is judged.
-    column = round(tilting.column[row, int(place)])
-    while tilting.column[row, int(place)] != column:
-        place += 1.0
-        column = round(tilting.column[row, int(place)])
-    curve = tilting.curves[column]
-    for tilt in (2e-5, -2e-5, 1e-4, -1e-4):
-        for k in (8, 12, 16):
-            force, moment = solved_with_tilt(damage, place, tilting.touch_m[row, int(place)] + node[k], tilt)
-            expanded = curve[k, FORCE] + tilt * curve[k, MOMENT_SLOPE] + 0.5 * tilt**2 * curve[k, TURNING_SLOPE]
-            turned = curve[k, MOMENT] + tilt * curve[k, TURNING]
-            # Third order in the tilt, 1 um at the ends of the face beside an approach of 5 um and more.
-            assert expanded == pytest.approx(force, abs=2e-3 * FORCE_N)
-            assert turned == pytest.approx(moment, abs=2e-3 * FORCE_N * 10e-3)
-
-
-def solved_with_tilt(damage: Damage, place: float, approach_m: float, tilt_rad: float) -> tuple[float, float]:
-    found = force_curve(
-        slices_at(damage, place), np.array([approach_m]), tilt_rad, np.zeros(SLICES), solver_room(SLICES), NO_ENERGY
-    )
-    return float(found.force_n[0]), float(found.moment_n_m[0])
+    assert tilted.upright[middle, 4, CARRYING] < 0.5 * even.upright[middle, 4, CARRYING]
+    assert tilted.upright[middle, 4, FORCE] < even.upright[middle, 4, FORCE]
 
 
 def test_a_face_without_damage_and_lead_has_no_moment() -> None:
     tilting = contact_table(gear_pair(), (), STIFFNESS, OPTIONS._replace(tilts=True), POINTS)
-    assert np.abs(tilting.curves[:, :, MOMENT]).max() < 1e-9 * FORCE_N
-    assert (tilting.curves[:, 1:, TURNING] > 0.0).all()  # the contact resists tilting
+    assert np.abs(tilting.upright[:, :, ACROSS]).max() < 1e-9 * FORCE_N * tilting.half_face_m
+    energy = tilting.curves[:, 8, :, ENERGY]
+    np.testing.assert_allclose(energy, energy[:, ::-1], rtol=1e-6)
+    # It takes energy to bring a face nearer by the same way as a whole, and none where a rigid corner comes to touch.
+    assert (np.diff(energy[:, UPRIGHT:], axis=1) < 0.0).all()
+    assert (energy[:, -1] == 0.0).all()
 
 
 def test_the_stated_error_is_that_of_direct_solutions() -> None:
