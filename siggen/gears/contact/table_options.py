@@ -32,7 +32,7 @@ class TableOptions(NamedTuple):
 
     largest_force_n: float = 0.0
     edge_radius_m: float = 0.1e-3
-    cell_widths: float = 1.6
+    cell_widths: float = 1.28
     nodes: int = 19
     healthy_columns: int = 129
     finest: int = 2

@@ -38,11 +38,11 @@ def test_the_contact_keeps_its_land_and_pits_beside_it_stay() -> None:
     damage = (CRACK, pit(tooth=5))
     table = contact_table(PAIR, damage, OPTIONS, TableOptions(4e3), 65)
     # Pinion teeth ascending, the crack's tooth first; forces at the largest approach in the middle of the path.
-    healthy, cracked, pitted = (table.curves[int(table.column[row, 32])] for row in range(3))
+    healthy, cracked, pitted = (table.upright[int(table.column[row, 32])] for row in range(3))
     assert not np.any(table.touch_m)
     assert 0.5 * healthy[-1, FORCE] < cracked[-1, FORCE] < 0.99 * healthy[-1, FORCE]
     assert np.array_equal(cracked[:, ROUGH], healthy[:, ROUGH])
-    assert table.curves[:, :, ROUGH].max() > 0.0
+    assert table.upright[:, :, ROUGH].max() > 0.0
     assert not np.any(pitted[:, ROUGH] < 0.0)
     assert pit_rows(damage).shape[0] == 1
     assert has_extent(CRACK)
