@@ -176,8 +176,13 @@ class PairMotion:
             )
 
     def _refuse_tilt(self, tilt_rad: FloatArray, approach_m: FloatArray, when: str) -> None:
-        """Raise where an end of the face lies behind the flank that it faces by more than the backlash."""
+        """Raise where an end of the face lies behind the flank that it faces by more than the backlash.
+
+        Flanks that have parted, and those on the back flank, are counted as if they just touched: there the gap is that
+        in the middle of the face.
+        """
         half_face, backlash = self.law.half_face_m, self.law.backlash_m
+        approach_m = np.maximum(approach_m, 0.0)
         beyond = half_face * np.abs(tilt_rad) - approach_m - backlash
         worst = int(np.argmax(beyond)) if tilt_rad.size and half_face > 0.0 else -1
         if worst >= 0 and not beyond[worst] <= 0.0:
