@@ -18,11 +18,10 @@ from siggen.columns.record import damage_schema, record_schema
 from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
-FULL = CONFIGS / "transfer_path.yaml"
+FULL = CONFIGS / "industrial.yaml"
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
 OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
-CASING = "dynamics.casing={mass_kg: {kind: uniform, low: 8, high: 55}, inertia_kg_m2: null}"
 AROUND = (
     "background={rubbing: {bursts: {}}, floor: {level_std: 0.3}, shafts: {}, second_stage: {order: 7}, "
     "auxiliary_drive: {order: 20}}"
@@ -32,7 +31,6 @@ ADDED = {
     "variation": "variation.speed.random_rms=0.001",
     "gears.pairs": PAIR,
     "dynamics.friction.oil": OILS,
-    "dynamics.casing.inertia_kg_m2": CASING,
     "background": AROUND,
 }
 """With these a configuration that has every part with columns of its own."""
@@ -91,8 +89,6 @@ def needs(full: pa.Schema) -> dict[str, str]:
     for key, off in (("helix", "off"), ("crowning_um", "0")):
         less = schema([f"manufacture.{key}={off}"])
         found |= dict.fromkeys(set(full.names) - set(less.names), f"`manufacture.{key}`")
-    silent = schema(["housing.force_noise=null"])
-    found |= dict.fromkeys(set(full.names) - set(silent.names), "`housing.force_noise`")
     sensors = len(siggen.load_config(FULL).sensors)
     for part in SENSOR_PARTS:
         # a path is what lets a sensor look along the shafts, so that column and axis go together
