@@ -61,7 +61,7 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
         "name": f"hidden_{number}",
         "seed": 90_000 + number,
         "specimens": 1 + GEARBOXES,
-        "background": None,
+        "background": {"bearings": {}},
         "operating_points": [
             {
                 "speed_hz": {"kind": "uniform", "low": 33.0, "high": 36.0},
@@ -80,7 +80,6 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
             "damping_ratio": {"kind": "uniform", "low": 0.015, "high": 0.05},
             "feet": {**bolts, "damping_ratio": float(rng.uniform(0.02, 0.06))},
         },
-        "background": {"bearings": {}},
         "sensors": [
             {
                 "name": f"sensor_{k + 1}",
