@@ -25,7 +25,7 @@ LENGTHS_MM = {
     "dynamics.shafts.gear.diameter_mm": 42.0,
 }
 SPALL = "kind: irregular, gear: pinion, teeth: 1, centre_height_mm: below_pitch, face_share: 1.0"
-SPALL_MM, CASING_KG, STIFFNESS_N_PER_M = 1.5, 20.0, 2e8
+SPALL_MM, STIFFNESS_N_PER_M = 1.5, 2e8
 LEAST_S, LEAST_PITCHES, TEETH = 0.1, 6.0, 18
 
 
@@ -44,7 +44,6 @@ def random_config(number: int) -> Config | None:
     values |= {
         "gears.module_mm": f"{drawn['module_mm']}",
         "dynamics.mesh_damping_ratio": f"{drawn['damping_ratio']}",
-        "dynamics.casing.mass_kg": f"{CASING_KG * size**3}",
         "operating_points.0.speed_hz": f"{drawn['speed_hz']}",
         "operating_points.0.torque_nm": f"{drawn['torque_nm']}",
         "states": f"[{{name: healthy}}, {{name: severe, damage: {{{SPALL}, profile_length_mm: {size * SPALL_MM}}}}}]",

@@ -14,7 +14,7 @@ from siggen.record.channels import measured_channels
 from siggen.record.simulation import record_response, specimen_state
 from siggen.specimen.instrument import specimen_instrument
 
-CONFIG = "configs/transfer_path.yaml"
+CONFIG = "configs/industrial.yaml"
 GOAL_S = 5e-3
 
 

@@ -18,7 +18,6 @@ from diagnostics.calibration.source_library import PLACES
 from siggen.errors import UsageError
 
 FACTS = "calibration.json"
-SETTLE_S = 0.1
 MEMORY_MS = (1.0, 8.0)
 """Correlation time of the noise's level as measured machines have it; three recordings do not tell it."""
 
@@ -99,8 +98,6 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         f"  - speed_hz: {_number(point['speed_hz'])}    # of the recordings",
         f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the rig, or --torque",
         f"variation: {{speed: {{random_rms: {_range(0.7 * low, 1.4 * high)}}}}}",
-        f"housing: {{modes: 1, frequency_hz: {0.2 * found.blocks.fs_hz:g}, damping_ratio: 0.05, settle_s: {SETTLE_S}, "
-        "force_noise: null}    # paths are fitted",
         "background: null              # noise and lines are those of the recordings",
         "dynamics: {unbalance: {grade_mm_s: 0.0}, bearing_tones: {level: 0.0}}    # among the lines of the recordings",
         *_manufacture(found.config),

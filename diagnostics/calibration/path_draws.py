@@ -12,6 +12,7 @@ How many paths a family may have: a set's configuration holds them all, and it m
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,6 +32,21 @@ LEAST_WIDTH_STEPS = 3.2
 """Of the kernel, in steps of the grid: what is narrower rings longer than the step holds."""
 LIFTER, CEPSTRUM_POINTS = 60, 4096
 HIGH_PASS_HZ = 10.0
+BENCH_CENTRE_MM, BENCH_HOUSING_KG = 97.5, (8.0, 55.0)
+
+
+def housing_mass_kg(config: Mapping[str, Any]) -> Any:
+    """Return the mass of a rigid housing, or the range of boxes of plates round the gears, as in a configuration.
+
+    Boxes of 8 to 55 kg stand round gears 97.5 mm apart, of 8 mm of iron to 25 mm of steel; they grow as its cube.
+    """
+    if (given := (config.get("housing") or {}).get("mass_kg")) is not None:
+        return given
+    gears = config["gears"]
+    teeth = gears["pinion"]["teeth"] + gears["gear"]["teeth"]
+    centre_mm = gears.get("centre_distance_mm") or 0.5 * _limits(gears["module_mm"])[1] * teeth
+    size = (_limits(centre_mm)[1] / BENCH_CENTRE_MM) ** 3
+    return {"low": BENCH_HOUSING_KG[0] * size, "high": BENCH_HOUSING_KG[1] * size}
 
 
 def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray) -> str:

@@ -137,7 +137,7 @@ def _tell(found: Calibration) -> None:
 
     from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
     from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
-    from diagnostics.calibration.path_draws import path_level_doubt
+    from diagnostics.calibration.path_draws import housing_mass_kg, path_level_doubt
 
     for fit in found.channels:
         noise, depths = fit.noise, (fit.noise.pinion_depth.value, fit.noise.gear_depth.value)
@@ -152,5 +152,5 @@ def _tell(found: Calibration) -> None:
     for text in not_identified(found):
         typer.echo(f"not identified: {text}", err=True)
     paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])
-    if doubt := path_level_doubt(found.config["dynamics"]["casing"]["mass_kg"], found.grid_hz, paths):
+    if doubt := path_level_doubt(housing_mass_kg(found.config), found.grid_hz, paths):
         typer.echo(doubt, err=True)

@@ -19,7 +19,7 @@ SHOWN = {
     "precision": "CPU time of the time loop at equal error, and errors of healthy and of severe records.",
     "stiffness": "CPU time of curves and tables of mesh stiffness; every call has a new module and new pits.",
     "background": "CPU time of the healthy background of `bench`.",
-    "sensing": "CPU time of paths, instrument and disturbances of `transfer_path`.",
+    "sensing": "CPU time of paths, instrument and disturbances of `industrial`.",
     "indicators": "All gear indicators of a synthetic record of 10 s, one channel.",
     "pages": "`report` and `audit` of sets of `linear_pits`.",
     "workers": "Wall time of one and of two workers in turn, median of five.",

@@ -14,17 +14,19 @@ import pyarrow as pa
 
 import siggen
 from siggen.checks.quantity_names import available_quantities
+from siggen.columns.gearbox_columns import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
 from siggen.record.quantities import quantity_column
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
-FULL = CONFIGS / "transfer_path.yaml"
+FULL = CONFIGS / "industrial.yaml"
+BARE = ("manufacture=null", "variation={}", "background=null", "sensors.0.position_mm=[0, 0]")
+"""Without what the preset has of the sections that are added one by one; with a place that grows with the gears."""
 MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
 OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
-CASING = "dynamics.casing={mass_kg: {kind: uniform, low: 8, high: 55}, inertia_kg_m2: null}"
 AROUND = (
-    "background={rubbing: {bursts: {}}, floor: {level_std: 0.3}, shafts: {}, second_stage: {order: 7}, "
+    "background={rubbing: {bursts: {}}, bearings: {}, machines: {}, shafts: {}, second_stage: {order: 7}, "
     "auxiliary_drive: {order: 20}}"
 )
 ADDED = {
@@ -32,11 +34,11 @@ ADDED = {
     "variation": "variation.speed.random_rms=0.001",
     "gears.pairs": PAIR,
     "dynamics.friction.oil": OILS,
-    "dynamics.casing.inertia_kg_m2": CASING,
     "background": AROUND,
 }
 """With these a configuration that has every part with columns of its own."""
-SENSOR_PARTS = ("path", "pink_noise", "mains", "tones", "inverter")
+PLATES = "`housing.kind: plates`"
+SENSOR_PARTS = ("pink_noise", "mains", "tones", "inverter")
 NAMES = {
     r"theta_\w+_rad": "rotation of motor (m), pinion (1), gear (2) and load (l) about the mean rotation",
     r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of pinion (1), gear (2) and casing (c)",
@@ -73,7 +75,7 @@ file that the last cell names; without an entry every set has it. Sets with numb
 def schema(overrides: Iterable[str] = (), without: str = "") -> pa.Schema:
     """Return the columns of the full configuration with overrides, or without one of the added sections."""
     added = [text for section, text in ADDED.items() if section != without]
-    return record_schema(siggen.load_config(FULL, [*added, *overrides]))
+    return record_schema(siggen.load_config(FULL, [*BARE, *added, *overrides]))
 
 
 def general(name: str, channels: Iterable[str]) -> str:
@@ -91,16 +93,13 @@ def needs(full: pa.Schema) -> dict[str, str]:
     for key, off in (("helix", "off"), ("crowning_um", "0")):
         less = schema([f"manufacture.{key}={off}"])
         found |= dict.fromkeys(set(full.names) - set(less.names), f"`manufacture.{key}`")
-    silent = schema(["housing.force_noise=null"])
-    found |= dict.fromkeys(set(full.names) - set(silent.names), "`housing.force_noise`")
     sensors = len(siggen.load_config(FULL).sensors)
     for part in SENSOR_PARTS:
-        # a path is what lets a sensor look along the shafts, so that column and axis go together
-        axes = ("sensors.{}.axes=[vertical]",) if part == "path" else ()
-        keys = [text.format(k) for k in range(sensors) for text in (f"sensors.{{}}.{part}=null", *axes)]
+        keys = [f"sensors.{k}.{part}=null" for k in range(sensors)]
         left = {general(name, channels(full)) for name in schema(keys).names}
         found |= {name: f"`sensors[].{part}`" for name in full.names if general(name, channels(full)) not in left}
-    return found
+    found |= {column.name: PLATES for column in HOUSING_COLUMNS}
+    return found | {name: f"{PLATES}, or `sensors[].path`" for name in full.names if name.startswith("path_")}
 
 
 def channels(full: pa.Schema) -> list[str]:

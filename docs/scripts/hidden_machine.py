@@ -56,13 +56,12 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
 
     relief = rng.uniform(3.0, 15.0)
     bolts = {"shear_stiffness_n_per_m": log(3e7, 3e8), "axial_stiffness_n_per_m": log(6e7, 5e8)}
-    modes = int(rng.integers(4, 25))
     found: dict[str, Any] = {
         "extends": "quickstart",
         "name": f"hidden_{number}",
         "seed": 90_000 + number,
         "specimens": 1 + GEARBOXES,
-        "background": None,
+        "background": {"bearings": {}},
         "operating_points": [
             {
                 "speed_hz": {"kind": "uniform", "low": 33.0, "high": 36.0},
@@ -73,30 +72,23 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
             "pinion": rotor(1.0, 1.6e-4),
             "gear": rotor(3.0, 6.4e-3),
             "mesh_damping_ratio": float(rng.uniform(0.03, 0.12)),
-            "casing": {"mass_kg": log(10.0, 50.0), "bolts": {**bolts, "damping_ratio": float(rng.uniform(0.02, 0.06))}},
             "mesh": {"tip_relief_um": float(relief)},
         },
         "manufacture": {"accuracy_class": int(rng.integers(4, 9)), "tolerance_share": float(rng.uniform(0.3, 0.6))},
         "variation": {"speed": {"random_rms": log(1e-4, 8e-4)}},
         "housing": {
-            "modes": modes + 0.5,
-            "frequency_hz": {"kind": "uniform", "low": 250.0, "high": 9000.0},
             "damping_ratio": {"kind": "uniform", "low": 0.015, "high": 0.05},
-            "modal_mass_kg": log(8.0, 50.0),
-            "residue_exponent": float(rng.uniform(0.5, 2.0)),
-            "force_noise": {"density_n_per_sqrt_hz": log(0.03, 0.3), "corner_hz": log(500.0, 8000.0)},
+            "feet": {**bolts, "damping_ratio": float(rng.uniform(0.02, 0.06))},
         },
         "sensors": [
             {
                 "name": f"sensor_{k + 1}",
-                "place": "casing",
-                "position_mm": place,
+                "place": place,
                 "axes": [axis],
                 "bits": 24,
-                "path": {"kind": "modal", "rigid": False},
                 "noise": {"floor_m_s2": log(0.003, 0.03)},
             }
-            for k, (place, axis) in enumerate((([60.0, 50.0], "vertical"), ([-100.0, -20.0], "horizontal")))
+            for k, (place, axis) in enumerate((("lid", "vertical"), ("gear_end", "horizontal")))
         ],
     }
     return _with_own_path(found, folder)
@@ -110,8 +102,7 @@ def _with_own_path(found: dict[str, Any], folder: Path) -> dict[str, Any]:
     if not file.exists():
         write_table_file(path_curves(siggen.load_config({**found, "states": STATES[:1]})).table, file)
     for sensor in found["sensors"]:
-        del sensor["position_mm"]
-        sensor["path"] = {"kind": "measured", "file": str(file)}
+        sensor |= {"place": "casing", "path": {"file": str(file)}}
     return found
 
 

@@ -52,8 +52,8 @@ CONSTANTS = [
     *(f"dynamics.{gear}.bearing_stiffness_{axis}_n_per_m=2e8" for gear in ("pinion", "gear") for axis in "xy"),
     *(f"dynamics.pinion.bearing_damping_{axis}_n_s_per_m=850" for axis in "xy"),
     *(f"dynamics.gear.bearing_damping_{axis}_n_s_per_m=1470" for axis in "xy"),
-    "dynamics.casing.bolts.shear_stiffness_n_per_m=8e7", "dynamics.casing.bolts.axial_stiffness_n_per_m=1.5e8",
-    "dynamics.casing.bolts.damping_ratio=0.04",
+    "housing.bolts.shear_stiffness_n_per_m=8e7", "housing.bolts.axial_stiffness_n_per_m=1.5e8",
+    "housing.bolts.damping_ratio=0.04",
 ]  # fmt: skip
 
 

@@ -52,6 +52,7 @@ def fake_config(**changes: Any) -> Config:
             {"name": "slight", "damage": {"kind": "clustered", "count": 2, "spread_profile_mm": 0.1, **pit}},
             {"name": "moderate", "damage": {"kind": "clustered", "count": 6, "spread_profile_mm": 0.2, **pit}},
         ],
+        "housing": {"kind": "rigid"},
         "sensors": [{"name": "bearing", "axes": ["vertical", "horizontal"]}],
         **changes,
     }

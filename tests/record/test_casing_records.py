@@ -111,7 +111,8 @@ def test_tooth_pairs_work_with_every_structure(model: str) -> None:
         if model == "torsional"
         else ["sensors.0.place=pinion_bearing", "sensors.0.axes=[vertical]"]
     )
-    raw = [*SHORT, *STIFF, f"dynamics.model={model}", "sensors.0.position_mm=null", "sensors.0.range_m_s2=10000.0"]
+    raw = [*SHORT, *STIFF, f"dynamics.model={model}", "sensors.0.position_mm=null", "housing={}"]
+    raw += ["sensors.0.range_m_s2=10000.0"]
     result = simulate(load_config("tests/configs/casing.yaml", [*raw, *sensor]), [0])[0]
     assert isinstance(result, Record)
     assert all(signal.std() > 0.1 for signal in result.channels.values())

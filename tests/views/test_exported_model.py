@@ -55,7 +55,7 @@ def test_scipy_integrates_the_exported_linear_model_to_the_same_motion() -> None
     assert max(differences("configs/paper_a.yaml", "dynamics.steps_per_sample=16", rtol=1e-7)) < 2e-6
 
 
-STIFF = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.model=8dof")
+STIFF = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.model=8dof", "housing={}")
 PINION = ("sensors.0.place=pinion_bearing", "sensors.0.position_mm=null")
 
 

@@ -104,7 +104,8 @@ class Response:
     @property
     def before(self) -> int:
         """Samples of the history."""
-        return max((values.size for values in self.history.acceleration_m_s2.values()), default=0)
+        kept = (*self.history.acceleration_m_s2.values(), *self.history.bearing_force_n.values())
+        return max((values.size for values in kept), default=0)
 
     def pieces(self) -> Iterator[Piece]:
         """Yield history, record and what comes behind it."""

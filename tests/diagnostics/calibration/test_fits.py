@@ -12,7 +12,7 @@ from diagnostics.calibration.healthy_blocks import Block, healthy_blocks, jackkn
 from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
-from diagnostics.calibration.path_draws import liftered, minimum_phase, path_level_db, path_level_doubt
+from diagnostics.calibration.path_draws import housing_mass_kg, liftered, minimum_phase, path_level_db, path_level_doubt
 from diagnostics.recordings.measured_recording import RecordingFacts
 
 FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400
@@ -133,6 +133,14 @@ def test_paths_keep_their_level_from_three_recordings_on_and_spread_below() -> N
     power = path_gains(200, 2, rng) ** 2
     assert 0.5 <= power.min() < 0.55
     assert 1.85 < power.max() <= 2.0
+
+
+def test_a_housing_weighs_what_is_given_or_what_boxes_round_the_gears_do() -> None:
+    gears = {"module_mm": 6.0, "pinion": {"teeth": 18}, "gear": {"teeth": 47}}
+    assert housing_mass_kg({"housing": {"kind": "rigid", "mass_kg": 20.0}, "gears": gears}) == 20.0
+    assert housing_mass_kg({"housing": {"kind": "plates"}, "gears": gears}) == {"low": 64.0, "high": 440.0}
+    near = {**gears, "centre_distance_mm": 97.5}
+    assert housing_mass_kg({"housing": {}, "gears": near}) == {"low": 8.0, "high": 55.0}
 
 
 def test_a_path_that_no_housing_of_that_mass_has_is_doubtful() -> None:

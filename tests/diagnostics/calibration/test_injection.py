@@ -39,7 +39,7 @@ CONFIGURATION: dict[str, Any] = {
     "operating_points": [{"speed_hz": SPEED_HZ, "torque_nm": 40.0}],
     "states": [{"name": "healthy"}, {"name": "severe", "damage": SPALL}],
 }
-QUIET = {"variation": {}, "housing": {"settle_s": 0.6}}
+QUIET = {"variation": {}}
 
 
 @pytest.fixture(scope="module")
