@@ -135,7 +135,7 @@ INTEGRATION_COLUMNS = (
         "integration_error",
         pa.float64(),
         "",
-        "estimated relative rms error of the simulated accelerations by the steps of integration, from a stretch of "
+        "estimated relative rms error of the simulated motion by the steps of integration, from a stretch of "
         "the record with twice as many; above the set's tolerance where the motion depends on every rounding or the "
         "finest steps do not suffice, inf where it diverges",
     ),

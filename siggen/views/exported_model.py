@@ -32,7 +32,7 @@ from siggen.specimen.drive import RecordDrive, record_drive
 from siggen.specimen.instrument import settle_s
 from siggen.specimen.step_choice import stepped_motion
 
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 """Raised when a key changes its meaning or goes away; new keys leave it."""
 
 ENDING = ".npz"
