@@ -99,7 +99,7 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the rig, or --torque",
         f"variation: {{speed: {{random_rms: {_range(0.7 * low, 1.4 * high)}}}}}",
         "background: null              # noise and lines are those of the recordings",
-        "dynamics: {unbalance: {grade_mm_s: 0.0}, bearing_tones: {level: 0.0}}    # among the lines of the recordings",
+        "dynamics: {unbalance: {grade_mm_s: 0.0}}    # among the lines of the recordings",
         *_manufacture(found.config),
         "sensors:",
     ]

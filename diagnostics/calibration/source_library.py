@@ -83,7 +83,6 @@ def library_configuration(rig: Path, operating_point: dict[str, Any], fs_hz: flo
     return {
         **at_recordings(rig, operating_point, fs_hz),
         "background": None,
-        "housing": None,
         "sensors": [{"name": "bearing", "place": "pinion_bearing", "bits": None, "range_m_s2": 1e6}],
         "internals": {"quantities": list(FORCES)},
     }

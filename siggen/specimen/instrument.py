@@ -117,13 +117,17 @@ def specimen_instrument(config: Config, specimen: Specimen) -> Instrument:
     background = None
     if section is not None:
         background = specimen_background(config, specimen, section, ways, grid)
-    filters = block_responses(blocks, {channel.name: _ways(channel, background, grid.size) for channel in channels})
+    filters = block_responses(
+        blocks, {channel.name: channel_ways(channel, background, grid.size) for channel in channels}
+    )
     if background is not None:  # nobody asks for them again
         background = replace(background, responses={})
     return Instrument(blocks.memory, config.fs_hz, tuple(channels), filters, background)
 
 
-def _ways(channel: ChannelInstrument, background: SpecimenBackground | None, bins: int) -> dict[Input, ComplexArray]:
+def channel_ways(
+    channel: ChannelInstrument, background: SpecimenBackground | None, bins: int
+) -> dict[Input, ComplexArray]:
     """Return input -> response (k,), sensor included, but for motions of a plain channel."""
     ways: dict[Input, ComplexArray] = {}
     sensed = channel.sensor_response

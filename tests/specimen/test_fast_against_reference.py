@@ -18,8 +18,8 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.record.simulation import SpecimenState, simulate, specimen_state, start_angle_rad
 from siggen.sets.precision import record_error, reference_config, unrounded
 from siggen.specimen.drive import record_drive
-from siggen.specimen.integration import rule_grid
 from siggen.specimen.motion import specimen_motion
+from siggen.specimen.step_choice import stepped_motion
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 PRESETS = ("bench", "families", "ideal", "industrial", "paper_b", "quickstart")
@@ -61,14 +61,17 @@ def accelerations(
 
 
 def errors(preset: str, number: int) -> np.ndarray:
-    """Return the relative rms error of every motion with the steps that the rule takes."""
+    """Return the relative rms error of every motion with the steps that the record takes."""
     config, record_id = drawn_record(preset, number)
     record = planned_record(config, record_id)
     specimen = draw_specimen(config, record.specimen_id)
     assert specimen.dynamics.method == "exponential"
     state = specimen_state(config, specimen, record.state_id)
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
-    steps, stride = rule_grid(config, specimen.dynamics, state.mesh, point)
+    driven = record_drive(
+        config, specimen, state.mesh.structure, point, record, start_angle_rad(config, state.pair, record)
+    )
+    steps, stride = stepped_motion(config, specimen.dynamics, state.mesh, point, driven).grid
     fine = accelerations(config, record_id, state, "runge_kutta", REFERENCE_STEPS)
     fast = accelerations(config, record_id, state, "exponential", steps, stride)
     return np.asarray(np.sqrt(np.mean((fast - fine) ** 2, axis=0) / np.mean(fine**2, axis=0)))

@@ -177,13 +177,13 @@ def test_the_sink_rests_on_the_radius_of_its_own_edge() -> None:
 
 @pytest.mark.parametrize("skew_mm", [0.2, 0.8])
 def test_the_slices_of_a_table_are_enough_for_skewed_edges(skew_mm: float) -> None:
-    """The 96 of a table against 100: below 5e-4 of the healthy force, far less than with 48."""
+    """The 96 of a table against 100: below 5e-4 of the healthy force; a quarter of what 48 leave, as halves should."""
     rng = np.random.default_rng(0)
     slope = 1e-3 * skew_mm / WIDTH
     one = spall(1e-3, 0.0, WIDTH, (drawn_waves(rng), drawn_waves(rng)), (slope, slope))
     force = {cells: forces((one,), cells) for cells in (2.56, 1.28, 0.7)}
     error = {cells: np.max(np.abs(force[cells] - force[0.7]) / forces((), 1.28)) for cells in (2.56, 1.28)}
-    assert error[1.28] < min(5e-4, 0.2 * error[2.56])
+    assert error[1.28] < min(5e-4, 0.3 * error[2.56])
 
 
 def forces(damage: Damage, cell_widths: float) -> np.ndarray:
