@@ -107,17 +107,16 @@ def draw(whole: dict[tuple[int, str], Levels], path: Path) -> None:
         left.loglog(SPEEDS_HZ, one.rms, color=colour, lw=0.8, alpha=0.6)
         right.loglog(SPEEDS_HZ, one.noise, color=colour, lw=0.8, alpha=0.6)
     speeds = np.array(SPEEDS_HZ)
+    left.loglog(speeds, 0.3 * speeds, "k:", lw=1.0, label="in proportion to speed")
+    right.loglog([], [], color="C0", label="lid, vertical")
+    right.loglog([], [], color="C1", label="gear's end, horizontal")
     for panel, word in ((left, "rms [m/s²]"), (right, "noise, 5 to 10 kHz [m/s²/√Hz]")):
         panel.set_xlabel("speed of the pinion [Hz]")
         panel.set_ylabel(word)
-        panel.set_xticks(SPEEDS_HZ, [f"{speed:g}" for speed in SPEEDS_HZ])
         panel.minorticks_off()
+        panel.set_xticks(SPEEDS_HZ, [f"{speed:g}" for speed in SPEEDS_HZ])
         panel.grid(alpha=0.3)
-    left.loglog(speeds, 0.3 * speeds, "k:", lw=1.0)
-    left.text(speeds[-1], 0.3 * speeds[-1], " ∝ speed", va="center", fontsize=8)
-    right.loglog([], [], color="C0", label="lid, vertical")
-    right.loglog([], [], color="C1", label="gear's end, horizontal")
-    right.legend(fontsize=8)
+        panel.legend(fontsize=8)
     figure.savefig(path, dpi=110)
 
 
