@@ -74,7 +74,9 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "dynamics" not in sections:
         return
     model = sections["dynamics"].model
-    if model == "casing" and isinstance(sections.get("housing"), PlateHousing):
+    if model == "casing" and "housing" not in sections:  # wrong itself: which places there are is not known
+        return
+    if model == "casing" and isinstance(sections["housing"], PlateHousing):
         model = PLATES
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.model_problems(model):

@@ -98,3 +98,9 @@ def test_only_plates_of_the_model_with_a_casing_are_looked_at() -> None:
     rigid = {"kind": "rigid"}
     assert load_config(minimal(housing=rigid, dynamics__shafts=SHAFTS)).housing.kind == "rigid"
     load_config(minimal(dynamics__model="8dof"))
+
+
+def test_a_housing_that_is_wrong_itself_says_nothing_of_the_sensors_on_it() -> None:
+    with pytest.raises(ConfigError) as refused:
+        load_config("configs/quickstart.yaml", ["housing.wall_mm=0"])
+    assert [problem.path for problem in refused.value.problems] == ["housing.wall_mm"]
