@@ -15,7 +15,7 @@ from siggen.errors import Problem
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, bounds
 from siggen.planning.housing_numbers import PlateNumbers
-from siggen.specimen.housing import (
+from siggen.specimen.housing_layout import (
     ABOVE_SHARE,
     CLEARANCE_M,
     IRON_WALL,

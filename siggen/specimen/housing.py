@@ -29,12 +29,13 @@ from siggen.dynamics.housing.layout import Contents, Proportions, layout
 from siggen.dynamics.housing.motion import Motion, Place, bolt_motions, motion_at, seat_motions
 from siggen.dynamics.structure.body import ModalBody, Point
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.number import Number, at, constant
+from siggen.keys.number import at, constant
 from siggen.planning.housing_numbers import PlateNumbers
 from siggen.planning.specimen import Specimen
 from siggen.seeding import Stage, named_generator, named_uniforms
 from siggen.sensors.sensor import Sensor
 from siggen.specimen.gears import gear_pair
+from siggen.specimen.housing_layout import specimen_layout
 
 MODES_ON_BOLTS = 6
 COUPLED_HZ, MOST = 1500.0, 9
@@ -44,16 +45,6 @@ SETTLED_DECAYS = 7.0
 """Decay times after which a mode has forgotten how it was started: 1e-3 of it is left."""
 LONGEST_S = 1.2
 AXES = {"horizontal": Axis.X, "vertical": Axis.Y, "axial": Axis.Z}
-IRON_PA, STEEL_PA = (90e9, 130e9), 206e9
-IRON_KG_M3, STEEL_KG_M3 = (7100.0, 7300.0), 7850.0
-IRON_WALL, STEEL_WALL = (1.1, 3.0), (1.5, 4.6)
-"""Thickness over 3 mm + 2.5 % of the centre distance, a usual least wall of cast housings (memory)."""
-SHAFT_SHARE = 0.26
-"""Diameter of a shaft over the centre distance where no shafts are given (assumed)."""
-ROOM_BETWEEN_BEARINGS = 0.95
-ABOVE_SHARE = 1.0 / 3.0
-"""Of the height that the gear leaves, where the height is given (assumed)."""
-CLEARANCE_M = 2e-3
 EDGE_M = 8e-3
 """Sensors stand at least so far from a plate's edge."""
 
@@ -80,8 +71,7 @@ class SpecimenHousing:
     @property
     def settle_s(self) -> float:
         """Time over which its modes settle [s]."""
-        slowest = float((2.0 * pi * self.modes.frequency_hz * self.damping_ratio).min())
-        return min(SETTLED_DECAYS / slowest, LONGEST_S)
+        return _settle_s(self.modes, self.damping_ratio)
 
     @property
     def pairs(self) -> list[tuple[float, float]]:
@@ -107,25 +97,45 @@ class SpecimenHousing:
 
 def specimen_housing(config: Config, specimen: Specimen) -> SpecimenHousing | None:
     """Return the housing of a specimen; the same for all of its states and records; None for one without plates."""
-    numbers = specimen.housing
-    if specimen.dynamics.model != "casing" or not isinstance(numbers, PlateNumbers):
+    damped = _damped(config, specimen)
+    if damped is None:
         return None
-    pair = gear_pair(specimen.gears)
-    box, modes = _made(*specimen_layout(numbers, specimen.dynamics.shafts, pair), 0.5 * config.fs_hz)
-    rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
-    plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
-    below = int((modes.frequency_hz < COUPLED_HZ).sum())
-    seats = _seats(box, modes, specimen.dynamics.shafts)
+    box, modes, ratio = damped
+    pair, shafts = gear_pair(specimen.gears), specimen.dynamics.shafts
+    seats = _seats(box, modes, shafts)
     uniform = named_uniforms(config.seed, Stage.PATH, specimen.specimen_id)
     return SpecimenHousing(
         box=box,
         modes=modes,
-        damping_ratio=mixed_damping(modes, plates, constant(numbers.feet.damping_ratio)),
-        coupled=min(max(MODES_ON_BOLTS, below), MOST),
+        damping_ratio=ratio,
+        coupled=min(max(MODES_ON_BOLTS, int((modes.frequency_hz < COUPLED_HZ).sum())), MOST),
         seats={name: motion for name, motion in seats.items() if not name.endswith("axial")},
         motions={**seats, **_sensors(box, modes, specimen.sensors, uniform)},
         entries=_entries(box, modes, seats, pair, uniform),
     )
+
+
+def housing_settle_s(config: Config, specimen: Specimen) -> float:
+    """Return the time over which the modes settle [s], which every record asks for; 0 without plates."""
+    damped = _damped(config, specimen)
+    return 0.0 if damped is None else _settle_s(*damped[1:])
+
+
+def _damped(config: Config, specimen: Specimen) -> tuple[Box, HousingModes, FloatArray] | None:
+    """Return box, modes and their damping ratios (m,)."""
+    numbers = specimen.housing
+    if specimen.dynamics.model != "casing" or not isinstance(numbers, PlateNumbers):
+        return None
+    made = specimen_layout(numbers, specimen.dynamics.shafts, gear_pair(specimen.gears))
+    box, modes = _made(*made, 0.5 * config.fs_hz)
+    rng = named_generator(config.seed, Stage.PATH, specimen.specimen_id, name="housing.damping_ratio")
+    plates = np.array([at(numbers.damping_ratio, float(u)) for u in rng.random(modes.frequency_hz.size)])
+    return box, modes, mixed_damping(modes, plates, constant(numbers.feet.damping_ratio))
+
+
+def _settle_s(modes: HousingModes, damping_ratio: FloatArray) -> float:
+    slowest = float((2.0 * pi * modes.frequency_hz * damping_ratio).min())
+    return min(SETTLED_DECAYS / slowest, LONGEST_S)
 
 
 def coupled_modes(housing: SpecimenHousing) -> ModalBody:
@@ -161,104 +171,6 @@ def _made(
 ) -> tuple[Box, HousingModes]:
     box = layout(contents, proportions, material)
     return box, housing_modes(box, min(highest_hz, BEYOND * resolved_hz(box)), WAVES)
-
-
-def specimen_layout(
-    numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair
-) -> tuple[Contents, Proportions, Material]:
-    """Return what the box of a drawn housing is made from."""
-    contents = housing_contents(numbers, shafts, pair)
-    return contents, _proportions(numbers, shafts, contents), _material(numbers)
-
-
-def _material(numbers: PlateNumbers) -> Material:
-    if numbers.material == "steel":
-        return Material(STEEL_PA, 0.3, STEEL_KG_M3)
-    return Material(_within(IRON_PA, numbers.modulus), 0.26, _within(IRON_KG_M3, numbers.density))
-
-
-def housing_contents(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPair) -> Contents:
-    """Return what a housing holds; bearings are as large as fit beside each other."""
-    centre = pair.working_centre_distance_m
-    diameters = [SHAFT_SHARE * centre] * 2
-    if shafts is not None:
-        diameters = [1e-3 * constant(shaft.diameter_mm) for shaft in (shafts.gear, shafts.pinion)]
-    outer = [constant(numbers.bearing) * diameter for diameter in diameters]
-    room = min(1.0, 2.0 * ROOM_BETWEEN_BEARINGS * centre / sum(outer))
-    return Contents(
-        centre_distance_m=centre,
-        tip_radius_m=(pair.gear.tip_radius_m, pair.pinion.tip_radius_m),
-        face_width_m=pair.face_width_m,
-        bearing_outer_m=(room * outer[0], room * outer[1]),
-    )
-
-
-def _proportions(numbers: PlateNumbers, shafts: Shafts | None, contents: Contents) -> Proportions:
-    centre, n = contents.centre_distance_m, numbers
-    wall, overhang = _wall_m(numbers, centre), constant(numbers.overhang) * centre
-    end = max(constant(n.end) * centre, end_for_bearings_m(contents, wall))
-    side = constant(n.side) * centre
-    above, sump = constant(n.above) * centre, constant(n.sump) * centre
-    if shafts is not None:
-        spans = [1e-3 * constant(shaft.bearing_span_mm) for shaft in (shafts.gear, shafts.pinion)]
-        side = max(0.5 * (sum(spans) / 2.0 - wall - contents.face_width_m) - overhang, CLEARANCE_M)
-    if n.length_mm is not None:
-        end = 0.5 * (1e-3 * constant(n.length_mm) - centre - sum(contents.tip_radius_m))
-    if n.width_mm is not None:
-        side = 0.5 * (1e-3 * constant(n.width_mm) - contents.face_width_m)
-    if n.height_mm is not None:
-        left = 1e-3 * constant(n.height_mm) - 2.0 * max(contents.tip_radius_m)
-        above, sump = ABOVE_SHARE * left, (1.0 - ABOVE_SHARE) * left
-    return Proportions(
-        end_m=end,
-        above_m=above,
-        sump_m=sump,
-        side_m=side,
-        wall_m=wall,
-        lid=constant(n.lid),
-        floor=constant(n.floor),
-        boss=constant(n.boss),
-        boss_thickness=constant(n.boss_thickness),
-        overhang_m=overhang,
-        bolt_inset=constant(n.bolt_inset),
-        bolt_n_per_m=_bolt_n_per_m(numbers, centre),
-        rib_height=constant(n.rib_height) if constant(n.ribbed) < RIBBED_SHARE else 0.0,
-    )
-
-
-RIBBED_SHARE = 0.3
-LEAST_BOSS = 1.2
-"""Of a boss over its bearing, where the ends are near (assumed)."""
-
-
-def end_for_bearings_m(contents: Contents, wall_m: float) -> float:
-    """Return the least distance of the teeth from the ends, so that bosses end a wall's thickness before them."""
-    pairs = zip(contents.bearing_outer_m, contents.tip_radius_m, strict=True)
-    return max(0.5 * LEAST_BOSS * outer + 0.5 * wall_m - tip for outer, tip in pairs)
-
-
-def _bolt_n_per_m(numbers: PlateNumbers, centre_m: float) -> tuple[float, float]:
-    feet = numbers.feet
-    shear, axial = (
-        constant(own) * centre_m if given is None else constant(given)
-        for given, own in ((feet.shear_stiffness_n_per_m, numbers.shear), (feet.axial_stiffness_n_per_m, numbers.axial))
-    )
-    return shear, axial
-
-
-def _wall_m(numbers: PlateNumbers, centre_m: float) -> float:
-    if numbers.wall_mm is not None:
-        return 1e-3 * constant(numbers.wall_mm)
-    return least_wall_m(centre_m) * _within(STEEL_WALL if numbers.material == "steel" else IRON_WALL, numbers.wall)
-
-
-def least_wall_m(centre_m: float) -> float:
-    """Return what walls are multiples of [m]."""
-    return 3e-3 + 0.025 * centre_m
-
-
-def _within(limits: tuple[float, float], share: Number) -> float:
-    return limits[0] + constant(share) * (limits[1] - limits[0])
 
 
 def _seats(box: Box, modes: HousingModes, shafts: Shafts | None) -> dict[str, Motion]:

@@ -27,7 +27,7 @@ from siggen.specimen.background import (
     specimen_background,
 )
 from siggen.specimen.block_responses import BlockResponses, block_responses
-from siggen.specimen.housing import SpecimenHousing, specimen_housing
+from siggen.specimen.housing import SpecimenHousing, housing_settle_s, specimen_housing
 from siggen.specimen.measured_path import INPUTS, MEMORY_S, decoded_response
 
 CHAIN_HISTORY_S = 0.02
@@ -86,9 +86,8 @@ class Instrument:
 
 def settle_s(config: Config, specimen: Specimen) -> float:
     """Return the time before the first sample over which what lies between bearings and sensors settles [s]."""
-    housing = specimen_housing(config, specimen)
     measured = any(isinstance(sensor.through, MeasuredPath) for sensor in specimen.sensors)
-    return max(0.0 if housing is None else housing.settle_s, MEMORY_S if measured else 0.0)
+    return max(housing_settle_s(config, specimen), MEMORY_S if measured else 0.0)
 
 
 def history_s(config: Config, specimen: Specimen) -> float:

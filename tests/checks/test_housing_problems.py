@@ -14,7 +14,7 @@ from siggen.dynamics.housing.layout import layout
 from siggen.errors import ConfigError
 from siggen.planning.specimen import draw_specimen
 from siggen.specimen.gears import gear_pair
-from siggen.specimen.housing import specimen_layout
+from siggen.specimen.housing_layout import specimen_layout
 from tests.config.minimal import minimal
 
 SHAFTS = {"pinion": {"diameter_mm": 30, "bearing_span_mm": 120}, "gear": {"diameter_mm": 35, "bearing_span_mm": 120}}

@@ -177,7 +177,7 @@ def test_the_sink_rests_on_the_radius_of_its_own_edge() -> None:
 
 @pytest.mark.parametrize("skew_mm", [0.2, 0.8])
 def test_the_slices_of_a_table_are_enough_for_skewed_edges(skew_mm: float) -> None:
-    """The 96 of a table against 100: below 5e-4 of the healthy force; a quarter of what 48 leave, as halves should."""
+    """The 96 of a table against 100: below 5e-4 of the healthy force. Against 192 they err by 7e-4 to 1.1e-3."""
     rng = np.random.default_rng(0)
     slope = 1e-3 * skew_mm / WIDTH
     one = spall(1e-3, 0.0, WIDTH, (drawn_waves(rng), drawn_waves(rng)), (slope, slope))
