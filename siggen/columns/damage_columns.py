@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.column import MILLIMETRE, Column, list_of
+from siggen.keys.column import MILLIMETRE, Column, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config
 
 DAMAGE_COLUMNS = (
     Column("record_id", pa.int64(), "", "record that shows the damage"),
-    Column("gear", pa.string(), "", "pinion or gear"),
-    Column("tooth", pa.int32(), "", "index of the tooth"),
+    Column("gear", pa.string(), "", "pinion or gear; none for damage that is on no gear"),
+    Column("tooth", pa.int32(), "", "index of the tooth; -1 for all teeth of the gear, or none"),
     Column("kind", pa.string(), "", "what the damage is"),
     Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, polygon or none"),
     Column(
@@ -41,7 +41,7 @@ DAMAGE_COLUMNS = (
     ),
     Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
-"""Columns of `damage/<split>.parquet`: one row per single damage of a record."""
+"""Columns of `damage/<split>.parquet`: one row per part of a record's damage."""
 EDGE_COLUMNS = (
     Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
     Column(
@@ -57,7 +57,20 @@ EDGE_COLUMNS = (
 
 def damage_columns(config: Config) -> tuple[Column, ...]:
     """Return the columns of `damage/*.parquet` of a set."""
-    return (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()))
+    return (*DAMAGE_COLUMNS, *(EDGE_COLUMNS if has_drawn_edges(config) else ()), *kind_columns(config))
+
+
+def kind_columns(config: Config) -> tuple[Column, ...]:
+    """Return the columns that kinds of damage of a set have beyond those of all, each once."""
+    kinds = (state.damage for state in config.states if state.damage is not None)
+    return tuple(dict.fromkeys(column for kind in kinds for column in kind.columns))
+
+
+def nothing_of(column: Column) -> object:
+    """Return what a row holds where a kind has nothing to say: no column of a set holds nulls."""
+    if pa.types.is_list(column.type):
+        return []
+    return "" if pa.types.is_string(column.type) else pa.scalar(0).cast(column.type).as_py()
 
 
 def has_drawn_edges(config: Config) -> bool:

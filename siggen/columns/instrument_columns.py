@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.column import Column
+from siggen.keys.column import Column
 from siggen.sensing.inputs import MOTION
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.column import Column, list_of
 from siggen.columns.record import ID_COLUMNS, Record, record_value, schema_metadata
 from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 from siggen.errors import DatasetError
+from siggen.keys.column import Column, list_of
 from siggen.planning.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
 
 if TYPE_CHECKING:

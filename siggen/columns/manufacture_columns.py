@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from siggen.columns.column import MICROMETRE, Column
+from siggen.keys.column import MICROMETRE, Column
 
 if TYPE_CHECKING:
     from siggen.config import Config

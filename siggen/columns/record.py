@@ -10,7 +10,6 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.background_columns import background_columns
-from siggen.columns.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
 from siggen.columns.damage_columns import damage_columns
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
@@ -18,6 +17,7 @@ from siggen.columns.manufacture_columns import manufacture_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
+from siggen.keys.column import DECIBEL, HERTZ, MILLIMETRE, Column, list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config

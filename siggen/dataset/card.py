@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 import yaml
 
-from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
 from siggen.columns.record import channels, damage_schema, record_schema
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
@@ -16,6 +15,7 @@ from siggen.dataset.card_making import channels_text, making, quantities_text
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
+from siggen.keys.column import Column
 
 if TYPE_CHECKING:
     from siggen.config import Config

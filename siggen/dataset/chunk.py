@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from siggen.columns.column import Column
 from siggen.columns.internals import internals_batch
 from siggen.columns.record import Record, RecordFailure, non_finite, record_batch
 from siggen.errors import EngineError
+from siggen.keys.column import Column
 from siggen.record.stage_times import collected, stage
 
 if TYPE_CHECKING:

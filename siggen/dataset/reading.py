@@ -14,7 +14,6 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import yaml
 
-from siggen.columns.column import Column
 from siggen.columns.record import TACHO_COLUMN, Channel, signal_channels, signal_matrix
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.id_ranges import in_ranges
@@ -24,6 +23,7 @@ from siggen.dataset.promises import Promises
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
+from siggen.keys.column import Column
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""

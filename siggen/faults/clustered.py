@@ -25,8 +25,8 @@ from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, pit_place_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.layouts import clustered_centres
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.pit import Pit
-from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
@@ -52,7 +52,7 @@ class ClusteredPits(PitSize, Fault):
             return None
         return "count" if self.count <= milder.count else None
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return the pits that a state adds to its cluster, tooth by tooth."""
         return tuple(pit for tooth in growth.teeth(self) for pit in self._pits(growth, tooth))
 

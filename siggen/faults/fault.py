@@ -12,8 +12,10 @@ from typing import Any, ClassVar, TypeAlias, get_args
 
 from siggen.errors import Problem
 from siggen.faults.growth import Growth
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.column import Column
 from siggen.keys.number import Number
 from siggen.keys.problems import BRANCHES
 from siggen.keys.section import Section
@@ -42,6 +44,9 @@ class Fault(Section):
     acts: ClassVar[str] = ""
     """A sentence of the card on how it acts, where it is anything else."""
 
+    columns: ClassVar[tuple[Column, ...]] = ()
+    """Columns that its rows of the table of damage have beyond those of all kinds; 0 or empty in others' rows."""
+
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         """Make the kind known to the messages, in whose paths it is no key.
@@ -63,7 +68,7 @@ class Fault(Section):
         return str(get_args(cls.model_fields["kind"].annotation)[0])
 
     @abstractmethod
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return what this state adds; what it hides of the milder state's damage goes by itself."""
 
     @abstractmethod

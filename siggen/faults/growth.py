@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.teeth import TeethValue
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
@@ -42,7 +42,7 @@ class Growth:
         The drawn gears of the specimen.
     milder : tuple of (int, section)
         States that this one has grown from, with the section of their damage, the nearest first.
-    before : Damage
+    before : Parts
         Damage of the nearest of them.
     """
 
@@ -51,7 +51,7 @@ class Growth:
     state_id: int
     pair: GearPair
     milder: tuple[tuple[int, object], ...] = ()
-    before: Damage = ()
+    before: Parts = ()
 
     def began(self, gear: str, kind: type) -> int:
         """Return the first state of this growth that has such damage on the gear."""

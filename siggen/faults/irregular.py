@@ -45,6 +45,7 @@ from siggen.gears.damage.flank_damage import single_problems
 from siggen.gears.damage.heights import flank_heights, initiation_height_m
 from siggen.gears.damage.irregular import STRIPS, WAVE_LIMIT, IrregularSpall, drawn_waves, grown_spall, stations_across
 from siggen.gears.damage.outlines import rectangle
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -112,7 +113,7 @@ class IrregularSpalls(Fault):
         refuse_stages(self.stages, self.teeth)
         return self
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
         return tuple(_on_tooth(self, growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
 

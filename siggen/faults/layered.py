@@ -28,6 +28,7 @@ from siggen.faults.flank_place import (
 from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.gears.damage.layouts import layered_centres
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -63,7 +64,7 @@ class LayeredPits(PitSize, Fault):
             return None
         return "layers" if self.layers <= milder.layers and self.pits_per_layer <= milder.pits_per_layer else None
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return the pits that a state adds to its layers, tooth by tooth."""
         return tuple(pit for tooth in growth.teeth(self) for pit in self._pits(growth, tooth))
 

@@ -22,6 +22,7 @@ from siggen.faults.flank_place import (
 from siggen.faults.growth import Growth
 from siggen.faults.single_pit import PitPlace, PitSize, drawn_pit, largest_pit, pit_place_problems
 from siggen.faults.single_spall import SpallSize, largest_spall, spall_on_tooth, spall_problems
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.pit import Pit
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
@@ -88,7 +89,7 @@ class ListedPits(Fault):
         found = [spall.parallel(face_width_mm) for spall in self.spalls]
         return (all(parallel for parallel, _ in found), any(through for _, through in found)) if found else None
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return what is listed."""
         return (*self._pits(growth), *self._spalls(growth))
 

@@ -12,6 +12,7 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import READING, HeightReading
 from siggen.faults.growth import Growth
 from siggen.faults.single_spall import SIZE_KEYS, SpallSize, largest_spall, spall_on_tooth, spall_problems
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.spall import Spall
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
@@ -37,7 +38,7 @@ class Spalls(SpallSize, Fault):
         refuse_stages(self.stages, self.teeth)
         return self
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
         return tuple(self._on_tooth(growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
 

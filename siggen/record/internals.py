@@ -7,11 +7,11 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import available_quantities, quantity_problems
-from siggen.columns.column import Column
 from siggen.columns.record import channel_metadata, channels
 from siggen.config import Config
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
+from siggen.keys.column import Column
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_specimen

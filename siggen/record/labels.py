@@ -5,7 +5,8 @@ from __future__ import annotations
 from siggen.arrays import FloatArray
 from siggen.columns.gearbox_columns import drawn_places, draws_oil
 from siggen.config import Config, State
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.damage.part import Parts, teeth_of
+from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
@@ -17,17 +18,16 @@ from siggen.specimen.gears import gear_pair
 from siggen.specimen.housing import MODES_ON_BOLTS, specimen_housing
 from siggen.specimen.static_mesh import StaticMesh
 
+GEARS = ("pinion", "gear")
 
-def _faulty_gear(pinion_teeth: list[int], gear_teeth: list[int]) -> str:
-    if pinion_teeth and gear_teeth:
-        return "both"
-    if pinion_teeth:
-        return "pinion"
-    return "gear" if gear_teeth else "none"
+
+def _faulty_gear(parts: Parts) -> str:
+    found = {one.gear for one in parts} & set(GEARS)
+    return "both" if len(found) > 1 else next(iter(found), "none")
 
 
 def damage_labels(
-    state: State, pair: GearPair, damage: Damage, options: StiffnessOptions, sink_depth_m: float = 0.0
+    state: State, pair: GearPair, parts: Parts, options: StiffnessOptions, sink_depth_m: float = 0.0
 ) -> dict[str, object]:
     """Return the labels that follow from the damage alone: fault, severity, teeth, areas, lengths and losses.
 
@@ -36,16 +36,16 @@ def damage_labels(
     nothing, though in motion its flank sinks by `sink_depth_m` [m] and then rests on the edges of the damage: that is
     what mesh_stiffness_loss_as_simulated tells, which depends on the torque (`operating_labels`).
     """
-    teeth = {gear: sorted({p.tooth for p in damage if p.gear == gear}) for gear in ("pinion", "gear")}
+    damage = on_teeth(parts)
     summary = damage_summary(pair, damage)
     return {
         "state": state.name,
         "fault": state.fault,
         "severity": state.severity,
-        "faulty_gear": _faulty_gear(teeth["pinion"], teeth["gear"]),
-        "faulty_teeth_pinion": teeth["pinion"],
-        "faulty_teeth_gear": teeth["gear"],
-        "damage_count": summary.count,
+        "faulty_gear": _faulty_gear(parts),
+        "faulty_teeth_pinion": teeth_of(parts, "pinion"),
+        "faulty_teeth_gear": teeth_of(parts, "gear"),
+        "damage_count": len(parts),
         "damaged_area_mm2": 1e6 * summary.union_area_m2,
         "damaged_area_share": summary.area_share,
         "damage_face_length_mm": 1e3 * summary.largest_face_length_m,

@@ -6,11 +6,11 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, bearing_force_name
-from siggen.columns.column import Column
 from siggen.config import Config
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.dynamics.time.response import Response
+from siggen.keys.column import Column
 from siggen.keys.number import constant
 from siggen.planning.specimen import Specimen
 

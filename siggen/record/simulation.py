@@ -16,7 +16,7 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
@@ -89,14 +89,15 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
     """
     pair, options = made.pair, stiffness_options(specimen.stiffness)
     with refused_as("impossible_damage"):
-        damage = made.damage(state_id)
+        parts = made.damage(state_id)
+        damage = on_teeth(parts)
         errors = made.errors(state_id)
         lead = None if errors is None or errors.even else errors.lead_m
         tables = tooth_tables(
             specimen.dynamics, pair, damage, options, TABLE_POINTS,
             largest_force_n(config.operating_points, pair), lead,
         )  # fmt: skip
-        labels = damage_labels(config.states[state_id], pair, damage, options, tables.sink_depth_m)
+        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
     return StateTeeth(pair, options, damage, errors, tables, labels)
 
 

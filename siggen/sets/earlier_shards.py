@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from siggen.columns.column import Column
 from siggen.columns.record import RecordFailure
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation
@@ -23,6 +22,7 @@ from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import running
 from siggen.errors import counted
+from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, record_ids_of
 from siggen.sets.record_comparison import result_difference
 from siggen.sets.shard_making import ranges

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from siggen.columns.column import Column
 from siggen.columns.record import channels
 from siggen.dataset.card_making import stated_tolerance
+from siggen.keys.column import Column
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from siggen.columns.column import Column
 from siggen.dataset.chunk import Simulate
 from siggen.dataset.label_tables import DamageRows
+from siggen.keys.column import Column
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.column import list_of
 from siggen.columns.record import TACHO_COLUMN, channels, damage_schema, record_schema, schema_metadata
 from siggen.dataset.environment import environment
 from siggen.dataset.folder import config_bytes
@@ -36,6 +35,7 @@ from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.sidecar import Sidecar, put_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
+from siggen.keys.column import list_of
 
 if TYPE_CHECKING:
     from siggen.config import Config

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from siggen.columns.column import Column
 from siggen.columns.internals import internals_schema
 from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.card import card
@@ -24,6 +23,7 @@ from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
+from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, shards
 from siggen.sets import physics as contents
 from siggen.sets.earlier_shards import Again, EarlierShards

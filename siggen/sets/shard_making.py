@@ -8,7 +8,6 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from siggen.columns.column import Column
 from siggen.columns.internals import internals_group_rows, internals_schema
 from siggen.columns.record import RecordFailure, record_schema
 from siggen.dataset.chunk import Chunk, ChunkResult, ChunkSimulation, chunks
@@ -21,6 +20,7 @@ from siggen.dataset.storage import Storage
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
 from siggen.engines.registry import running
+from siggen.keys.column import Column
 from siggen.planning.plan import ShardPlan, record_ids_of, rows_per_group
 from siggen.record.compilation import run_part
 from siggen.sets import physics as contents

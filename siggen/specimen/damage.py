@@ -1,4 +1,4 @@
-"""The damage of one specimen in one state: configuration and draws in, a tuple of damages of single teeth out.
+"""The damage of one specimen in one state: configuration and draws in, its parts out.
 
 A state holds the damage of the milder state that it grew from and adds its own up to the count that it names. A spall
 that grows from a spall has the draws of the first one: its centre stays and its sizes keep their rank. What a grown
@@ -12,13 +12,13 @@ from functools import partial
 
 from siggen.config import Config
 from siggen.faults.growth import Growth
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
 
 
-def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int) -> Damage:
-    """Return all damage of a specimen in a state, those of the milder state first.
+def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int) -> Parts:
+    """Return all parts of a specimen's damage in a state, those of the milder state first.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ def state_damage(config: Config, specimen_id: int, pair: GearPair, state_id: int
 
 
 def grown_damage(
-    config: Config, specimen_id: int, pair: GearPair, state_id: int, milder_damage: Callable[[int], Damage]
-) -> Damage:
+    config: Config, specimen_id: int, pair: GearPair, state_id: int, milder_damage: Callable[[int], Parts]
+) -> Parts:
     """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
     config = gearbox_config(config, specimen_id)
     damage_model = config.states[state_id].damage
@@ -55,6 +55,6 @@ def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:
         older = config.grown_from(older)
 
 
-def _united(before: Damage, new: Damage) -> Damage:
+def _united(before: Parts, new: Parts) -> Parts:
     left = (old for old in before if old in new or not any(one.hides(old) for one in new))
     return (*left, *(one for one in new if one not in before))

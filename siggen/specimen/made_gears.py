@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from siggen.config import Config
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.planning.specimen import Specimen
@@ -48,7 +48,7 @@ class MadeGears:
         """Return the missing material of relief, errors and waves, under any torque."""
         return self._waves_and_missing(self._drawn_for(state_id))[1]
 
-    def damage(self, state_id: int) -> Damage:
+    def damage(self, state_id: int) -> Parts:
         """Return the damage of a state.
 
         Raises
@@ -58,7 +58,7 @@ class MadeGears:
         """
         return self._damage(state_id)
 
-    def _drawn_damage(self, state_id: int) -> Damage:
+    def _drawn_damage(self, state_id: int) -> Parts:
         return grown_damage(self._config, self._specimen.specimen_id, self.pair, state_id, self.damage)
 
     def _drawn_for(self, state_id: int) -> int:

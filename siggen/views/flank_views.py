@@ -12,7 +12,7 @@ from siggen.arrays import FloatArray
 from siggen.columns.record import damage_schema
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, pits_of
+from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -88,7 +88,7 @@ def flank_views(config: Config, specimen_id: int = 0, state: str | None = None) 
     return [
         view
         for index in _state_ids(config, state)
-        for view in _views(pair, config.states[index].name, state_damage(config, specimen_id, pair, index))
+        for view in _views(pair, config.states[index].name, on_teeth(state_damage(config, specimen_id, pair, index)))
     ]
 
 

@@ -15,7 +15,7 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gears.damage.tooth_damage import Damage, pits_of
+from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -104,7 +104,7 @@ def stiffness_curves(
     config = gearbox_config(config, specimen_id)
     specimen = draw_specimen(config, specimen_id)
     pair = gear_pair(specimen.gears)
-    damages = [state_damage(config, specimen_id, pair, i) for i in range(len(config.states))]
+    damages = [on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states))]
     first, last = damaged_engagements(pair, max(damages, key=len))
     count = last - first + 3 if pitches is None else pitches
     steps = np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch

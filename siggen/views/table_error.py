@@ -8,7 +8,7 @@ from siggen.config import Config
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.contact_table_error import ContactTableError, contact_table_error
 from siggen.gears.contact.table_options import face_slices
-from siggen.gears.damage.tooth_damage import Damage, has_extent
+from siggen.gears.damage.tooth_damage import Damage, has_extent, on_teeth
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, mesh_tables, table_error
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.specimen import draw_operating_point, draw_specimen
@@ -36,7 +36,7 @@ def worst_table_error(config: Config, specimen_id: int = 0, points: int = TABLE_
     pair, options = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     damages: dict[Damage, None] = {(): None}
     if not solves_across_the_face(specimen.dynamics):
-        damages = dict.fromkeys(state_damage(config, specimen_id, pair, i) for i in range(len(config.states)))
+        damages = dict.fromkeys(on_teeth(state_damage(config, specimen_id, pair, i)) for i in range(len(config.states)))
     return max(table_error(pair, d, options, mesh_tables(pair, d, options, points=points)) for d in damages)
 
 
@@ -76,7 +76,7 @@ def worst_contact_table_error(
     damaged = [i for i, state in enumerate(config.states) if state.damage is not None and i not in milder]
     found = []
     for index in (None, *damaged[-STATES:]):
-        drawn = () if index is None else state_damage(config, specimen_id, pair, index)
+        drawn = () if index is None else on_teeth(state_damage(config, specimen_id, pair, index))
         damage = tuple(one for one in drawn if has_extent(one))
         errors = specimen_errors(config, pair, specimen_id, index or 0)
         slices = face_slices(pair, options)

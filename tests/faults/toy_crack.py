@@ -13,7 +13,7 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.flank_place import MM, AnyGear, Length
 from siggen.faults.growth import Growth
-from siggen.gears.damage.tooth_damage import Damage, Refusal, ToothDamage
+from siggen.gears.damage.part import Part, Parts, Refusal
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.drawing import draw
@@ -46,7 +46,7 @@ class Hinge:
     def profile_arc_m(self, gear: SpurGear) -> float:
         return 0.0
 
-    def hides(self, other: ToothDamage) -> bool:
+    def hides(self, other: Part) -> bool:
         return isinstance(other, Hinge) and (other.gear, other.tooth) == (self.gear, self.tooth)
 
     def own_problems(self) -> Iterator[Refusal]:
@@ -80,7 +80,7 @@ class ToyCrack(Fault):
     teeth: Teeth = 1
     depth_mm: Length
 
-    def drawn(self, growth: Growth) -> Damage:
+    def drawn(self, growth: Growth) -> Parts:
         one = draw(self, growth.place(self.gear, ToyCrack), f"toy_crack.{self.gear}")
         depth_m = MM * constant(one.depth_mm)
         spring = SPRING_NM_PER_RAD * (1e-3 / depth_m) ** 2

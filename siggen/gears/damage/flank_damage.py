@@ -10,8 +10,9 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.covering import hidden_rows
+from siggen.gears.damage.part import Refusal
 from siggen.gears.damage.row_columns import COLUMNS
-from siggen.gears.damage.tooth_damage import Damage, DamageProblem, Refusal, ToothDamage, damaged_teeth, pits_of
+from siggen.gears.damage.tooth_damage import Damage, DamageProblem, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from siggen.gears.geometry.gear_pair import GearPair
 

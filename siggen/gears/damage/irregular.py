@@ -22,7 +22,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.damage.heights import clipped_arcs_m
 from siggen.gears.damage.on_flank import OnFlank, floor_problems
 from siggen.gears.damage.outlines import Polygon
-from siggen.gears.damage.tooth_damage import Refusal, ToothDamage
+from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.geometry.spur_gear import SpurGear
 
 STRIPS = 64
@@ -116,7 +116,7 @@ class IrregularSpall(OnFlank):
         """Return the longest arc between both edges at one place across the face, clipped to the flank [m]."""
         return float(np.max(clipped_arcs_m(gear, *np.array(self.stations_m)[:, 1:].T)))
 
-    def hides(self, other: ToothDamage) -> bool:
+    def hides(self, other: Part) -> bool:
         """Return whether `other` is one that it has grown from, or lies inside one of its strips and nowhere deeper."""
         milder = self.milder
         while milder is not None:

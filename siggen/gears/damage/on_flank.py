@@ -15,8 +15,9 @@ from siggen.arrays import FloatArray
 from siggen.gears.damage.covering import cut_row, hides
 from siggen.gears.damage.heights import flank_heights, profile_arc_m
 from siggen.gears.damage.outlines import Outline
+from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.row_columns import HIGHEST, LOWEST
-from siggen.gears.damage.tooth_damage import Refusal, ToothDamage
+from siggen.gears.damage.tooth_damage import acts_on_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
@@ -72,9 +73,9 @@ class OnFlank:
         """Return the arc that the outline spans, clipped to the flank [m]."""
         return profile_arc_m(gear, self.outline)
 
-    def hides(self: Outlined, other: ToothDamage) -> bool:
+    def hides(self: Outlined, other: Part) -> bool:
         """Return whether `other` lies wholly inside on the same flank and nowhere deeper; False where it is unsure."""
-        if (self.gear, self.tooth) != (other.gear, other.tooth) or other.outline is None:
+        if (self.gear, self.tooth) != (other.gear, other.tooth) or not acts_on_tooth(other) or other.outline is None:
             return False
         own = np.array(self.rows())
         ends = own[:, (LOWEST, HIGHEST)].ravel()

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from siggen.gears.damage.on_flank import OnFlank
 from siggen.gears.damage.outlines import Ellipse
-from siggen.gears.damage.tooth_damage import ToothDamage
+from siggen.gears.damage.part import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,6 @@ class Pit(OnFlank):
         """The pit's ellipse."""
         return Ellipse(self.height_m, self.face_m, self.semi_axis_face_m, self.semi_axis_profile_m)
 
-    def hides(self, other: ToothDamage) -> bool:  # noqa: ARG002
+    def hides(self, other: Part) -> bool:  # noqa: ARG002
         """Return False: pits count one by one, however they overlap."""
         return False

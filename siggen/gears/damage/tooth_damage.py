@@ -8,33 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import Protocol, TypeAlias, TypeGuard
 
 from siggen.arrays import FloatArray
 from siggen.gears.damage.outlines import Outline
+from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
 
-class Refusal(NamedTuple):
-    """Why a damage cannot be: the attribute to blame, what came, what is allowed."""
-
-    name: str
-    received: str
-    allowed: str
-
-
-class ToothDamage(Protocol):
+class ToothDamage(Part, Protocol):
     """One damage of one tooth; immutable, and equal to another one that answers the same.
 
     Attributes
     ----------
-    gear : str
-        'pinion' or 'gear'.
-    tooth : int
-        Index, from 0.
-    kind : str
-        What it is, as in the table of damage: 'pit', 'spall'.
     outline : Ellipse, Polygon or None
         On the plane of height and face, to draw and to measure it; None for a damage that shows on no flank.
     depth_m : float
@@ -42,16 +29,7 @@ class ToothDamage(Protocol):
     """
 
     @property
-    def gear(self) -> str: ...  # noqa: D102 - see the class
-
-    @property
-    def tooth(self) -> int: ...  # noqa: D102
-
-    @property
-    def kind(self) -> str: ...  # noqa: D102
-
-    @property
-    def outline(self) -> Outline | None: ...  # noqa: D102
+    def outline(self) -> Outline | None: ...  # noqa: D102 - see the class
 
     @property
     def depth_m(self) -> float: ...  # noqa: D102
@@ -65,20 +43,21 @@ class ToothDamage(Protocol):
     def profile_arc_m(self, gear: SpurGear) -> float:
         """Return the longest arc along the involute that a line along the profile crosses [m]; 0 without outline."""
 
-    def hides(self, other: ToothDamage) -> bool:
-        """Return whether it takes the place of a milder damage, which then is no damage of its own any more."""
-
-    def own_problems(self) -> Iterator[Refusal]:
-        """Yield what is impossible whatever gear it is on."""
-
     def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
         """Yield what is impossible on a pair; asked only where it has no problem of its own."""
 
-    def table_row(self) -> dict[str, object]:
-        """Return its row of the table of damage by column, lengths in mm, but for the record's number."""
-
 
 Damage: TypeAlias = tuple[ToothDamage, ...]
+
+
+def on_teeth(parts: Iterable[Part]) -> Damage:
+    """Return the parts that act on single teeth."""
+    return tuple(one for one in parts if acts_on_tooth(one))
+
+
+def acts_on_tooth(part: Part) -> TypeGuard[ToothDamage]:
+    """Whether a part answers for its tooth; any other acts elsewhere."""
+    return hasattr(part, "tooth_compliance_m_per_n")
 
 
 @dataclass(frozen=True, slots=True)
