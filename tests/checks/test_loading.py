@@ -188,15 +188,12 @@ def test_every_configuration_that_ships_is_usable(path):
     assert load_config(loaded.canonical()) == loaded
 
 
-@pytest.mark.parametrize(
-    ("name", "records", "grown_from"),
-    [("quickstart", 96, [None, None, None, 2]), ("linear_pits", 240, [None, None, 1, 2])],
-)
-def test_a_first_set_has_few_records_of_4_severities(name, records, grown_from):
+@pytest.mark.parametrize(("name", "records"), [("quickstart", 96), ("linear_pits", 240)])
+def test_a_first_set_has_few_records_of_4_severities_that_grow(name, records):
     loaded = load_config(CONFIGS / f"{name}.yaml")
     assert plan(loaded).count == records
     assert [state.severity for state in loaded.states] == ["healthy", "slight", "moderate", "severe"]
-    assert [loaded.grown_from(i) for i in range(4)] == grown_from
+    assert [loaded.grown_from(i) for i in range(4)] == [None, None, 1, 2]
 
 
 def test_paper_a_has_the_numbers_that_the_paper_states():
