@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from siggen.config.housing import PlateHousing
@@ -66,6 +67,7 @@ def _band(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Prob
         yield Problem("fs_hz", repr(sections["fs_hz"]), allowed)
 
 
+WITH_BEARINGS = "6dof, 8dof, casing"
 AT_BEARINGS, ON_BODY = ("rubbing", "bearings", "machines", "shafts"), ("base", "second_stage", "auxiliary_drive")
 """Parts of the background that press on bearings, and those that press on what carries them."""
 
@@ -98,7 +100,7 @@ def _background(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterato
     model = sections["dynamics"].model
     for part in AT_BEARINGS if model == "torsional" else ():
         if getattr(section, part) is not None:
-            allowed = "allowed: null, or a model with bearings: 6dof, 8dof, casing (dynamics.model: torsional)"
+            allowed = f"allowed: null, or a model with bearings: {WITH_BEARINGS} (dynamics.model: torsional)"
             yield Problem(f"background.{part}", "a section", allowed)
     for part in ON_BODY if model != "casing" else ():
         if getattr(section, part) is not None:
@@ -139,10 +141,12 @@ def _forces_at_bearings(sections: Mapping[str, Any], _: Mapping[str, object]) ->
     if "dynamics" not in sections or sections["dynamics"].model != "torsional":
         return
     dynamics = sections["dynamics"]
-    grade = dynamics.unbalance.grade_mm_s
+    grade, model = dynamics.unbalance.grade_mm_s, f"a model with bearings: {WITH_BEARINGS} (dynamics.model: torsional)"
     if bounds(grade)[1] > 0.0:
-        allowed = "allowed: 0, or a model with bearings: 6dof, 8dof, casing (dynamics.model: torsional)"
-        yield Problem("dynamics.unbalance.grade_mm_s", str(grade), allowed)
+        yield Problem("dynamics.unbalance.grade_mm_s", str(grade), f"allowed: 0, or {model}")
+    for index, state in sections.get("states", {}).items():
+        if state.damage is not None and state.damage.needs_bearings:
+            yield Problem(f"states.{index}.damage.kind", f"'{state.damage.kind_word()}'", f"allowed: {model}")
 
 
 def _twice_named(_: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
@@ -210,6 +214,8 @@ def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem
         yield Problem(f"{path}.grows_from", received, "allowed: a state that is not more severe, or none")
     if milder.damage is None or state.damage is None:
         return
+    for problem in state.damage.contradictions(milder.damage):
+        yield replace(problem, path=f"{path}.damage.{problem.path}")
     if key := state.damage.key_that_adds_nothing(milder.damage):
         nouns = state.damage.nouns or "damage"
         received = f"no {nouns} beyond those of {milder.name}, which this state contains (grows_from)"

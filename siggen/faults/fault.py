@@ -44,6 +44,9 @@ class Fault(Section):
     acts: ClassVar[str] = ""
     """A sentence of the card on how it acts, where it is anything else."""
 
+    needs_bearings: ClassVar[bool] = False
+    """Whether it acts on bearings, which a model of rotations alone has not."""
+
     columns: ClassVar[tuple[Column, ...]] = ()
     """Columns that its rows of the table of damage have beyond those of all kinds; 0 or empty in others' rows."""
 
@@ -100,6 +103,15 @@ class Fault(Section):
     def hit_teeth(self) -> HitTeeth:
         """Yield what names teeth; as it stands, for damage on neighbouring teeth of one gear."""
         yield "teeth", getattr(self, "gear"), getattr(self, "teeth")  # noqa: B009 - keys of most kinds, not of all
+
+    @property
+    def position(self) -> str:
+        """Where it is, in a word."""
+        return str(getattr(self, "gear", "as listed"))
+
+    def contradictions(self, milder: Fault) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield what cannot be, beside the milder damage that it contains."""
+        return iter(())
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:  # noqa: ARG002
         """Return the key by which it adds nothing to the milder damage that it contains, or None if it adds some."""

@@ -1,5 +1,6 @@
 """The kinds of damage that a state may have: a new one is a line here."""
 
+from siggen.faults.bearing_spall import BearingSpalls
 from siggen.faults.clustered import ClusteredPits
 from siggen.faults.fault import Fault
 from siggen.faults.irregular import IrregularSpalls
@@ -7,4 +8,4 @@ from siggen.faults.layered import LayeredPits
 from siggen.faults.listed import ListedPits
 from siggen.faults.spalls import Spalls
 
-KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls]
+KINDS: list[type[Fault]] = [LayeredPits, ClusteredPits, Spalls, ListedPits, IrregularSpalls, BearingSpalls]

@@ -130,7 +130,7 @@ def _assay(
 
 def _samples(config: Config, state: State) -> Iterator[dict[str, Any]]:
     """Yield the gear pair in a state at each operating point."""
-    position = "none" if state.damage is None else str(getattr(state.damage, "gear", "as listed"))
+    position = "none" if state.damage is None else state.damage.position
     fault = {"fault_type": state.fault, "fault_position": position, "fault_severity": state.severity}
     for number, point in enumerate(config.operating_points):
         conditions = {"speed": _range(point.speed_hz), "torque": _range(point.torque_nm)}

@@ -16,6 +16,7 @@ from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
 from siggen.dynamics.time.response_stream import Piece, ResponseStream
 from siggen.errors import SolverFailure
+from siggen.gears.damage.part import Parts
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
@@ -65,6 +66,7 @@ class SpecimenState:
     mesh: SpecimenMesh
     labels: dict[str, object]
     static: StaticMesh
+    parts: Parts = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +79,7 @@ class StateTeeth:
     errors: SpecimenErrors | None
     tables: ToothTables
     labels: dict[str, object]
+    parts: Parts
 
 
 def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGears) -> StateTeeth:
@@ -98,7 +101,7 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
             largest_force_n(config.operating_points, pair), lead,
         )  # fmt: skip
         labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
-    return StateTeeth(pair, options, damage, errors, tables, labels)
+    return StateTeeth(pair, options, damage, errors, tables, labels, parts)
 
 
 def specimen_state(config: Config, specimen: Specimen, state_id: int, made: MadeGears | None = None) -> SpecimenState:
@@ -124,6 +127,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         SpecimenMesh(pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact),
         labels,
         static,
+        teeth.parts,
     )
 
 
@@ -201,7 +205,7 @@ def _settle_s(config: Config, specimen: Specimen, motion: Motion) -> float:
 def _driven(config: Config, specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     angle_rad = start_angle_rad(config, state.pair, record)
-    return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad)
+    return record_drive(config, specimen, state.mesh.structure, point, record, angle_rad, state.parts)
 
 
 def simulated(

@@ -17,6 +17,7 @@ from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariati
 from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import constant
@@ -25,6 +26,7 @@ from siggen.planning.specimen import OperatingPoint, Specimen
 from siggen.seeding import Stage, generator, named_generator, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.spread import Spread
+from siggen.specimen.bearing_spalls import spall_sources
 from siggen.specimen.shaft_forces import force_sources
 
 MARGIN_S = 1.0
@@ -51,16 +53,22 @@ def record_drive(
     point: OperatingPoint,
     record: PlannedRecord,
     start_angle_rad: float,
+    parts: Parts = (),
 ) -> RecordDrive:
     """Return how a record is driven; without variation and forces at constant speed, with nothing else acting.
+
+    `parts` are those of the state's damage: some push.
 
     Raises
     ------
     ValueError
         If the speed might reach zero, or a force has no bearing to act at.
     """
-    forces = force_sources(config, specimen, structure)
     rotation = record_rotation(config, point, record, start_angle_rad)
+    forces = (
+        *force_sources(config, specimen, structure),
+        *spall_sources(config, specimen, structure, point, record, rotation, parts),
+    )
     if not config.variation.active:
         return RecordDrive(rotation, Excitation(forces) if forces else None, None, -1)
     variation = drawn_variation(config, record)

@@ -61,7 +61,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
     with refused_as("outside_model"):
         angle = start_angle_rad(config, state.pair, record)
-        driven = record_drive(config, specimen, state.mesh.structure, point, record, angle)
+        driven = record_drive(config, specimen, state.mesh.structure, point, record, angle, state.parts)
         (steps, _), motion, _ = stepped_motion(config, specimen.dynamics, state.mesh, point, driven)
         grid = _time_grid(config, specimen, motion, driven.rotation, steps)
         start = motion.start(grid["start_pitches"])

@@ -15,7 +15,8 @@ from tests.house.source_tree import ROOT, imports, modules
 SIGGEN_ROOMS = (
     "errors", "sources", "seeding", "arrays", "compiled", "lanes", "keys",
     "gears.geometry", "gears.errors", "gears.damage", "gears.stiffness", "gears.contact",
-    "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.friction", "dynamics.mesh", "dynamics.time",
+    "dynamics.housing", "dynamics.structure", "dynamics.drive", "dynamics.bearings", "dynamics.friction",
+    "dynamics.mesh", "dynamics.time",
     "sensing", "faults", "noise", "sensors", "config", "rig", "planning", "specimen", "checks", "columns", "record",
     "dataset", "engines", "sets", "views", "publication", "cli",
 )  # fmt: skip

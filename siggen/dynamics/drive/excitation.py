@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,7 +13,12 @@ from siggen.dynamics.drive.drive import Rotation, Turning
 
 
 class Source(Protocol):
-    """One cause of inputs."""
+    """One cause of inputs; to be derived from.
+
+    `is_sharp`: whether inputs change within few steps of integration, so that no coarser grid can stand for them.
+    """
+
+    is_sharp: bool = False
 
     @property
     def vectors(self) -> FloatArray:
@@ -22,12 +27,22 @@ class Source(Protocol):
     def inputs(self, turning: Turning) -> FloatArray:
         """Return the inputs (k, m) at k times."""
 
+    @property
+    def seat_forces(self) -> Mapping[str, FloatArray]:
+        """Place/axis -> force (m,) on a seat per unit of the inputs, beside what its spring and damper bear."""
+        return {}
+
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
     """Sources that act together; their inputs stand side by side in this order."""
 
     sources: tuple[Source, ...]
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether any source is."""
+        return any(source.is_sharp for source in self.sources)
 
     @property
     def vectors(self) -> FloatArray:
@@ -39,9 +54,14 @@ class Excitation:
         turning = drive.turning(time_s)
         return np.ascontiguousarray(np.concatenate([source.inputs(turning) for source in self.sources], axis=1))
 
+    def seat_force_rows(self, places: Sequence[str]) -> FloatArray:
+        """Return the forces (places, m) on seats per unit of the inputs, beside what springs and dampers bear."""
+        parts = [_rows(source, places) for source in self.sources]
+        return np.concatenate(parts, axis=1)
+
 
 @dataclass(frozen=True, slots=True)
-class SpeedDeviation:
+class SpeedDeviation(Source):
     """Ω/Ω_0 - 1, which pushes nothing, but by which tooth pairs slide faster or slower."""
 
     coordinates: Sequence[str]
@@ -55,3 +75,8 @@ class SpeedDeviation:
     def inputs(self, turning: Turning) -> FloatArray:
         """Return the deviation (k, 1)."""
         return (turning.speed_rad_s / self.nominal_rad_s - 1.0)[:, None]
+
+
+def _rows(source: Source, places: Sequence[str]) -> FloatArray:
+    none, found = np.zeros(source.vectors.shape[0]), source.seat_forces
+    return np.array([found.get(place, none) for place in places]).reshape(len(places), none.size)

@@ -6,6 +6,8 @@ the spline, half an interval from its knots, errs by less than a millionth of th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -24,6 +26,8 @@ MARGIN = 4
 
 class SampledExcitation:
     """Inputs of an excitation from `first_s` to `last_s`; at `finest_hz` and above it asks the excitation itself.
+
+    So it does where a source is sharp: between the knots of a coarse grid a pulse could pass unseen.
 
     With `window_s` a spline covers that much from the first time asked for, and the next one follows when it is passed:
     memory does not grow with the duration.
@@ -53,11 +57,15 @@ class SampledExcitation:
             return self._excitation.inputs(time_s, drive)
         return _evaluated(self._spline.x, self._spline.c, np.ascontiguousarray(time_s))
 
+    def seat_force_rows(self, places: Sequence[str]) -> FloatArray:
+        """Return the forces (places, m) on seats per unit of the inputs, as `Excitation`."""
+        return self._excitation.seat_force_rows(places)
+
     def _cover(self, first_s: float, last_s: float) -> None:
         """Make the spline of a span, no coarser than the one before; none if its grid were finer than the steps."""
         self._spline, self._until_s = None, last_s
         coarser: FloatArray | None = None
-        while self._rate_hz < self._finest_hz:
+        while self._rate_hz < self._finest_hz and not self._excitation.is_sharp:
             knots = _knots(first_s, last_s, self._rate_hz)
             values = self._values(knots, coarser)
             spline = CubicSpline(knots, values)

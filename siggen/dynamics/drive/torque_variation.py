@@ -18,6 +18,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.drive import Turning
+from siggen.dynamics.drive.excitation import Source
 from siggen.dynamics.drive.slow_variation import SlowVariation
 from siggen.dynamics.structure.structure import Structure, vector
 
@@ -45,19 +46,24 @@ class TorqueSettings:
     line_phase_rad: float = 0.0
 
 
-class TorqueVariation:
+class TorqueVariation(Source):
     """Three inputs: slow torque of motor and load in balance, torque of the load, torque of the motor."""
 
     def __init__(self, structure: Structure, torque_nm: float, settings: TorqueSettings) -> None:
         motor, load = driven_and_loaded(structure)
         rotation = rigid_rotation(structure)
         self.reduced_inertia_kg_m2 = float(rotation @ structure.mass @ rotation)
-        self.vectors = np.stack(
+        self._vectors = np.stack(
             [structure.torque_vector, without_drift(structure, load), without_drift(structure, motor)]
         )
         self._gear_turn = abs(rotation[structure.coordinates.index(load)])
         self._torque_nm = torque_nm
         self._settings = settings
+
+    @property
+    def vectors(self) -> FloatArray:
+        """The generalised forces (3, n)."""
+        return self._vectors
 
     def inputs(self, turning: Turning) -> FloatArray:
         """Return the inputs (k, 3) [N m]: the first and the last as motor torques, the second on the load's shaft."""

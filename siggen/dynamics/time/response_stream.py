@@ -18,7 +18,7 @@ from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
-from siggen.dynamics.time.decimation import Decimator, half_length
+from siggen.dynamics.time.decimation import Decimator, half_length, value_taps
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
@@ -66,6 +66,15 @@ class Piece(NamedTuple):
 
     acceleration_m_s2: FloatArray
     bearing_force_n: FloatArray
+
+
+class Stepped(NamedTuple):
+    """States (steps, 2n) from step `first` on, inputs (steps, m), and where teeth are `apart` (steps,), if known."""
+
+    first: int
+    states: FloatArray
+    inputs: FloatArray
+    apart: NDArray[np.bool_] | None
 
 
 class Pieces(Protocol):
@@ -130,42 +139,52 @@ class ResponseStream:
         for _ in stepped_blocks(run, state, -half - self._settle, begin):
             pass
         accelerations = acceleration_decimator(structure, run.motions, run.fs_hz, steps)
-        forces = force_decimator(structure, steps) if self.places else None
+        forces = BearingForces(run) if self.places else None
         end = (self.samples + self.ahead - 1) * steps + half + 1
-        for first, states, apart in stepped_blocks(run, state, begin, end):
-            piece = Piece(accelerations.take(states), self._forces(forces, states))
-            self._count(first, states, apart)
+        for block in stepped_blocks(run, state, begin, end):
+            felt = np.empty((0, 0)) if forces is None else forces.take(block)
+            piece = Piece(accelerations.take(block.states), felt)
+            self._count(block)
             if piece.acceleration_m_s2.shape[1]:
                 yield piece
 
-    def _forces(self, decimator: Decimator | None, states: FloatArray) -> FloatArray:
-        """Return bearing forces, which are filtered about their static values, with what they are at rest."""
-        if decimator is None:
-            return np.empty((0, 0))
-        motion = self.run.motion
-        static, pairs = motion.equations.static_deflection, motion.structure.bearing_forces
-        at_rest = np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
-        return np.asarray(decimator.take(states) + at_rest)
-
-    def _count(self, first: int, states: FloatArray, apart: NDArray[np.bool_] | None) -> None:
+    def _count(self, block: Stepped) -> None:
+        first, states = block.first, block.states
         recorded = slice(max(0, -first), max(0, self.samples * self.run.steps_per_sample - first))
         self.run.motion.refuse_outside(states[recorded])
-        self._lost += _steps_apart(self.run, first, states, apart, recorded)
+        self._lost += _steps_apart(self.run, block, recorded)
         if self._with_internals and first + len(states) > 0:  # nothing of the history
             self.inner.append(_inner_values(self.run, first, states, self.samples))
 
 
-def _steps_apart(run: Run, first: int, states: FloatArray, apart: NDArray[np.bool_] | None, recorded: slice) -> int:
+class BearingForces:
+    """Low-passed bearing forces of a run, from states and inputs that are taken block after block."""
+
+    def __init__(self, run: Run) -> None:
+        motion, steps = run.motion, run.steps_per_sample
+        static, pairs = motion.equations.static_deflection, motion.structure.bearing_forces
+        # filtered about their static values
+        self._at_rest = np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
+        self._of_states = force_decimator(motion.structure, steps)
+        rows = np.zeros((0, 0)) if run.excitation is None else run.excitation.seat_force_rows(tuple(pairs))
+        self._of_inputs = Decimator(rows, value_taps(steps), steps) if rows.any() else None
+
+    def take(self, block: Stepped) -> FloatArray:
+        """Return the forces on the seats (places, k) as far as the filter reaches."""
+        forces = np.asarray(self._of_states.take(block.states) + self._at_rest)
+        return forces if self._of_inputs is None else forces + self._of_inputs.take(block.inputs)
+
+
+def _steps_apart(run: Run, block: Stepped, recorded: slice) -> int:
     """Return at how many of the recorded steps of a block no teeth touch."""
-    if apart is None:
-        return run.motion.steps_apart(states[recorded], run.pitches(first, len(states))[recorded])
-    return int(apart[recorded].sum())
+    if block.apart is None:
+        pitches = run.pitches(block.first, len(block.states))
+        return run.motion.steps_apart(block.states[recorded], pitches[recorded])
+    return int(block.apart[recorded].sum())
 
 
-def stepped_blocks(
-    run: Run, state: FloatArray, start: int, stop: int
-) -> Iterator[tuple[int, FloatArray, NDArray[np.bool_] | None]]:
-    """Yield first step, states (steps, 2n) and where teeth are apart, if known, from step `start` up to without `stop`.
+def stepped_blocks(run: Run, state: FloatArray, start: int, stop: int) -> Iterator[Stepped]:
+    """Yield blocks from step `start` up to without `stop`; their states are valid until the next one is asked for.
 
     Leaves `state` at `stop`.
 
@@ -180,12 +199,13 @@ def stepped_blocks(
         count = min(block, stop - first)
         trajectory[0] = state
         pitches = run.pitches(first, count + 1)
-        apart = run.motion.advance(pitches, run.inputs(first, pitches), trajectory[: count + 1])
+        inputs = run.inputs(first, pitches)
+        apart = run.motion.advance(pitches, inputs, trajectory[: count + 1])
         beyond = _first_beyond(run.motion.equations, trajectory[: count + 1], run.limit_m)
         if beyond >= 0:
             raise _divergence(run, first + beyond, trajectory[beyond])
         state[:] = trajectory[count]
-        yield first, trajectory[:count], apart
+        yield Stepped(first, trajectory[:count], inputs[:count], apart)
 
 
 def _divergence(run: Run, step: int, state: FloatArray) -> SolverFailure:

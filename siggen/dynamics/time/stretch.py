@@ -49,7 +49,7 @@ def stretch_accelerations(run: Run, state: FloatArray, stretch: Stretch) -> Floa
     decimator = acceleration_decimator(run.motion.structure, run.motions, run.fs_hz, steps)
     begin, end = (stretch.first - LEAD) * steps, (stretch.first + stretch.samples + LEAD) * steps
     skipped, parts = LEAD * steps - half_length(steps), []
-    for _, states, _ in stepped_blocks(run, state.copy(), begin, end):
-        parts.append(decimator.take(states[skipped:]))
+    for block in stepped_blocks(run, state.copy(), begin, end):
+        parts.append(decimator.take(block.states[skipped:]))
         skipped = 0
     return np.concatenate(parts, axis=1)[:, : stretch.samples]

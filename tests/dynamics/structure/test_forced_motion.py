@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from siggen.dynamics.drive.drive import Drive, Turning
-from siggen.dynamics.drive.excitation import Excitation
+from siggen.dynamics.drive.excitation import Excitation, Source
 from siggen.dynamics.drive.external_forces import bearing_direction
 from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
@@ -21,11 +21,15 @@ FS = 51200.0
 MOTIONS = ("pinion_bearing/vertical", "casing_lid/vertical", "gear_bearing/horizontal")
 
 
-class HarmonicForce:
+class HarmonicForce(Source):
     """A force that is a harmonic of the pinion's rotation."""
 
     def __init__(self, direction: np.ndarray, amplitude_n: float, order: float) -> None:
-        self.vectors, self._amplitude, self._order = direction[None, :], amplitude_n, order
+        self._vectors, self._amplitude, self._order = direction[None, :], amplitude_n, order
+
+    @property
+    def vectors(self) -> np.ndarray:
+        return self._vectors
 
     def inputs(self, turning: Turning) -> np.ndarray:
         return (self._amplitude * np.cos(self._order * turning.angle_rad + 0.3))[:, None]

@@ -1,0 +1,151 @@
+"""A spall in a rolling bearing of a shaft: in a race, or on a ball."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import radians
+from typing import Annotated, ClassVar, Literal
+
+import pyarrow as pa
+from pydantic import Field
+
+from siggen.dynamics.bearings.ball_bearing import BallBearing
+from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
+from siggen.errors import Problem
+from siggen.faults.fault import Fault, HitTeeth
+from siggen.faults.flank_place import MM, allowed_text, in_mm
+from siggen.faults.growth import Growth
+from siggen.gears.damage.part import Parts
+from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.column import MILLIMETRE, Column
+from siggen.keys.drawing import corners, draw
+from siggen.keys.number import Number, Within, bounds, constant
+from siggen.keys.section import Section, Whole
+from siggen.seeding import Stage, named_uniforms
+
+KEYS = {
+    "length_m": "length_mm",
+    "depth_m": "depth_mm",
+    "balls": "geometry.balls",
+    "ball_diameter_m": "geometry.ball_diameter_mm",
+}
+"""Key that a problem of the drawn spall is about."""
+
+
+class BallGeometry(Section):
+    """Numbers of a ball bearing: those of a 6205, with the clearance of its normal class (memory: ISO 5753-1)."""
+
+    balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
+    ball_diameter_mm: Annotated[Number, Within(above=0)] = Field(default=7.94, description="of a ball")
+    pitch_diameter_mm: Annotated[Number, Within(above=0)] = Field(
+        default=39.04, description="of the circle of the balls' centres"
+    )
+    contact_angle_deg: Annotated[Number, Within(least=0, most=45)] = Field(
+        default=0.0, description="of the balls' contacts against the plane of the bearing"
+    )
+    clearance_um: Annotated[Number, Within(least=0, most=1000)] = Field(
+        default=10.0, description="radial play from side to side in running; it narrows the zone of load"
+    )
+
+    def bearing(self) -> BallBearing:
+        """Return drawn numbers in SI."""
+        return BallBearing(
+            self.balls,
+            MM * constant(self.ball_diameter_mm),
+            MM * constant(self.pitch_diameter_mm),
+            radians(constant(self.contact_angle_deg)),
+            1e-6 * constant(self.clearance_um),
+        )
+
+
+class BearingSpalls(Fault):
+    """A spall in one of the two bearings of a shaft."""
+
+    words: ClassVar[tuple[str, ...]] = ("bearing",)
+    acts: ClassVar[str] = (
+        "A spall in a bearing takes load from each ball that rolls over it: a force between shaft and housing, in step "
+        "with the balls, which slip by 1 to 2 %."
+    )
+    needs_bearings: ClassVar[bool] = True
+    columns: ClassVar[tuple[Column, ...]] = (
+        Column("bearing", pa.string(), "", "bearing with the spall: pinion_bearing or gear_bearing; else empty"),
+        Column("element", pa.string(), "", "what of the bearing has it: outer, inner or ball; else empty"),
+        Column("length_mm", pa.float64(), MILLIMETRE, "length of a bearing's spall along the path of the balls"),
+    )
+
+    kind: Literal["bearing_spall"] = "bearing_spall"
+    bearing: Literal["pinion_bearing", "gear_bearing"] = Field(
+        default="pinion_bearing", description="on whose shaft; one of its two bearings, which bears half of the load"
+    )
+    element: Literal["outer", "inner", "ball"] = Field(description="the spalled race, or a ball")
+    length_mm: Annotated[Number, Within(above=0)] = Field(description="along the path of the balls")
+    depth_mm: Annotated[Number, Within(above=0)] = Field(
+        default=0.1, description="how far a ball may sink in (memory: 0.05 to 0.3)"
+    )
+    from_load_deg: Annotated[Number | None, Within(least=-180, most=180, words=(None,))] = Field(
+        default=None,
+        description="place on the outer race from the direction of the bearing's load, along the turn of the shaft; "
+        "null: 0, where races break",
+    )
+    geometry: BallGeometry = Field(default=BallGeometry(), description="the bearing")
+
+    @property
+    def position(self) -> str:
+        """The bearing."""
+        return self.bearing
+
+    def hit_teeth(self) -> HitTeeth:
+        """Yield nothing."""
+        return iter(())
+
+    def key_that_adds_nothing(self, milder: Fault) -> str | None:
+        """Return 'length_mm' where it may be no longer than that of the milder state on the same element."""
+        if not self._is_of(milder) or not isinstance(milder, BearingSpalls):
+            return None
+        (low, high), (low_before, high_before) = bounds(self.length_mm), bounds(milder.length_mm)
+        return "length_mm" if low < low_before or high <= high_before else None
+
+    def contradictions(self, milder: Fault) -> Iterator[Problem]:
+        """Yield other numbers of a bearing that the milder state has too."""
+        if isinstance(milder, BearingSpalls) and milder.bearing == self.bearing and milder.geometry != self.geometry:
+            allowed = "allowed: the numbers of the milder state, whose bearing it is, or grows_from: none"
+            yield Problem("geometry", f"another {self.bearing}", allowed)
+
+    def place_problems(self, pair: GearPair) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield what cannot be in a bearing, whatever the gears."""
+        if self.from_load_deg is not None and self.element != "outer":
+            allowed = "allowed: null, or element: outer; inner races and balls turn"
+            yield Problem("from_load_deg", f"{self.from_load_deg} with element: {self.element}", allowed)
+        for corner in corners(self):
+            for problem in corner._spall(0.0).own_problems():
+                yield Problem(KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
+                return
+
+    def drawn(self, growth: Growth) -> Parts:
+        """Return the spall, with the draws of the one that it has grown from."""
+        began = [state for state, older in growth.milder if self._is_of(older)]
+        uniform = named_uniforms(growth.seed, Stage.DAMAGE, growth.specimen_id, began[-1] if began else growth.state_id)
+        name = f"bearing_spall.{self.bearing}.{self.element}"
+        spall = draw(self, uniform, name)._spall(uniform(f"{name}.place"))
+        for older in in_bearings(growth.before):
+            if (older.place, older.element) == (spall.place, spall.element):
+                # other distributions may rank a gearbox otherwise: what broke out does not come back
+                length_m, depth_m = max(spall.length_m, older.length_m), max(spall.depth_m, older.depth_m)
+                spall = replace(spall, length_m=length_m, depth_m=depth_m)
+        return (spall,)
+
+    def _is_of(self, older: object) -> bool:
+        return isinstance(older, BearingSpalls) and (older.bearing, older.element) == (self.bearing, self.element)
+
+    def _spall(self, turn: float) -> BearingSpall:
+        """Return the drawn spall; those of what turns stand at a share of a turn."""
+        place_deg = 0.0 if self.from_load_deg is None else constant(self.from_load_deg)
+        return BearingSpall(
+            place=self.bearing,
+            element=self.element,
+            length_m=MM * constant(self.length_mm),
+            depth_m=MM * constant(self.depth_mm),
+            bearing=self.geometry.bearing(),
+            place_rad=radians(place_deg if self.element == "outer" else 360.0 * turn),
+        )

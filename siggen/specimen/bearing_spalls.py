@@ -1,0 +1,97 @@
+"""Spalled bearings of a specimen as what acts on its structure in one record.
+
+The force that loads a bearing is the mean one of this gearbox at this operating point: what the mean torque presses
+through the teeth, half of it on each of the two bearings of a shaft. Slip and walk of the cage belong to the record.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+from siggen.config import Config
+from siggen.dynamics.bearings.bearing_spall import BearingSpall, in_bearings
+from siggen.dynamics.bearings.cage_course import CageCourse, cage_course
+from siggen.dynamics.bearings.spalled_bearing import SpalledBearing, mean_zone
+from siggen.dynamics.drive.drive import Rotation
+from siggen.dynamics.drive.external_forces import bearing_direction, shaft_direction, shaft_directions, turning_sense
+from siggen.dynamics.structure.structure import Structure
+from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.gears.damage.part import Parts
+from siggen.keys.number import constant
+from siggen.planning.plan import PlannedRecord
+from siggen.planning.specimen import OperatingPoint, Specimen
+from siggen.seeding import Stage, named_generator
+from siggen.specimen.gears import gear_pair
+
+SLIP = (0.01, 0.02)
+"""Share by which the cage lags, drawn per record (memory: 1 to 2 %)."""
+WALK = (0.005, 0.02)
+"""Standard deviation of a step of the cage as each ball passes, as a share of the angle between two (memory)."""
+AXES = ("horizontal", "vertical")
+BEARINGS = 2
+"""Of a shaft: each bears half of the force and has half of their stiffness."""
+MARGIN_S = 1.0
+"""Beyond transient and record, for the filters."""
+
+
+def spall_sources(
+    config: Config,
+    specimen: Specimen,
+    structure: Structure,
+    point: OperatingPoint,
+    record: PlannedRecord,
+    rotation: Rotation,
+    parts: Parts,
+) -> tuple[SpalledBearing, ...]:
+    """Return what the spalls among the parts of a damage push, but for those that no loaded ball passes.
+
+    Raises
+    ------
+    ValueError
+        If the structure has no bearings.
+    """
+    found = []
+    for spall in in_bearings(parts):
+        order = 1.0 if spall.shaft == "pinion" else specimen.gears.pinion.teeth / specimen.gears.gear.teeth
+        place = spall.place
+        shares = _transmitted(specimen, structure, spall.shaft)
+        rows = np.array([bearing_direction(structure, place, axis) for axis in AXES])
+        source = SpalledBearing(
+            spall=spall,
+            zone=mean_zone(spall, mean_force_n(specimen, structure, point, place) / BEARINGS),
+            cage=_cage(config, record, rotation, spall, order),
+            order=order * turning_sense(structure, place),
+            directions=shares[:, None] * rows,
+            on_seat={f"{place}/{axis}": row for axis, row in zip(AXES, -np.diag(shares), strict=True)},
+        )
+        if source.ever_pushes:
+            found.append(source)
+    return tuple(found)
+
+
+def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint, place: str) -> FloatArray:
+    """Return the mean force (2,) of a shaft on its seats, horizontal and vertical: that of the teeth."""
+    along = structure.mesh_vector * (point.torque_nm / gear_pair(specimen.gears).pinion.base_radius_m)
+    return np.asarray(-shaft_directions(structure, place) @ along)
+
+
+def _transmitted(specimen: Specimen, structure: Structure, shaft: str) -> FloatArray:
+    """Return the share (2,) of a bearing's lost load that shaft and seat feel along both axes.
+
+    What moves in series with a bearing's spring is felt through all that is in series with it: the shaft's bending, the
+    seat's giving way. With stiff ones it is 1.
+    """
+    rotor = getattr(specimen.dynamics, shaft)
+    own = (rotor.bearing_stiffness_x_n_per_m, rotor.bearing_stiffness_y_n_per_m)
+    names = [f"{shaft}_bearing/{axis}" for axis in AXES]
+    whole = [float(structure.bearing_forces[name][0] @ shaft_direction(structure, name)) for name in names]
+    return np.array([felt / constant(stiffness) for felt, stiffness in zip(whole, own, strict=True)])
+
+
+def _cage(config: Config, record: PlannedRecord, rotation: Rotation, spall: BearingSpall, order: float) -> CageCourse:
+    owner = record.specimen_id, record.state_id, record.operating_point_id, record.repeat
+    rng = named_generator(config.seed, Stage.DRIVE, *owner, name=f"bearing_spall.{spall.shaft}.cage")
+    slip, walk = (low + (high - low) * rng.random() for low, high in (SLIP, WALK))
+    ends = rotation.angle_rad(np.array([-TRANSIENT_CAP_S - MARGIN_S, config.duration_s + MARGIN_S]))
+    return cage_course(spall.bearing, rng, slip, walk, (order * float(ends[0]), order * float(ends[1])))

@@ -1,0 +1,228 @@
+"""A spalled bearing as a user meets it: its signature in records, its limits, its rows and labels, its messages."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.signal import hilbert
+
+from siggen.checks.physical_problems import physical_problems
+from siggen.config import Config, parse
+from siggen.dynamics.bearings.bearing_spall import BearingSpall
+from siggen.dynamics.drive.drive import Drive
+from siggen.planning.plan import planned_record
+from siggen.planning.specimen import draw_operating_point, draw_specimen
+from siggen.record.damage_rows import damage_rows
+from siggen.record.simulation import record_response, simulate, specimen_state
+from siggen.specimen.bearing_spalls import mean_force_n, spall_sources
+from siggen.specimen.drive import record_rotation, start_angle_rad
+from siggen.specimen.gears import gear_pair
+from siggen.specimen.structure import structure
+from tests.config.minimal import config, minimal
+
+SPEED_HZ, BALLS = 30.0, 9
+CAGE = 0.5 * (1.0 - 7.94 / 39.04)
+SPIN = 0.5 * 39.04 / 7.94 * (1.0 - (7.94 / 39.04) ** 2)
+SLIP = 0.01, 0.02
+SPALL: dict[str, Any] = {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0}
+
+
+def with_states(*damage: dict[str, Any] | None, **changes: Any) -> Config:
+    """Return the smallest configuration with a state for each damage behind the healthy one; None for none."""
+    states = [{"name": "first"}]
+    for number, one in enumerate(damage):
+        severity = {} if one is None else {"severity": "moderate"}
+        own = {} if one is None else {"damage": {k: v for k, v in one.items() if k != "grows_from"}}
+        grown = {} if one is None else {"grows_from": one.get("grows_from", "none")}
+        states.append({"name": f"state-{number}", **severity, **grown, **own})
+    return config(states=states, **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
+
+
+@cache
+def signal(element: str | None, **more: Any) -> np.ndarray:
+    """Return the channel of state 1 of the first gearbox."""
+    spall = None if element is None else {**SPALL, "element": element, **more}
+    (record,) = simulate(with_states(spall, sensors=[{"name": "bearing", "range_m_s2": 1e5}]), [1])
+    return record.channels["bearing_vertical"].astype(float)
+
+
+@pytest.mark.parametrize("element", ["outer", "inner", "ball"])
+def test_lines_of_the_envelope_stand_at_the_orders_of_the_element_within_the_slip(element: str) -> None:
+    pushed = signal(element) - signal(None)  # the same mesh, phase for phase
+    assert np.std(pushed) > 0.05 * np.std(signal(None))
+    envelope = np.abs(hilbert(pushed))
+    lines = np.abs(np.fft.rfft((envelope - envelope.mean()) * np.hanning(envelope.size)))
+    order = np.arange(lines.size) / SPEED_HZ
+    slow = [CAGE * (1.0 - slip) for slip in SLIP]
+    carrier = {
+        "outer": [BALLS * one for one in slow],
+        "inner": [BALLS * (1.0 - one) for one in slow],
+        "ball": [2.0 * SPIN * (1.0 - slip) for slip in SLIP],
+    }[element]
+    beside = {"outer": None, "inner": [1.0, 1.0], "ball": slow}[element]
+    low, high = min(carrier), max(carrier)
+    near = (order > 0.8 * low) & (order < 1.2 * high)
+    found = order[near][np.argmax(lines[near])]
+    steps = [0.0] if beside is None else [0.0, -beside[0], beside[0]]
+    width = 2.0 / SPEED_HZ  # two lines of the spectrum; sidebands come as near as the slip lets them
+    assert min(abs(found - np.clip(found, low + step, high + step)) for step in steps) < width + 0.02 * abs(steps[-1])
+    assert lines[near].max() > 10.0 * np.median(lines[(order > 1.5) & (order < 30.0)])
+
+
+def test_the_slip_of_a_record_is_its_own() -> None:
+    made = with_states(SPALL, repeats=4)
+    orders = {source.cage.order for n in range(4, 8) for source in sources_of(made, n)}
+    assert len(orders) == 4
+    assert all(1.0 - SLIP[1] <= order / CAGE <= 1.0 - SLIP[0] for order in orders)
+
+
+@pytest.mark.parametrize("model", ["8dof", "casing"])
+def test_a_spall_of_the_outer_race_outside_of_the_zone_of_load_leaves_the_bytes_of_healthy(model: str) -> None:
+    made = [with_states(one, dynamics__model=model, duration_s=0.1) for one in ({**SPALL, "from_load_deg": 180}, None)]
+    (away,), (healthy,) = (simulate(one, [1]) for one in made)
+    assert away.labels["fault"] == "bearing"
+    assert away.channels["bearing_vertical"].tobytes() == healthy.channels["bearing_vertical"].tobytes()
+    assert away.labels["start_angle_rad"] == healthy.labels["start_angle_rad"]
+    (inside,) = simulate(with_states({**SPALL, "from_load_deg": 45}, dynamics__model=model, duration_s=0.1), [1])
+    assert inside.channels["bearing_vertical"].tobytes() != healthy.channels["bearing_vertical"].tobytes()
+
+
+@pytest.mark.parametrize("model", ["8dof", "casing"])
+@pytest.mark.parametrize("bearing", ["pinion_bearing", "gear_bearing"])
+def test_shaft_and_housing_feel_equal_and_opposite_forces(model: str, bearing: str) -> None:
+    housing = {"housing": {"kind": "rigid"}} if model == "casing" else {}
+    made = with_states({**SPALL, "bearing": bearing}, dynamics__model=model, **housing)
+    (source,) = sources_of(made, 1)
+    names = structure(made, draw_specimen(made, 0)).coordinates
+    for axis in "xy":
+        on_shafts = source.vectors[:, [names.index(f"{axis}_1"), names.index(f"{axis}_2")]].sum(axis=1)
+        on_seats = -np.array([source.seat_forces[f"{bearing}/{one}"] for one in ("horizontal", "vertical")]).sum(axis=1)
+        if model == "casing":
+            on_housing = source.vectors[:, names.index(f"{axis}_c")]
+            np.testing.assert_allclose(on_shafts, -on_housing, atol=1e-12)
+        assert np.abs(on_shafts).max() > 0.1
+        np.testing.assert_allclose(on_seats, 1.0, atol=1e-12)  # stiff shafts and seats pass all of it on
+
+
+def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_not() -> None:
+    """What a spalled ball leaves the spring bears: the force on the seat is both, in the mean that of the teeth."""
+    means = []
+    for spall in (None, {**SPALL, "length_mm": 6.0}):
+        made = with_states(spall, duration_s=2.0)
+        specimen, record = draw_specimen(made, 0), planned_record(made, 1)
+        response, point = record_response(made, specimen, specimen_state(made, specimen, 1), record, internals=True)
+        force = np.array([response.bearing_force_n[f"pinion_bearing/{axis}"] for axis in ("horizontal", "vertical")])
+        means.append(force.mean(axis=1))
+        expected = mean_force_n(specimen, structure(made, specimen), point, "pinion_bearing")
+    (source,) = sources_of(made, 1)
+    sunk = source.inputs(Drive(SPEED_HZ, 1.0).turning(np.linspace(0.0, 2.0, 50_000))).mean(axis=0)
+    assert np.hypot(*sunk) > 50.0  # by so much the mean would be wrong if one of both were left out
+    # a record holds no whole number of passing balls: 0.5 of 215 pulses of about 300 N over 0.4 of their spacing
+    np.testing.assert_allclose(means[1], means[0], atol=2.0)
+    np.testing.assert_allclose(means[0], expected, atol=0.01 * np.hypot(*expected))  # friction of the teeth
+
+
+def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
+    record = planned_record(made, record_id)
+    specimen = draw_specimen(made, record.specimen_id)
+    point = draw_operating_point(made, record.specimen_id, record.operating_point_id)
+    pair = gear_pair(specimen.gears)
+    rotation = record_rotation(made, point, record, start_angle_rad(made, pair, record))
+    parts = specimen_state(made, specimen, record.state_id).parts
+    return spall_sources(made, specimen, structure(made, specimen), point, record, rotation, parts)
+
+
+def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() -> None:
+    made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"})
+    (pinion,), (gear,) = sources_of(made, 1), sources_of(made, 2)
+    pair = gear_pair(draw_specimen(made, 0).gears)
+    force = 60.0 / (0.5 * 3e-3 * 18 * math.cos(math.radians(20.0)))
+    for source in (pinion, gear):
+        bearing = source.spall.bearing
+        assert bearing.force_n(source.zone.deflection_m) == pytest.approx(0.5 * force, rel=1e-9)
+    apart = pinion.zone.direction_rad - gear.zone.direction_rad
+    assert abs(math.remainder(apart - math.pi, 2.0 * math.pi)) < 1e-12
+    from_vertical = abs(math.remainder(pinion.zone.direction_rad - 0.5 * math.pi, math.pi))
+    assert from_vertical == pytest.approx(pair.working_pressure_angle_rad)
+    assert abs(gear.order) == pytest.approx(18 / 47)
+    assert np.sign(gear.order) == -np.sign(pinion.order)
+
+
+def test_without_torque_to_speak_of_nothing_is_heard() -> None:
+    pushes = [sources_of(with_states(SPALL, operating_points__0__torque_nm=torque), 1)[0] for torque in (1e-3, 60.0)]
+    angle = np.linspace(0.0, 60.0, 20_000)
+    light, heavy = (source.lost_n(angle)[0].max() for source in pushes)
+    assert 0.0 < light < 0.1
+    assert heavy > 100.0
+
+
+def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
+    drawn = {"kind": "uniform", "low": 0.5, "high": 3.0}
+    longer = {"kind": "uniform", "low": 1.0, "high": 4.0}
+    made = with_states(
+        {**SPALL, "element": "inner", "length_mm": drawn},
+        {**SPALL, "element": "inner", "length_mm": longer, "grows_from": "previous"},
+        {**SPALL, "grows_from": "previous"},
+    )
+    slight, severe, both = (specimen_state(made, draw_specimen(made, 0), n).parts for n in (1, 2, 3))
+    assert [len(parts) for parts in (slight, severe, both)] == [1, 1, 2]
+    (before,), (after,) = slight, severe
+    assert isinstance(before, BearingSpall)
+    assert isinstance(after, BearingSpall)
+    assert after.length_m > before.length_m
+    assert after.place_rad == before.place_rad
+    assert after.hides(before)
+    assert not before.hides(after)
+    assert len(sources_of(made, 3)) == 2
+
+
+def test_its_row_and_labels_name_the_bearing_and_no_gear() -> None:
+    made = with_states({**SPALL, "element": "ball", "bearing": "gear_bearing"}, duration_s=0.1)
+    (row,) = damage_rows(made, 1)
+    assert (row["gear"], row["tooth"], row["kind"]) == ("none", -1, "bearing_spall")
+    assert (row["bearing"], row["element"], row["length_mm"], row["depth_mm"]) == ("gear_bearing", "ball", 2.0, 0.1)
+    (record,) = simulate(made, [1])
+    found = {key: record.labels[key] for key in ("fault", "faulty_gear", "faulty_teeth_pinion", "damage_count")}
+    assert found == {"fault": "bearing", "faulty_gear": "none", "faulty_teeth_pinion": [], "damage_count": 1}
+    assert record.labels["damaged_area_mm2"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("damage", "changes", "path", "allowed"),
+    [
+        ({"length_mm": 0.0}, {}, "length_mm", "a number above 0"),
+        ({"length_mm": 17.0}, {}, "length_mm", "below 16.3"),
+        ({"element": "ball", "length_mm": 13.0}, {}, "length_mm", "half of the ball's girth"),
+        ({"length_mm": {"kind": "uniform", "low": 1.0, "high": 40.0}}, {}, "length_mm", "the spacing of the balls"),
+        ({"depth_mm": 4.0}, {}, "depth_mm", "below 3.97 mm, the radius of a ball"),
+        ({"geometry": {"contact_angle_deg": 60}}, {}, "geometry.contact_angle_deg", "to 45"),
+        ({"geometry": {"clearance_um": -1}}, {}, "geometry.clearance_um", "0"),
+        ({"geometry": {"balls": 20}}, {}, "geometry.ball_diameter_mm", "the distance of two balls' centres"),
+        ({"element": "cage"}, {}, "element", "outer"),
+        ({"element": "inner", "from_load_deg": 10}, {}, "from_load_deg", "element: outer"),
+        ({}, {"dynamics__model": "torsional", "sensors": [{"name": "rim", "place": "pinion_rim"}]}, "kind", "casing"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_what_is_allowed(
+    damage: dict[str, Any], changes: dict[str, Any], path: str, allowed: str
+) -> None:
+    states = [{"name": "healthy"}, {"name": "slight", "damage": {**SPALL, **damage}}]
+    parsed = parse(minimal(states=states, **changes))
+    problems = [*parsed.problems, *physical_problems(parsed)]
+    found = {problem.path: problem for problem in problems}
+    assert f"states.1.damage.{path}" in found, problems
+    assert allowed in found[f"states.1.damage.{path}"].allowed
+
+
+def test_a_grown_bearing_is_the_same_bearing_and_its_spall_longer() -> None:
+    states = [
+        {"name": "slight", "damage": SPALL},
+        {"name": "moderate", "damage": {**SPALL, "length_mm": 1.0}},
+        {"name": "severe", "damage": {**SPALL, "length_mm": 3.0, "geometry": {"balls": 8}}},
+    ]
+    problems = {problem.path: problem for problem in parse(minimal(states=states)).problems}
+    assert set(problems) == {"states.1.damage.length_mm", "states.2.damage.geometry"}
