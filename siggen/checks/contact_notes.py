@@ -35,7 +35,7 @@ def contact_notes(config: Config) -> tuple[str, ...]:
         return ()
     healthy, pitted = zip(*_groups(config), strict=True)
     notes = lubrication_notes(_united(healthy), "masjedi_khonsari")
-    if not (solves_across_the_face(config.dynamics) and any(state.damage is not None for state in config.states)):
+    if not (solves_across_the_face(config.dynamics) and any(state.damaged for state in config.states)):
         return notes
     # Load, speed and material are those of the healthy flank: only the roughness is news.
     inside = lubrication_notes(_united(pitted), "masjedi_khonsari", checked=("roughness",))

@@ -13,7 +13,7 @@ def damage_notes(config: Config) -> tuple[str, ...]:
     edges skewed by 0.1 to 1 mm over the face the line crosses them bit by bit.
     """
     width_mm = bounds(config.gears.face_width_mm)[0]
-    asked = [state.damage.straight_edges(width_mm) for state in config.states if state.damage is not None]
+    asked = [one.straight_edges(width_mm) for state in config.states if state.damaged for one in state.damages]
     found = [answer for answer in asked if answer is not None]
     if not all(parallel for parallel, _ in found) or not any(through for _, through in found):
         return ()

@@ -26,11 +26,11 @@ def edge_problems(sections: Mapping[str, Any], pairs: Sequence[GearPair]) -> Ite
     if dynamics is None or not pairs or not solves_across_the_face(dynamics):
         return
     most_mm = 1e3 * LARGEST_SHARE * min(_pitch_radius_m(pair) for pair in pairs)
-    damages = {i: s.damage for i, s in sections.get("states", {}).items() if s.damage is not None}
+    damages = {
+        path: section for i, s in sections.get("states", {}).items() for path, section in s.placed(f"states.{i}")
+    }
     radii: dict[str, Number] = {
-        f"states.{index}.damage.{own[0]}": own[1]
-        for index, damage in damages.items()
-        if (own := damage.own_edge_radius) is not None
+        f"{path}.{own[0]}": own[1] for path, section in damages.items() if (own := section.own_edge_radius) is not None
     }
     if len(radii) < len(damages):
         radii["dynamics.mesh.pit_edge_radius_mm"] = dynamics.mesh.pit_edge_radius_mm

@@ -63,8 +63,8 @@ def _problems(sections: Mapping[str, Any]) -> tuple[Problem, ...]:
     # A section dynamics that is refused for itself says nothing about damage: no second problem that follows from it.
     through_face = dynamics is None or solves_across_the_face(dynamics)
     for index, state in (item for states in possible_states(sections.get("states", {})) for item in states.items()):
-        if state.damage is not None:
-            problems += _state_problems(flanks, state.damage, f"states.{index}.damage", through_face=through_face)
+        for path, damage in state.placed(f"states.{index}"):
+            problems += _state_problems(flanks, damage, path, through_face=through_face)
     if sections.get("manufacture") is not None:
         problems += _tolerance_problems(sound)
     problems += _coupling_problems(gears, sections.get("stiffness"), sound)

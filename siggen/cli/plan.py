@@ -71,6 +71,9 @@ def plan(
     console.print(summary["stiffness_tables"], highlight=False, markup=False)
     for sentence in summary["implausible"]:
         console.print(f"implausible: {sentence}", highlight=False, markup=False, style="yellow")
+    for state in summary["states"]:
+        for remark in state["remarks"]:
+            console.print(f"{state['name']}: {remark}", highlight=False, markup=False)
     for note in (note for kind in NOTES for note in summary[kind]):
         console.print(f"note: {note}", highlight=False, markup=False)
     _print_trial(console, tried)
@@ -207,6 +210,7 @@ def _state_counts(config: Config, specimens: dict[str, int]) -> list[dict[str, A
             "name": state.name,
             "fault": state.fault,
             "severity": state.severity,
+            "remarks": list(state.remarks),
             "records_of_split": {split: count * per_state for split, count in specimens.items()},
         }
         for state in config.states

@@ -14,6 +14,7 @@ from siggen.columns.damage_columns import damage_columns
 from siggen.columns.gearbox_columns import gearbox_columns
 from siggen.columns.instrument_columns import instrument_columns
 from siggen.columns.manufacture_columns import manufacture_columns
+from siggen.columns.state_columns import state_columns
 from siggen.columns.versions import SCHEMA_VERSION
 from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
@@ -186,7 +187,14 @@ def label_columns(config: Config) -> tuple[Column, ...]:
     varying = VARIATION_COLUMNS if config.variation.active else ()
     stepped = INTEGRATION_COLUMNS if config.dynamics.method == "exponential" else ()
     operating = (*OPERATING_COLUMNS, *stepped)
-    common = (*LABEL_COLUMNS, *operating, *gearbox_columns(config), *varying, *manufacture_columns(config))
+    common = (
+        *LABEL_COLUMNS,
+        *state_columns(config),
+        *operating,
+        *gearbox_columns(config),
+        *varying,
+        *manufacture_columns(config),
+    )
     return (*common, *per_channel, *instrument_columns(config), *background_columns(config))
 
 

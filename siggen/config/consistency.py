@@ -176,9 +176,9 @@ def _growth(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[
     states: Mapping[int, State] = sections.get("states", {})
     names = _raw_names(raw, "states")
     for index, state in states.items():
-        if state.damage is None or state.grows_from == "none":
+        if not state.damaged or state.grows_from == "none":
             continue
-        earlier = [i for i in states if i < index and states[i].damage is not None]
+        earlier = [i for i in states if i < index and states[i].damaged]
         if state.grows_from == "previous":
             milder = earlier[-1] if earlier else None
         else:
@@ -196,16 +196,21 @@ def _fault_names(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterat
     """Yield labels that do not say what a state shows, by its own damage or by that of a state before it."""
     states: Mapping[int, State] = sections.get("states", {})
     for index, state in states.items():
-        if state.damage is None or state.fault == HEALTHY:
+        if not state.damaged or state.fault == HEALTHY:
             continue
-        before = [states[i].damage for i in states if i < index]
-        inherited = (word for damage in before if damage is not None for word in damage.own_words)
-        words = dict.fromkeys([*state.damage.own_words, *(w for w in inherited if w not in state.damage.outranked)])
+        own = [word for section in state.damages for word in section.own_words]
+        outranked = {word for section in state.damages for word in section.outranked}
+        before = (section for i in states if i < index and states[i].damaged for section in states[i].damages)
+        inherited = (word for section in before for word in section.own_words)
+        words = dict.fromkeys([*own, *(word for word in inherited if word not in outranked)])
         if state.fault not in words:
             kinds = " or ".join(kinds_called(state.fault))
             allowed = f"allowed: {' or '.join(words)}; {state.fault} needs kind: {kinds}"
-            received = f"'{state.fault}', with damage of kind {state.damage.kind_word()}"
-            yield Problem(f"states.{index}.fault", received, f"{allowed}, here or in a milder state")
+            shown = " and ".join(dict.fromkeys(section.kind_word() for section in state.damages))
+            yield Problem(
+                f"states.{index}.fault", f"'{state.fault}', with damage of kind {shown}",
+                f"{allowed}, here or in a milder state",
+            )  # fmt: skip
 
 
 def _growth_problems(milder: State, state: State, path: str) -> Iterator[Problem]:
@@ -227,9 +232,12 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
     if "gears" not in sections:
         return
     for index, state in sections.get("states", {}).items():
-        for key, gear, teeth in () if state.damage is None else state.damage.hit_teeth():
+        hit = (
+            (f"{path}.{key}", *rest) for path, one in state.placed(f"states.{index}") for key, *rest in one.hit_teeth()
+        )
+        for path, gear, teeth in hit:
             selected = most_teeth(teeth)
-            path, count = f"states.{index}.damage.{key}", min(sections["gears"].teeth_of(gear))
+            count = min(sections["gears"].teeth_of(gear))
             if isinstance(selected, int):
                 if selected > count:
                     yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")

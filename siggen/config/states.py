@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
 from siggen.errors import Problem
+from siggen.faults.fault import Fault
 from siggen.faults.registry import DAMAGE, FAULT_WORDS, HEALTHY, DamageSection, FaultWord, default_word
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
@@ -40,13 +41,39 @@ class State(Section):
         description="whose damage it contains: previous (the nearest earlier state with damage), none, or a name",
     )
     damage: Annotated[DamageSection | None, DAMAGE] = Field(default=None, description="null for a healthy state")
+    sham: bool = Field(
+        default=False,
+        strict=True,
+        description="its damage is drawn, tabulated and passed on, with nothing removed: a healthy state that no "
+        "record may give away",
+    )
+
+    @property
+    def damages(self) -> tuple[Fault, ...]:
+        """Sections of its damage, none of a healthy state; those of a sham too."""
+        return () if self.damage is None else (self.damage,)
+
+    def placed(self, path: str) -> Iterator[tuple[str, Fault]]:
+        """Yield path and section of all of its damage, for the state's own path."""
+        if self.damage is not None:
+            yield f"{path}.damage", self.damage
+
+    @property
+    def damaged(self) -> bool:
+        """Whether anything is removed."""
+        return bool(self.damages) and not self.sham
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What fault and severity do not say about it, in words."""
+        return ("sham: its damage passes everywhere, with nothing removed",) if self.sham else ()
 
     @model_validator(mode="before")
     @classmethod
     def _fill_labels(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             return value
-        damaged = value.get("damage") is not None
+        damaged = value.get("damage") is not None and value.get("sham") is not True
         labels = {"fault": default_word(value["damage"]) if damaged else HEALTHY}
         name = value.get("name")
         if not damaged:
@@ -69,31 +96,38 @@ class State(Section):
             Problem("name", f"the text '{self.name}'", f"allowed: a name other than {' and '.join(RESERVED_NAMES)}")
         ]
 
-    def _label_problems(self) -> list[Problem]:
-        problems = []
-        healthy_fault, healthy_severity = self.fault == "healthy", self.severity == "healthy"
-        if self.damage is None and not (healthy_fault and healthy_severity):
+    def _label_problems(self) -> Iterator[Problem]:
+        healthy = self.fault == HEALTHY, self.severity == HEALTHY
+        if self.sham:
+            yield from self._sham_problems()
+        elif not self.damaged and not all(healthy):
             received = f"{MISSING}, with fault {self.fault} and severity {self.severity}"
-            problems.append(Problem("damage", received, "allowed: damage, or fault and severity both healthy"))
-        if self.damage is not None and healthy_fault:
+            yield Problem("damage", received, "allowed: damage, or fault and severity both healthy")
+        elif self.damaged and healthy[0]:
             allowed = f"allowed: {' or '.join(FAULT_WORDS[1:])}, or no damage"
-            problems.append(Problem("fault", "healthy, with damage", allowed))
-        if self.damage is not None and healthy_severity:
-            problems.append(
-                Problem("severity", "healthy, with damage", "allowed: slight, moderate or severe, or no damage")
-            )
-        if self.damage is None and self.grows_from not in RESERVED_NAMES:
-            received = f"'{self.grows_from}', without damage"
-            problems.append(Problem("grows_from", received, "only a state with damage grows from another one"))
-        return problems
+            yield Problem("fault", "healthy, with damage", allowed)
+        if self.damaged and healthy[1]:
+            yield Problem("severity", "healthy, with damage", "allowed: slight, moderate or severe, or no damage")
+        if not self.damaged and self.grows_from not in RESERVED_NAMES:
+            received = f"'{self.grows_from}', {'with sham: true' if self.sham else 'without damage'}"
+            yield Problem("grows_from", received, "only a state with damage grows from another one")
+
+    def _sham_problems(self) -> Iterator[Problem]:
+        """Yield what a state in whose damage nothing is removed cannot be."""
+        if not self.damages:
+            yield Problem("sham", "true, without damage", "allowed: damage, of which nothing is then removed; or false")
+        for key in ("fault", "severity"):
+            if getattr(self, key) != HEALTHY:
+                received = f"'{getattr(self, key)}', with sham: true"
+                yield Problem(key, received, "allowed: healthy, since nothing is removed; or sham: false")
 
 
 def grown_from(states: tuple[State, ...], state_id: int) -> int | None:
     """Return the index of the state whose damage a state contains, or None if it begins with an intact gear."""
     state = states[state_id]
-    if state.damage is None or state.grows_from == "none":
+    if not state.damaged or state.grows_from == "none":
         return None
-    earlier = [i for i in range(state_id) if states[i].damage is not None]
+    earlier = [i for i in range(state_id) if states[i].damaged]
     if state.grows_from == "previous":
         return earlier[-1] if earlier else None
     return next(i for i in earlier if states[i].name == state.grows_from)

@@ -10,7 +10,7 @@ from siggen.columns.record import channels
 from siggen.errors import counted
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.config import Config, State
 
 WIDTH = 118
 STIFFNESS_DAMAGE = "remove material from the tooth's sections and shorten the contact line: the mesh loses stiffness."
@@ -52,8 +52,12 @@ def making(config: Config) -> str:
         f"4. **Sensing.** {_sensing_text(config)}",
     )
     listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
-    states = "\n".join(f"* `{state.name}`: fault {state.fault}, severity {state.severity}" for state in config.states)
+    states = "\n".join(_state_text(state) for state in config.states)
     return f"## How it was made\n\n{listed}\n\nStates:\n\n{states}\n"
+
+
+def _state_text(state: State) -> str:
+    return "; ".join([f"* `{state.name}`: fault {state.fault}, severity {state.severity}", *state.remarks])
 
 
 def _gears_text(config: Config) -> str:
@@ -84,7 +88,8 @@ def _ends(values: Sequence[float]) -> tuple[float, float]:
 
 def damage_text(config: Config) -> str:
     """Say how the kinds of damage act on the teeth."""
-    kinds = list(dict.fromkeys(type(state.damage) for state in config.states if state.damage is not None))
+    shown = (section for state in config.states if state.damaged for section in state.damages)
+    kinds = list(dict.fromkeys(type(section) for section in shown))
     if not kinds:
         return "None: every state is healthy."
     nouns = list(dict.fromkeys(noun for kind in kinds if kind.nouns for noun in kind.nouns.split(" and ")))

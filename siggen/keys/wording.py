@@ -54,7 +54,9 @@ def _type_text(annotation: object, limits: str = "") -> str:
         return f"a list{limits}, each entry {_type_text(arguments[0])}"
     if models:
         return f"a mapping with the keys {', '.join(models[0].model_fields)}"
-    words: dict[object, str] = {int: "a whole number", float: "a number", str: "a text", type(None): "null"}
+    words: dict[object, str] = {
+        bool: "true or false", int: "a whole number", float: "a number", str: "a text", type(None): "null"
+    }  # fmt: skip
     return words[annotation] + limits
 
 

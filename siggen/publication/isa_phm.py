@@ -128,9 +128,15 @@ def _assay(
     }
 
 
+def _position(state: State) -> str:
+    """Return where a state is damaged, as the configuration names it."""
+    named = dict.fromkeys(one.position for one in state.damages)
+    return " and ".join(named) if state.damaged else "none"
+
+
 def _samples(config: Config, state: State) -> Iterator[dict[str, Any]]:
     """Yield the gear pair in a state at each operating point."""
-    position = "none" if state.damage is None else state.damage.position
+    position = _position(state)
     fault = {"fault_type": state.fault, "fault_position": position, "fault_severity": state.severity}
     for number, point in enumerate(config.operating_points):
         conditions = {"speed": _range(point.speed_hz), "torque": _range(point.torque_nm)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from siggen.arrays import FloatArray
 from siggen.columns.gearbox_columns import drawn_places, draws_oil
+from siggen.columns.state_columns import has_sham
 from siggen.config import Config, State
 from siggen.gears.damage.part import Parts, teeth_of
 from siggen.gears.damage.tooth_damage import on_teeth
@@ -38,14 +39,15 @@ def damage_labels(
     """
     damage = on_teeth(parts)
     summary = damage_summary(pair, damage)
+    shown = () if state.sham else parts
     return {
         "state": state.name,
         "fault": state.fault,
         "severity": state.severity,
-        "faulty_gear": _faulty_gear(parts),
-        "faulty_teeth_pinion": teeth_of(parts, "pinion"),
-        "faulty_teeth_gear": teeth_of(parts, "gear"),
-        "damage_count": len(parts),
+        "faulty_gear": _faulty_gear(shown),
+        "faulty_teeth_pinion": teeth_of(shown, "pinion"),
+        "faulty_teeth_gear": teeth_of(shown, "gear"),
+        "damage_count": len(shown),
         "damaged_area_mm2": 1e6 * summary.union_area_m2,
         "damaged_area_share": summary.area_share,
         "damage_face_length_mm": 1e3 * summary.largest_face_length_m,
@@ -55,6 +57,11 @@ def damage_labels(
         "through_face": summary.through_face,
         "sink_depth_um": 1e6 * sink_depth_m,
     }
+
+
+def state_labels(config: Config, state_id: int) -> dict[str, object]:
+    """Return the labels of `siggen.columns.state_columns`."""
+    return {"sham": config.states[state_id].sham} if has_sham(config) else {}
 
 
 def gearbox_labels(config: Config, specimen: Specimen) -> dict[str, object]:

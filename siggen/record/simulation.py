@@ -26,7 +26,7 @@ from siggen.planning.plan import PlannedRecord, has_internals, planned_record
 from siggen.planning.specimen import OperatingPoint, Specimen, draw_operating_point, draw_specimen
 from siggen.record.channels import measured_channels
 from siggen.record.damage_rows import damage_rows
-from siggen.record.labels import damage_labels, gearbox_labels, operating_labels
+from siggen.record.labels import damage_labels, gearbox_labels, operating_labels, state_labels
 from siggen.record.quantities import is_asked_for
 from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
@@ -100,7 +100,10 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
             specimen.dynamics, pair, damage, options, TABLE_POINTS,
             largest_force_n(config.operating_points, pair), lead,
         )  # fmt: skip
-        labels = damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m)
+        labels = {
+            **damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m),
+            **state_labels(config, state_id),
+        }
     return StateTeeth(pair, options, damage, errors, tables, labels, parts)
 
 
@@ -124,7 +127,15 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         pair,
         teeth.options,
         teeth.damage,
-        SpecimenMesh(pair, assembled, tables.tables, missing, tables.coupling_m_per_n, tables.contact),
+        SpecimenMesh(
+            pair,
+            assembled,
+            tables.tables,
+            missing,
+            tables.coupling_m_per_n,
+            tables.contact,
+            sham=config.states[state_id].sham,
+        ),
         labels,
         static,
         teeth.parts,

@@ -84,7 +84,7 @@ def shortened(config: Config) -> Config:
     from siggen.keys.number import bounds
 
     slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
-    on_gear = any(getattr(state.damage, "gear", "pinion") != "pinion" for state in config.states)
+    on_gear = any(getattr(one, "gear", "pinion") != "pinion" for state in config.states for one in state.damages)
     ratio = config.gears.gear.teeth / config.gears.pinion.teeth if on_gear else 1.0
     wanted_s = TURNS * ratio / max(slowest_hz, TURNS / config.duration_s)
     duration_s = min(ceil(wanted_s * config.fs_hz) / config.fs_hz, config.duration_s)

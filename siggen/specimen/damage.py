@@ -39,19 +39,21 @@ def grown_damage(
 ) -> Parts:
     """Return `state_damage`, with that of the milder state from `milder_damage`, which takes its number."""
     config = gearbox_config(config, specimen_id)
-    damage_model = config.states[state_id].damage
-    if damage_model is None:
-        return ()
+    state = config.states[state_id]
     milder = tuple(_milder(config, state_id))
     before = milder_damage(milder[0][0]) if milder else ()
-    return _united(before, damage_model.drawn(Growth(config.seed, specimen_id, state_id, pair, milder, before)))
+    growth = Growth(config.seed, specimen_id, state_id, pair, milder, before)
+    parts = before
+    for section in state.damages:
+        parts = _united(parts, section.drawn(growth))
+    return tuple(one.sham() for one in parts) if state.sham else parts
 
 
 def _milder(config: Config, state_id: int) -> Iterator[tuple[int, object]]:
     """Yield the states that a state has grown from with their sections of damage, the nearest first."""
     older = config.grown_from(state_id)
     while older is not None:
-        yield older, config.states[older].damage
+        yield from ((older, section) for section in config.states[older].damages)
         older = config.grown_from(older)
 
 

@@ -41,7 +41,10 @@ FILM_FLOOR_M = 0.8e-6
 
 @dataclass(frozen=True, slots=True)
 class SpecimenMesh:
-    """What all records of one specimen and state share: structure and tables of its teeth."""
+    """What all records of one specimen and state share: structure and tables of its teeth.
+
+    `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
+    """
 
     pair: GearPair
     structure: Structure
@@ -49,6 +52,7 @@ class SpecimenMesh:
     missing: WavyTeeth
     coupling_m_per_n: NDArray[np.float64] | None = None
     contact: ContactTable | None = None
+    sham: bool = False
 
 
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:

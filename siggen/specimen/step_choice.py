@@ -99,6 +99,8 @@ class Probe:
 
     def _first(self, motion: Motion) -> int:
         """Return the sample before the first damaged pair enters; without one the first of the record."""
+        if self.mesh.sham:
+            return 0
         samples = np.linspace(0.0, self.config.samples, SPREAD_POINTS)
         turned = self.driven.rotation.angle_rad(samples / self.config.fs_hz) * motion.teeth / (2.0 * np.pi)
         kinds = self.mesh.tables.table_of_pair

@@ -73,7 +73,7 @@ def worst_contact_table_error(
     options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
     force_n = draw_operating_point(config, specimen_id, 0).torque_nm / pair.pinion.base_radius_m
     milder = {config.grown_from(index) for index in range(len(config.states))}
-    damaged = [i for i, state in enumerate(config.states) if state.damage is not None and i not in milder]
+    damaged = [i for i, state in enumerate(config.states) if state.damaged and i not in milder]
     found = []
     for index in (None, *damaged[-STATES:]):
         drawn = () if index is None else on_teeth(state_damage(config, specimen_id, pair, index))

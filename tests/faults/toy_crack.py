@@ -14,6 +14,7 @@ from siggen.faults.fault import Fault
 from siggen.faults.flank_place import MM, AnyGear, Length
 from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Part, Parts, Refusal
+from siggen.gears.damage.sham import Sham
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.drawing import draw
@@ -48,6 +49,9 @@ class Hinge:
 
     def hides(self, other: Part) -> bool:
         return isinstance(other, Hinge) and (other.gear, other.tooth) == (self.gear, self.tooth)
+
+    def sham(self) -> Sham:
+        return Sham(self)
 
     def own_problems(self) -> Iterator[Refusal]:
         if self.depth_m <= 0.0:

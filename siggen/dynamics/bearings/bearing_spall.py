@@ -12,7 +12,7 @@ itself, is left out; so is the hardness of edges.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sin
 
 import numpy as np
@@ -20,6 +20,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.gears.damage.part import NO_GEAR, NO_TOOTH, Part, Refusal
+from siggen.gears.damage.sham import SHAM
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +68,10 @@ class BearingSpall:
             return False
         same = (other.place, other.element, other.place_rad) == (self.place, self.element, self.place_rad)
         return same and other.length_m <= self.length_m and other.depth_m <= self.depth_m
+
+    def sham(self) -> BearingSpall:
+        """Return a spall of no length and depth in its place."""
+        return replace(self, length_m=0.0, depth_m=0.0, kind=SHAM)
 
     def own_problems(self) -> Iterator[Refusal]:
         """Yield balls that do not fit between their neighbours, and a spall that does not fit its element."""

@@ -102,6 +102,8 @@ class SpalledBearing(Source):
     def ever_pushes(self) -> bool:
         """Whether any ball can lose load in it."""
         spall, bearing = self.spall, self.spall.bearing
+        if spall.depth_m == 0.0:  # a sham
+            return False
         half = bearing.half_zone_rad(self.zone.deflection_m)
         if spall.element != "outer":
             return half > 0.0

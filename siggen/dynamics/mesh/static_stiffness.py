@@ -121,7 +121,8 @@ def largest_secant_loss(law: PairLaw, healthy: PairLaw, force_n: float) -> float
         losses = 1.0 - static_approaches_m(healthy, force_n, near) / static_approaches_m(law, force_n, near)
         best, worst = max(best, float(losses.max())), float(near[np.argmax(losses)])
         step *= 2.0 / (ZOOMED - 1)
-    return best
+    # Below what an approach is solved to nothing is lost: kinds of pairs that are sound ones would differ by rounding.
+    return best if best > CLOSE else 0.0
 
 
 def pairs_before_damage(law: PairLaw) -> IntArray:

@@ -17,7 +17,8 @@ from siggen.gears.damage.heights import flank_heights, profile_arc_m
 from siggen.gears.damage.outlines import Outline
 from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.row_columns import HIGHEST, LOWEST
-from siggen.gears.damage.tooth_damage import acts_on_tooth
+from siggen.gears.damage.sham import Sham
+from siggen.gears.damage.tooth_damage import ToothDamage, acts_on_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 
@@ -81,6 +82,10 @@ class OnFlank:
         ends = own[:, (LOWEST, HIGHEST)].ravel()
         pieces = (piece for row in np.array(other.rows()) for piece in cut_row(row, ends))
         return all(any(hides(larger, piece) for larger in own) for piece in pieces)
+
+    def sham(self: ToothDamage) -> Sham:
+        """Return a sham in its place."""
+        return Sham(self)
 
     def own_problems(self: Outlined) -> Iterator[Refusal]:
         """Yield an unknown floor, an impossible outline, a depth that is none."""

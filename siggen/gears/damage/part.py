@@ -46,6 +46,9 @@ class Part(Protocol):
     def hides(self, other: Part) -> bool:
         """Return whether it takes the place of a milder part, which then is no part of its own any more."""
 
+    def sham(self) -> Part:
+        """Return a part in the same place that removes nothing: everything is asked of it, and nothing follows."""
+
     def own_problems(self) -> Iterator[Refusal]:
         """Yield what is impossible whatever gearbox it is in."""
 

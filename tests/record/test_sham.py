@@ -1,0 +1,107 @@
+"""A sham goes wherever a damage goes, and no record tells it from healthy teeth."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from siggen.checks.loading import load_config
+from siggen.columns.record import Record, record_schema
+from siggen.config import Config
+from siggen.errors import ConfigError
+from siggen.faults.registry import BY_WORD
+from siggen.planning.specimen import draw_specimen
+from siggen.record.simulation import damage_rows, simulate, specimen_state
+from tests.config.minimal import minimal
+
+PIT = {"semi_axis_face_mm": 0.6, "semi_axis_profile_mm": 0.4, "depth_mm": 0.3}
+EXAMPLES: dict[str, dict[str, Any]] = {
+    "layered": {"layers": 2, "pits_per_layer": 3, **PIT},
+    "clustered": {"count": 6, "spread_profile_mm": 1.0, **PIT},
+    "spall": {"face_length_mm": 12.0, "profile_length_mm": 1.5, "depth_mm": 0.4},
+    "list": {"pits": [{"face_mm": 8.0, **PIT}]},
+    "irregular": {"face_share": 1.0, "profile_length_mm": 1.5, "depth_mm": 0.4},
+    "bearing_spall": {"element": "inner", "length_mm": 2.0, "depth_mm": 0.1},
+}  # fmt: skip
+"""One damage of every kind there is."""
+
+
+def config(*states: dict[str, Any], law: str = "pairs") -> Config:
+    small = {"specimens": 1, "duration_s": 0.05, "fs_hz": 20480.0, "mesh_harmonics": 3}
+    dynamics = {"model": "6dof", "mesh": {"law": law}, "friction": {"model": "off"}}
+    return load_config(minimal(**small, dynamics=dynamics, states=[{"name": "healthy"}, *states]))
+
+
+def sham_of(kind: str) -> dict[str, Any]:
+    return {"name": "sham", "sham": True, "damage": {"kind": kind, **EXAMPLES[kind]}}
+
+
+def record(chosen: Config, record_id: int) -> Record:
+    result = simulate(chosen, [record_id])[0]
+    assert isinstance(result, Record), result
+    return result
+
+
+@pytest.fixture(scope="module")
+def healthy() -> Record:
+    return record(config({"name": "again"}), 1)
+
+
+def assert_same(sham: Record, healthy: Record) -> None:
+    """Signals, pulses and labels byte for byte: step counts and solved numbers are among the labels."""
+    for name, signal in healthy.channels.items():
+        assert sham.channels[name].tobytes() == signal.tobytes(), name
+    assert sham.tacho_s.tobytes() == healthy.tacho_s.tobytes()
+    own = {name: label for name, label in sham.labels.items() if name not in ("state", "sham")}
+    assert own == {name: label for name, label in healthy.labels.items() if name != "state"}
+
+
+@pytest.mark.parametrize("kind", BY_WORD)
+def test_every_kind_without_its_loss_gives_the_record_of_healthy_teeth(kind: str, healthy: Record) -> None:
+    sham = config(sham_of(kind))
+    found = record(sham, 1)
+    assert_same(found, healthy)
+    assert found.labels["sham"] is True
+    assert {row["kind"] for row in damage_rows(sham, 1)} == {"sham"}
+
+
+def test_springs_between_teeth_know_no_sham_either() -> None:
+    found = record(config(sham_of("layered"), law="linear"), 1)
+    assert_same(found, record(config({"name": "again"}, law="linear"), 1))
+
+
+def test_its_teeth_have_kinds_of_pairs_of_their_own() -> None:
+    chosen = config(sham_of("spall"), {**sham_of("spall"), "name": "real", "sham": False, "severity": "severe"})
+    specimen = draw_specimen(chosen, 0)
+    healthy, sham, real = (specimen_state(chosen, specimen, state).mesh.tables.table_of_pair for state in range(3))
+    assert healthy.max() == 0 < sham.max() == real.max()
+    assert (sham > 0).sum() == (real > 0).sum()
+
+
+def test_it_shifts_no_other_state_and_nothing_grows_from_it() -> None:
+    real = {"name": "real", "severity": "severe", "damage": {"kind": "spall", **EXAMPLES["spall"]}}
+    grown = {**real, "name": "grown", "damage": {**real["damage"], "teeth": 2}}
+    between, without = config(real, sham_of("layered"), grown), config(real, {"name": "again"}, grown)
+    assert damage_rows(between, 3) == damage_rows(without, 3)
+    assert between.grown_from(3) == 1
+
+
+@pytest.mark.parametrize(
+    ("state", "path"),
+    [
+        ({"name": "sham", "sham": True}, "states.1.sham"),
+        ({**sham_of("spall"), "fault": "spalling"}, "states.1.fault"),
+        ({**sham_of("spall"), "severity": "slight"}, "states.1.severity"),
+        ({**sham_of("spall"), "sham": 1}, "states.1.sham"),
+        ({**sham_of("spall"), "damage": {"kind": "spall", **EXAMPLES["spall"], "depth_mm": 40.0}}, "states.1.damage"),
+    ],
+)
+def test_what_a_sham_cannot_be_is_refused_by_name(state: dict[str, Any], path: str) -> None:
+    with pytest.raises(ConfigError, match=path.replace(".", r"\.")):
+        config(state)
+
+
+def test_sets_without_one_have_no_column_of_it() -> None:
+    assert "sham" not in record_schema(config({"name": "again"})).names
+    assert "sham" in record_schema(config(sham_of("spall"))).names
