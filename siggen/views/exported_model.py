@@ -175,6 +175,7 @@ def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rot
         "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian
         + motion.structure.flanks.ahead_pitches,
         "pitches_per_rad": per_radian,
+        "ahead_pitches": motion.structure.flanks.ahead_pitches,
     }
 
 
