@@ -80,7 +80,7 @@ class Drive:
         model = self.model
         if "inputs" not in model:
             angle = model["start_angle_rad"] + 2 * np.pi * model["speed_hz"] * t
-            return angle * model["pitches_per_rad"], 1.0, self.none
+            return angle * model["pitches_per_rad"] + model["ahead_pitches"], 1.0, self.none
         cell, weight = place_in(len(model["pitches"]), (t - model["start_s"]) / model["step_s"])
         inputs = between(model["inputs"], cell, weight)
         ratio = 1.0 if model["speed_input"] < 0 else 1.0 + inputs[model["speed_input"]]

@@ -17,7 +17,7 @@ from siggen.keys.number import bounds
 from siggen.planning.gearbox import pair_configs
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import solves_across_the_face
-from siggen.specimen.friction import composite_roughness_m, lubricated_mesh
+from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh
 from siggen.specimen.gears import gear_pair
 
 FORCE_SHARES = np.array([[0.3], [1.0]])
@@ -54,7 +54,8 @@ def _groups_of_pair(config: Config) -> Iterator[tuple[FilmGroups, FilmGroups]]:
         pair = gear_pair(gears)
         for section in _frictions(config):
             for point in points:
-                yield _groups_at(section, pair, OperatingPoint(bounds(point.speed_hz)[0], bounds(point.torque_nm)[0]))
+                torque_nm = min(map(abs, bounds(point.torque_nm)))
+                yield _groups_at(section, pair, OperatingPoint(bounds(point.speed_hz)[0], torque_nm))
 
 
 def _frictions(config: Config) -> Iterator[Friction]:
@@ -66,7 +67,9 @@ def _frictions(config: Config) -> Iterator[Friction]:
 def _groups_at(section: Friction, pair: GearPair, point: OperatingPoint) -> tuple[FilmGroups, FilmGroups]:
     mesh = lubricated_mesh(section, pair, point)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, POSITIONS)
-    force = FORCE_SHARES * abs(point.torque_nm) / pair.pinion.base_radius_m
+    # Without torque flanks touch now and then: there is no film under no load.
+    loaded_n = point.torque_nm / pair.pinion.base_radius_m
+    force = FORCE_SHARES * (loaded_n if loaded_n > 0.0 else light_force_n(pair))
     healthy_m, pitted_m = composite_roughness_m(section)
     return mesh.groups(position, force, healthy_m), mesh.groups(position, force, pitted_m)
 

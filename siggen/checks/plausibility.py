@@ -142,11 +142,16 @@ def _gears(config: Config, pair: GearPair) -> Iterator[Quantity]:
 def _load(config: Config, pair: GearPair) -> Iterator[Quantity]:
     radius = pair.pinion.base_radius_m
     for i, point in enumerate(config.operating_points):
-        force = [abs(torque) / radius for torque in bounds(point.torque_nm)]
+        low, high = (torque / radius for torque in bounds(point.torque_nm))
+        force = [abs(low), abs(high)]
         at = f"operating_points.{i}"
         speeds = [abs(speed) * 2.0 * pi * pair.pinion.pitch_radius_m for speed in bounds(point.speed_hz)]
         hint = "speeds are turns of the pinion per second, not per minute"
         yield Quantity(f"{at}.speed_hz", "pitch-line velocity [m/s]", _ends(speeds), 0.02, 100.0, hint)
+        if low <= 0.0 <= high:  # idle is no mistake: what the largest torque does is judged, if there is one
+            force = [max(force)]
+        if max(force) == 0.0:
+            continue
         pressure = [1e-6 * _hertz_pa(pair, value) for value in force]
         hint = "torques are N m on the pinion; 1500 MPa is what case-hardened flanks bear"
         yield Quantity(

@@ -43,16 +43,31 @@ def _driven_by_load(
     duration_s: float,
     pairs: Sequence[GearPair],
 ) -> list[Problem]:
-    """Refuse run-downs in which the gear would drive the pinion in the mean: the other flanks would carry."""
+    """Refuse run-ups and run-downs that load the other flanks in the mean than the torque of an operating point does.
+
+    Ranges around 0 and 0 itself load both.
+    """
     speed = variation.speed
-    change = bounds(speed.end_ratio)[0] - bounds(speed.start_ratio)[1]
+    fall = bounds(speed.end_ratio)[0] - bounds(speed.start_ratio)[1]
+    rise = bounds(speed.end_ratio)[1] - bounds(speed.start_ratio)[0]
     for point in points:
-        slowing = 2.0 * pi * bounds(point.speed_hz)[1] * min(change, 0.0) / duration_s
-        at_mesh = [bounds(point.torque_nm)[0] + _driven_inertia_kg_m2(dynamics, pair) * slowing for pair in pairs]
+        low, high = bounds(point.torque_nm)
+        if low > 0.0:
+            sign, torque_nm, change = 1.0, low, min(fall, 0.0)
+        elif high < 0.0:
+            sign, torque_nm, change = -1.0, high, max(rise, 0.0)
+        else:
+            continue
+        speeding = 2.0 * pi * bounds(point.speed_hz)[1] * change / duration_s
+        at_mesh = [sign * (torque_nm + _driven_inertia_kg_m2(dynamics, pair) * speeding) for pair in pairs]
         if min(at_mesh, default=1.0) <= 0.0:
-            received = f"{change:+g} of {bounds(point.speed_hz)[1]:g} Hz in {duration_s:g} s, with which gear and load "
-            received += f"drive the pinion ({min(at_mesh):.4g} N m at the mesh)"
-            allowed = "allowed: a mean torque above 0 at the mesh; raise end_ratio, duration_s or the torque"
+            received = f"{change:+g} of {bounds(point.speed_hz)[1]:g} Hz in {duration_s:g} s, with which "
+            received += "gear and load drive the pinion" if sign > 0.0 else "the pinion drives gear and load"
+            received += f" ({sign * min(at_mesh):.4g} N m at the mesh)"
+            advice = "above 0 at the mesh; raise end_ratio, duration_s or the torque"
+            if sign < 0.0:
+                advice = "below 0 at the mesh, as its torque is; lower end_ratio or the torque, or raise duration_s"
+            allowed = f"allowed: a mean torque {advice}"
             return [Problem("variation.speed.end_ratio", received, allowed)]
     return []
 

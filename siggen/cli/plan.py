@@ -121,6 +121,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
     from siggen.checks.damage_notes import damage_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
+    from siggen.checks.torque_notes import torque_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
     from siggen.planning.plan import (
         SPLITS,
@@ -160,7 +161,7 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "manufacture": _manufacture(config),
         "variation": list(variation_notes(config)),
         "lubrication_notes": list(contact_notes(config)),
-        "torque_notes": _of_every_pair(config, reversal_notes),
+        "torque_notes": [*torque_notes(config), *_of_every_pair(config, reversal_notes)],
         "damage_notes": _of_every_pair(config, damage_notes),
         "implausible": list(implausible(config)),
         "shaft_notes": _of_every_pair(config, shaft_notes),

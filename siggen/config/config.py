@@ -59,7 +59,9 @@ class OperatingRange(Section):
     """Speed and torque of one operating point, drawn per specimen."""
 
     speed_hz: Annotated[Number, Within(above=0, most=1e5)] = Field(description="rotation of the pinion shaft")
-    torque_nm: Annotated[Number, Within(above=0, most=1e8)] = Field(description="torque on the pinion shaft")
+    torque_nm: Annotated[Number, Within(least=-1e8, most=1e8)] = Field(
+        description="torque on the pinion shaft; 0: idle, below 0: the gear drives, on the back flanks"
+    )
 
 
 OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and torque_nm")

@@ -97,6 +97,7 @@ def _run_motion(config: Config) -> None:
     from siggen.planning.plan import planned_record
     from siggen.planning.specimen import draw_operating_point, draw_specimen
     from siggen.record.simulation import simulated, specimen_state
+    from siggen.specimen.friction import mean_force_n
     from siggen.specimen.instrument import specimen_instrument
 
     states = tuple(state.model_copy(update={"damage": None}) for state in config.states[:1])
@@ -109,4 +110,5 @@ def _run_motion(config: Config) -> None:
     state = specimen_state(own, springs, 0)
     simulated(own, specimen, specimen_instrument(own, specimen), state, planned_record(own, 0))
     # what a label of damaged teeth needs besides
-    state.static.stiffness_n_per_m(draw_operating_point(short, 0, 0).torque_nm, np.linspace(0.0, 1.0, 2))
+    force_n = mean_force_n(state.pair, draw_operating_point(short, 0, 0))
+    state.static.stiffness_n_per_m(force_n * state.pair.pinion.base_radius_m, np.linspace(0.0, 1.0, 2))

@@ -32,9 +32,10 @@ from siggen.record.stage_times import stage
 from siggen.record.streamed_internals import StreamedInternals
 from siggen.sensing.block_filter import AHEAD
 from siggen.sensors.sensor import needs_forces
+from siggen.specimen.back_flanks import with_back_flanks
 from siggen.specimen.contact import ToothTables, largest_force_n, tooth_tables
 from siggen.specimen.drive import RecordDrive, record_drive, start_angle_rad, variation_labels
-from siggen.specimen.errors import SpecimenErrors, error_labels
+from siggen.specimen.errors import SpecimenErrors, error_labels, lead_of
 from siggen.specimen.flank_waves import wave_labels
 from siggen.specimen.gears import stiffness_options
 from siggen.specimen.instrument import Instrument, history_s, settle_s, specimen_instrument
@@ -95,10 +96,9 @@ def state_teeth(config: Config, specimen: Specimen, state_id: int, made: MadeGea
         parts = made.damage(state_id)
         damage = on_teeth(parts)
         errors = made.errors(state_id)
-        lead = None if errors is None or errors.even else errors.lead_m
         tables = tooth_tables(
             specimen.dynamics, pair, damage, options, TABLE_POINTS,
-            largest_force_n(config.operating_points, pair), lead,
+            largest_force_n(config.operating_points, pair), lead_of(errors),
         )  # fmt: skip
         labels = {
             **damage_labels(config.states[state_id], pair, parts, options, tables.sink_depth_m),
@@ -123,11 +123,7 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
         assembled = structure(config, specimen)
         labels = {**teeth.labels, **error_labels(config, teeth.errors), **wave_labels(made.waves(state_id))}
         static = static_mesh(specimen.dynamics, pair, tables, TABLE_POINTS)
-    return SpecimenState(
-        pair,
-        teeth.options,
-        teeth.damage,
-        SpecimenMesh(
+        mesh = SpecimenMesh(
             pair,
             assembled,
             tables.tables,
@@ -135,11 +131,10 @@ def specimen_state(config: Config, specimen: Specimen, state_id: int, made: Made
             tables.coupling_m_per_n,
             tables.contact,
             sham=config.states[state_id].sham,
-        ),
-        labels,
-        static,
-        teeth.parts,
-    )
+        )
+        most_n = largest_force_n(config.operating_points, pair)
+        mesh = with_back_flanks(mesh, specimen.dynamics, teeth.options, most_n, lead_of(teeth.errors))
+    return SpecimenState(pair, teeth.options, teeth.damage, mesh, labels, static, teeth.parts)
 
 
 @contextmanager

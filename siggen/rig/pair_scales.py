@@ -43,6 +43,10 @@ class PairScales(NamedTuple):
     coupling_damping: Two
 
 
+LEAST_TORQUE_NM = 0.01
+"""Of a pair that only idles: its shafts are what makers leave, not what the torque needs."""
+
+
 def pair_scales(gears: Gears, pair: Pair, points: tuple[OperatingRange, ...]) -> PairScales:
     """Return the factors from the pair that a section `gears` describes to one of its `pairs`."""
     before = _rig(gears, points)
@@ -89,13 +93,13 @@ def _each(new: Two, old: Two) -> Two:
 
 def _rig(gears: Gears, points: tuple[OperatingRange, ...]) -> Rig:
     speeds = [speed for point in points for speed in bounds(point.speed_hz)]
-    torques = [torque for point in points for torque in bounds(point.torque_nm)]
+    torques = [abs(torque) for point in points for torque in bounds(point.torque_nm)]
     return Rig(
         (gears.pinion.teeth, gears.gear.teeth),
         _median(gears.module_mm),
         _median(gears.face_width_mm),
         (min(speeds), max(speeds)),
-        (min(torques), max(torques)),
+        (min(torques), max(*torques, LEAST_TORQUE_NM)),
         pressure_angle_deg=_median(gears.pressure_angle_deg),
         bores_mm=(2.0 * _median(gears.pinion.bore_radius_mm), 2.0 * _median(gears.gear.bore_radius_mm)),
     )

@@ -104,6 +104,11 @@ def erroneous_teeth(missing: MissingMaterial, pair: GearPair, errors: SpecimenEr
     return missing if errors is None else with_errors(missing, pair, errors.pinion.errors, errors.gear.errors)
 
 
+def lead_of(errors: SpecimenErrors | None) -> Callable[[int], FloatArray] | None:
+    """Return what gives the missing material of the slices of the face; None where nothing is missing across it."""
+    return None if errors is None or errors.even else errors.lead_m
+
+
 def error_labels(config: Config, errors: SpecimenErrors | None) -> dict[str, object]:
     """Return the labels of `siggen.columns.manufacture_columns`."""
     if errors is None or config.manufacture is None:

@@ -45,7 +45,12 @@ def specimen_friction(
 
 def mean_force_n(pair: GearPair, point: OperatingPoint) -> float:
     """Return the mean force of the teeth [N], at least that of a light contact: idling flanks touch now and then."""
-    return max(abs(point.torque_nm) / pair.pinion.base_radius_m, LEAST_LINE_LOAD_N_PER_M * pair.face_width_m)
+    return max(abs(point.torque_nm) / pair.pinion.base_radius_m, light_force_n(pair))
+
+
+def light_force_n(pair: GearPair) -> float:
+    """Return the force of a light contact [N], the least that counts where flanks rattle."""
+    return LEAST_LINE_LOAD_N_PER_M * pair.face_width_m
 
 
 def pitch_point(pair: GearPair, mesh: LubricatedMesh) -> PitchPoint:

@@ -70,10 +70,10 @@ def rule_grid(config: Config, dynamics: Dynamics, mesh: SpecimenMesh, point: Ope
     """
     if dynamics.method != "exponential":
         return TimeGrid(dynamics.steps_per_sample, 1)
-    tables = mesh.tables
-    teeth_hz = float(tables.table_of_pair.shape[0]) * abs(point.speed_hz)
-    vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, tables) / MOST_RADIANS
-    stopping_per_s = _stopping_per_s(dynamics, mesh.structure, mesh.pair, point) / MOST_STOPPED
+    mesh, front = mesh.carrying(point)
+    teeth_hz = float(mesh.tables.table_of_pair.shape[0]) * abs(point.speed_hz)
+    vibration_per_s = 2.0 * pi * _fastest_hz(mesh.structure, mesh.tables) / MOST_RADIANS
+    stopping_per_s = _stopping_per_s(dynamics, mesh.structure, mesh.pair, front) / MOST_STOPPED
     rate_hz = max(vibration_per_s, LEAST_PER_PITCH * teeth_hz, stopping_per_s)
     finer = sqrt(USUAL_TOLERANCE / dynamics.integration_tolerance)
     return exponential_grid(max(1, ceil(rate_hz / config.fs_hz * finer)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +29,7 @@ from siggen.keys.number import constant
 from siggen.planning.specimen import OperatingPoint
 from siggen.specimen.contact import solves_across_the_face
 from siggen.specimen.drive import RecordDrive
-from siggen.specimen.flank_waves import WavyTeeth
-from siggen.specimen.friction import composite_roughness_m, lubricated_mesh, specimen_friction
+from siggen.specimen.friction import composite_roughness_m, light_force_n, lubricated_mesh, specimen_friction
 
 RELIEF_LENGTH = 0.25
 """Length of the tip relief along the line of action, in base pitches (assumed)."""
@@ -39,20 +39,40 @@ FILM_FLOOR_M = 0.8e-6
 """Thinnest squeezed film: of the size of the flanks' roughness (assumed)."""
 
 
+class TeethUnderTorque(Protocol):
+    """Teeth that miss material, some of it by a torque that flattens waves."""
+
+    def under(self, torque_nm: float) -> MissingMaterial:
+        """Return the missing material in contact under a torque at the gear in front."""
+
+
 @dataclass(frozen=True, slots=True)
 class SpecimenMesh:
     """What all records of one specimen and state share: structure and tables of its teeth.
 
     `sham`: in what has kinds of pairs of its own nothing is removed, so that no pair is a damaged one.
+    `back` makes the same of the back flanks, which carry torques below 0: `pair` has the gear in front there.
     """
 
     pair: GearPair
     structure: Structure
     tables: MeshTables
-    missing: WavyTeeth
+    missing: TeethUnderTorque
     coupling_m_per_n: NDArray[np.float64] | None = None
     contact: ContactTable | None = None
     sham: bool = False
+    back: Callable[[], SpecimenMesh] | None = None
+
+    def carrying(self, point: OperatingPoint) -> tuple[SpecimenMesh, OperatingPoint]:
+        """Return the flanks that carry the torque of a point, and the point as the gear in front of their pair has it.
+
+        Without torque neither do for long, and drive flanks stand for both.
+        """
+        if self.back is None or point.torque_nm >= 0.0:
+            return self, point
+        back = self.back()
+        ratio = back.pair.pinion.teeth / back.pair.gear.teeth
+        return back, OperatingPoint(point.speed_hz / ratio, -point.torque_nm * ratio)
 
 
 def teeth_missing(dynamics: Dynamics, pair: GearPair, points: int) -> MissingMaterial:
@@ -78,6 +98,7 @@ def specimen_motion(
     What is `driven` by more than a constant torque takes its inputs; None: constant speed and torque.
     """
     excitation = None if driven is None else driven.excitation
+    mesh, front = mesh.carrying(point)
     vectors = None if excitation is None else excitation.vectors
     if dynamics.mesh.law == "linear":
         return LinearMotion(
@@ -95,12 +116,12 @@ def specimen_motion(
     more: dict[str, Any] = {"stride": stride} if kind is ExponentialMotion else {}
     return kind(
         locked_load(mesh.structure) if rubbing else mesh.structure,
-        _law(dynamics, mesh, point),
-        mean=MeanState(point.torque_nm, point.speed_hz, mean_mesh_stiffness(mesh.tables)),
+        _law(dynamics, mesh, front),
+        mean=MeanState(point.torque_nm, point.speed_hz, mean_mesh_stiffness(mesh.tables), light_force_n(mesh.pair)),
         step_s=step_s,
         input_vectors=vectors,
         speed_input=-1 if driven is None else driven.speed_input,
-        contact=_contact(dynamics, mesh.pair, point),
+        contact=_contact(dynamics, mesh.pair, front),
         **more,
     )
 

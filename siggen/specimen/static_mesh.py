@@ -14,6 +14,7 @@ from siggen.gears.contact.contact_table import ContactTable
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.specimen.contact import ToothTables
+from siggen.specimen.friction import light_force_n
 from siggen.specimen.motion import teeth_missing
 
 
@@ -48,8 +49,14 @@ class StaticMesh:
         return secant_stiffness_n_per_m(self.law, self.force_n(torque_nm), pitches)
 
     def largest_loss(self, torque_nm: float) -> float:
-        """Return the largest relative loss of the stiffness at a torque on the pinion, against healthy."""
-        return largest_secant_loss(self.law, self.healthy, self.force_n(torque_nm))
+        """Return the largest relative loss of the stiffness at a torque on the pinion, against healthy.
+
+        Below 0 N m back flanks carry, which have no damage. At 0 N m it is the loss under a light contact.
+        """
+        if torque_nm < 0.0:
+            return 0.0
+        force_n = self.force_n(torque_nm) if torque_nm > 0.0 else light_force_n(self.pair)
+        return largest_secant_loss(self.law, self.healthy, force_n)
 
 
 def static_mesh(dynamics: Dynamics, pair: GearPair, teeth: ToothTables, points: int) -> StaticMesh:

@@ -81,7 +81,7 @@ def exported_model(whole: Config, record_id: int) -> Model:
         "speed_hz": point.speed_hz,
         "start_angle_rad": angle,
         **grid,
-        **_inputs(driven, grid),
+        **_inputs(driven, grid, motion.structure.flanks.ahead_pitches),
         "start_state": start,
         "law": specimen.dynamics.mesh.law,
         **_law(motion.law),
@@ -172,19 +172,21 @@ def _time_grid(config: Config, specimen: Specimen, motion: Motion, rotation: Rot
         "steps_per_sample": steps,
         "step_s": step_s,
         "start_s": start_s,
-        "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian,
+        "start_pitches": float(rotation.angle_rad(np.array([start_s]))[0]) * per_radian
+        + motion.structure.flanks.ahead_pitches,
         "pitches_per_rad": per_radian,
+        "ahead_pitches": motion.structure.flanks.ahead_pitches,
     }
 
 
-def _inputs(driven: RecordDrive, grid: Mapping[str, Any]) -> dict[str, Any]:
+def _inputs(driven: RecordDrive, grid: Mapping[str, Any], ahead_pitches: float) -> dict[str, Any]:
     """Return angle and inputs at all steps up to the end of the filter behind the last sample, where they vary."""
     if driven.excitation is None:
         return {}
     count = round((grid["samples"] / grid["fs_hz"] - grid["start_s"]) / grid["step_s"])
     time_s = grid["start_s"] + np.arange(count + half_length(grid["steps_per_sample"]) + 1) * grid["step_s"]
     return {
-        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"],
+        "pitches": driven.rotation.angle_rad(time_s) * grid["pitches_per_rad"] + ahead_pitches,
         "inputs": driven.excitation.inputs(time_s, driven.rotation),
         "input_vectors": driven.excitation.vectors,
         "speed_input": driven.speed_input,

@@ -21,7 +21,7 @@ from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, has_extent, 
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.planning.gearbox import gearbox_config
 from siggen.planning.plan import PlannedRecord, planned_record
-from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.planning.specimen import OperatingPoint, draw_operating_point, draw_specimen
 from siggen.record.internals import record_internals
 from siggen.record.simulation import SpecimenState, refused_as
 from siggen.specimen.contact import face_options, largest_force_n
@@ -87,6 +87,12 @@ def face_pressure(config: Config, record_id: int, gear: str | None = None, tooth
         )
     record = planned_record(config, record_id)
     config = gearbox_config(config, record.specimen_id)
+    torque_nm = draw_operating_point(config, record.specimen_id, record.operating_point_id).torque_nm
+    if torque_nm < 0.0:
+        raise UsageError(
+            f"record {record_id} has a torque of {torque_nm:g} N m, under which the back flanks carry; allowed: a "
+            "record with a torque from 0, which loads the drive flanks, where damage is"
+        )
     state, point, angle_rad, found = record_internals(config, record)
     gear, tooth = _looked_at(state.pair, state.damage, gear, tooth)
     engagement = _engagement(state.pair, angle_rad, gear, tooth)
@@ -159,7 +165,8 @@ def _solved(
     entered = number * 2.0 * pi / pair.pinion.teeth
     roll = (row.position_m - pair.contact_start_m) / pair.pinion.base_radius_m
     slot = number % sum(name.endswith("_force_n") and name.startswith("pair_") for name in found)
-    force = np.interp(entered + roll, angle_rad, found[f"pair_{slot}_force_n"])
+    # a back flank that is met on the way is another flank
+    force = np.interp(entered + roll, angle_rad, np.maximum(found[f"pair_{slot}_force_n"], 0.0))
     tilt = np.interp(entered + roll, angle_rad, found.get("mesh_tilt_rad", np.zeros(angle_rad.size)))
     load, pressure, at_edge = _over_positions(solver, row, force, tilt)
     member = pair.member(gear)

@@ -24,6 +24,7 @@ from siggen.planning.specimen import Specimen, draw_operating_point, draw_specim
 from siggen.record.simulation import specimen_state
 from siggen.specimen.contact import largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
+from siggen.specimen.friction import light_force_n
 from siggen.specimen.gears import gear_pair, stiffness_options
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
@@ -120,8 +121,13 @@ def stiffness_curves(
 
 
 def static_torque_nm(config: Config, specimen_id: int = 0) -> float:
-    """Return the torque of a specimen's first operating point [N m], at which its static curves are taken."""
-    return draw_operating_point(config, specimen_id, 0).torque_nm
+    """Return the torque [N m] at which a specimen's static curves are taken: that of its first point above 0.
+
+    Curves are those of drive flanks; without such a point they are taken at a light contact.
+    """
+    points = (draw_operating_point(config, specimen_id, i).torque_nm for i in range(len(config.operating_points)))
+    pair = gear_pair(draw_specimen(gearbox_config(config, specimen_id), specimen_id).gears)
+    return next((torque for torque in points if torque > 0.0), light_force_n(pair) * pair.pinion.base_radius_m)
 
 
 def stiffness_meaning(config: Config, torque_nm: float) -> str:

@@ -15,6 +15,7 @@ from siggen.planning.specimen import draw_operating_point, draw_specimen
 from siggen.specimen.contact import face_options, largest_force_n, solves_across_the_face
 from siggen.specimen.damage import state_damage
 from siggen.specimen.errors import specimen_errors
+from siggen.specimen.friction import mean_force_n
 from siggen.specimen.gears import gear_pair, stiffness_options
 
 STATES = 3
@@ -71,7 +72,7 @@ def worst_contact_table_error(
     specimen = draw_specimen(config, specimen_id)
     pair, teeth = gear_pair(specimen.gears), stiffness_options(specimen.stiffness)
     options = face_options(specimen.dynamics, largest_force_n(config.operating_points, pair))
-    force_n = draw_operating_point(config, specimen_id, 0).torque_nm / pair.pinion.base_radius_m
+    force_n = mean_force_n(pair, draw_operating_point(config, specimen_id, 0))
     milder = {config.grown_from(index) for index in range(len(config.states))}
     damaged = [i for i, state in enumerate(config.states) if state.damaged and i not in milder]
     found = []
@@ -88,7 +89,8 @@ def worst_contact_table_error(
 
 
 def _contact_text(config: Config, specimen_id: int) -> str:
-    torque_nm = draw_operating_point(config, specimen_id, 0).torque_nm
+    pair = gear_pair(draw_specimen(gearbox_config(config, specimen_id), specimen_id).gears)
+    torque_nm = mean_force_n(pair, draw_operating_point(config, specimen_id, 0)) * pair.pinion.base_radius_m
     try:
         error, states = worst_contact_table_error(config, specimen_id)
     except ValueError as refusal:

@@ -28,7 +28,7 @@ MISTAKES = [
     ({"dynamics__pinion__mass": 1}, "dynamics.pinion.mass", "1", "did you mean 'mass_kg'?"),
     ({"states__1__damage__count": 3}, "states.1.damage.count", "3", "known keys: "),
     ({"gears__pinion": {"teeth": 18}}, "gears.pinion.bore_radius_mm", "nothing", "a number from 0.01 to 10000"),
-    ({"operating_points": [{"speed_hz": 30}]}, "operating_points.0.torque_nm", "nothing", "a number above 0"),
+    ({"operating_points": [{"speed_hz": 30}]}, "operating_points.0.torque_nm", "nothing", "a number from -1e+08"),
     # types
     ({"seed": "x"}, "seed", "the text 'x'", "a whole number of at least 0"),
     ({"gears__pinion__teeth": 18.0}, "gears.pinion.teeth", "18.0", "a whole number from 5 to 1000"),

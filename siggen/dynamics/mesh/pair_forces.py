@@ -68,6 +68,8 @@ def static_force(law: PairLaw, approach_m: float, pitches: float, pairs: FloatAr
 def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
     """Return the approach [m] at which the pairs carry a force [N] at rest; negative on the back flank.
 
+    Without force the one at which drive flanks begin to touch.
+
     Raises
     ------
     ValueError
@@ -81,7 +83,8 @@ def static_approach_m(law: PairLaw, force_n: float, pitches: float) -> float:
     # Monotone, so halving always ends; 80 halvings of 2 mm are below the rounding of a nanometre.
     for _ in range(80):
         middle = 0.5 * (low + high)
-        if static_force(law, middle, pitches, pairs) < force_n:
+        found = static_force(law, middle, pitches, pairs)
+        if found < force_n or found == force_n == 0.0:
             low = middle
         else:
             high = middle

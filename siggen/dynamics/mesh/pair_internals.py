@@ -9,6 +9,7 @@ NaN; a back flank that touches has forces, but neither friction, film nor pressu
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,6 +96,31 @@ def pair_internals(pairs: FloatArray, line_m: float, contact: PairContact | None
     if contact is not None:
         single += _contact_values(pairs, line_m, contact)
     return np.concatenate([np.stack(sums, axis=1), np.stack(single, axis=2).reshape(len(pairs), -1)], axis=1)
+
+
+def with_units(coordinates: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of coordinates with their units."""
+    units = {True: "rad", False: "m"}
+    turning = ("theta", "phi")
+    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in coordinates)
+
+
+def as_back_flanks(found: FloatArray, slots: int, line_m: float, contact: PairContact | None) -> FloatArray:
+    """Return values of pairs of the mirrored pair, in which the gear is in front, as those of the pinion's back flanks.
+
+    Forces are below 0 there; places count from the pinion's base tangent point on the other line of action.
+    """
+    names, told = pair_internal_names(slots, contact), found.copy()
+    for column, name in enumerate(names):
+        if name.endswith("force_n") and not name.startswith("friction"):
+            told[:, column] = -found[:, column]
+        elif name.endswith("position_m"):
+            told[:, column] = line_m - found[:, column]
+        elif name.endswith("moment_pinion_nm"):
+            told[:, column] = -found[:, names.index(name.replace("pinion", "gear"))]
+        elif name.endswith("moment_gear_nm"):
+            told[:, column] = -found[:, names.index(name.replace("gear", "pinion"))]
+    return told
 
 
 def _of_contact(contact: PairContact | None) -> tuple[str, ...]:

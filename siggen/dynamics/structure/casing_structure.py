@@ -100,7 +100,10 @@ def carried_structure(stage: SpurStage, body: Body, shafts_of_gears: tuple[Shaft
         stage, inertias, stiffness + springs.stiffness, damping + springs.damping, line_of_action, motions, across
     )
     tilt = None if shafts_of_gears is None else vector(coordinates, {"phi_y_1": 1.0, "phi_y_2": -1.0})
-    return replace(structure, bearing_forces=springs.forces, bearing_directions=springs.directions, tilt_vector=tilt)
+    return replace(
+        structure, bearing_forces=springs.forces, bearing_directions=springs.directions, tilt_vector=tilt,
+        centre_line=axis_vector("horizontal", angle),
+    )  # fmt: skip
 
 
 def _held(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,20 @@ class Element:
     direction: Mapping[str, float]
     stiffness: float
     damping: float
+
+
+class Flanks(NamedTuple):
+    """Flanks that a structure meets with its vectors of the mesh: those that carry its torque.
+
+    `side`: 1 for drive flanks, -1 for back flanks; `ahead_pitches`: by how many base pitches a pair of them is farther
+    on its path than drive flanks are on theirs.
+    """
+
+    side: float = 1.0
+    ahead_pitches: float = 0.0
+
+
+DRIVE_FLANKS = Flanks()
 
 
 MODE = "eta_"
@@ -47,6 +62,8 @@ class Structure:
     bearing_directions : place/axis -> (n,), 1 N between a shaft and its seat: on the shaft along the axis, and back
     tilt_vector : (n,) t, tilt of the pinion's flanks against the gear's in the plane of action = tᵀ q; None where gears
         stay parallel. A moment of the mesh across the face acts as -t
+    centre_line : (2,) unit vector from gear to gear in x and y
+    flanks : Flanks
     """
 
     coordinates: tuple[str, ...]
@@ -61,6 +78,8 @@ class Structure:
     bearing_forces: Mapping[str, tuple[FloatArray, FloatArray]]
     bearing_directions: Mapping[str, FloatArray]
     tilt_vector: FloatArray | None = None
+    centre_line: tuple[float, float] = (1.0, 0.0)
+    flanks: Flanks = DRIVE_FLANKS
 
     @property
     def bodies(self) -> list[int]:
@@ -270,5 +289,10 @@ def sliding_vectors(coordinates: Sequence[str], stage: SpurStage, across: Mappin
 
 
 def friction_tilt_vector(structure: Structure) -> FloatArray:
-    """Return t_x (n,): a friction force F at the distance ζ from the middle of the face acts as -t_x ζ F too."""
-    return vector(structure.coordinates, {"phi_x_1": 1.0, "phi_x_2": -1.0})
+    """Return t_x (n,): a friction force F at the distance ζ from the middle of the face acts as -t_x ζ F too.
+
+    Tilts move the flanks there as shifts do, per distance.
+    """
+    across = dict(zip(structure.coordinates, structure.sliding_vectors[0].tolist(), strict=True))
+    moved = (f"{axis}_{gear}" for gear in "12" for axis in "xy")
+    return vector(structure.coordinates, {f"phi_{name}": across[name] for name in moved})

@@ -16,7 +16,7 @@ from siggen.dynamics.time.exponential_step import ATTEMPTS, CHANNELS, Loop, adva
 from siggen.dynamics.time.pair_motion import MeanState, PairMotion
 
 BEND_SHARE = 4e-2
-"""Of the static force: how large its quadratic part over a step may be."""
+"""Of the static force, or that of a light contact: how large its quadratic part over a step may be."""
 
 
 class ExponentialMotion(PairMotion):
@@ -46,9 +46,11 @@ class ExponentialMotion(PairMotion):
         damping = law.damping_root_kg * float(np.sqrt(mean.stiffness_n_per_m))
         rigid = (self.pair_equations.rigid_sliding_0, self.pair_equations.rigid_sliding_1)
         self.scheme = exponential_scheme(structure, self.equations, damping, rigid, stride * step_s)
-        static_n, pitches_per_s = abs(self.equations.static_force), law.teeth * mean.speed_hz
+        light_n, pitches_per_s = mean.light_force_n, law.teeth * mean.speed_hz
+        static_n = max(abs(self.equations.static_force), light_n)
+        approach_m = max(abs(self.equations.static_approach), light_n / mean.stiffness_n_per_m)
         events = event_places(law, static_n / mean.stiffness_n_per_m, pitches_per_s * stride * step_s)
-        self._loop = Loop(self.scheme, law, stride, speed_input, BEND_SHARE * static_n, events)
+        self._loop = Loop(self.scheme, law, stride, speed_input, BEND_SHARE * static_n, approach_m, events)
         self._memory, self._tables = fresh_memory(), np.concatenate([pair_table(law)] * NODES)
         self._work = work_arrays(self.scheme, law)
 

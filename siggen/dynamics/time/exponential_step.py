@@ -68,7 +68,7 @@ class Loop(NamedTuple):
 
     A step of the scheme takes `stride` of those asked for, 1 or 2; one that is left over at the end is half of it.
     `speed_input`: number of the input that is the deviation of the speed, or -1; `tolerance_n`: how far the force may
-    be bent; `events` of `event_places`.
+    be bent; `approach_m`: the static approach, or that of a light contact; `events` of `event_places`.
     """
 
     scheme: Scheme
@@ -76,6 +76,7 @@ class Loop(NamedTuple):
     stride: int
     speed_input: int
     tolerance_n: float
+    approach_m: float
     events: NDArray[np.bool_]
 
 
@@ -192,7 +193,7 @@ def _attempt(
         change = _correct(response, linear, level, first, node, excess)
         kinked = touching < 0 or (iteration > 0 and touching != before)
         before = touching
-        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * abs(linear[APPROACH]):
+        if change <= (KINKED_CHANGE if kinked else SMOOTH_CHANGE) * loop.approach_m:
             settled = True
             break
     if level < LEVELS - 1:

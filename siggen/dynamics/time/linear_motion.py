@@ -132,7 +132,9 @@ class LinearMotion:
         inputs: FloatArray | None = None,  # noqa: ARG002 - as every motion
     ) -> FloatArray:
         """Return the values named in `internal_names` (k, names) of states (k, 2n)."""
-        return _evaluate_inner(self.equations, self._law, states, pitches)
+        found = _evaluate_inner(self.equations, self._law, states, pitches)
+        side = self.structure.flanks.side
+        return np.asarray(found * np.array([side, 1.0, side, side]))
 
 
 @njit(cache=True)

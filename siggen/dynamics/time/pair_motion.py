@@ -8,7 +8,6 @@ centre ζ = μ/N at which they rub; what tilting adds to the sliding speed, some
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -20,7 +19,13 @@ from siggen.compiled import njit
 from siggen.dynamics.mesh import pair_columns as columns
 from siggen.dynamics.mesh import pair_law as layout
 from siggen.dynamics.mesh.pair_forces import static_approach_m, write_forces
-from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.dynamics.mesh.pair_internals import (
+    PairContact,
+    as_back_flanks,
+    pair_internal_names,
+    pair_internals,
+    with_units,
+)
 from siggen.dynamics.mesh.pair_law import PairLaw
 from siggen.dynamics.mesh.pair_places import pair_table
 from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
@@ -41,11 +46,12 @@ GOLDEN = 0.6180339887498949
 
 
 class MeanState(NamedTuple):
-    """Motor torque, pinion speed and mesh stiffness that a motion deviates from."""
+    """Motor torque, pinion speed and mesh stiffness of a mean; errors count against a light contact's force at least."""
 
     torque_nm: float
     speed_hz: float
     stiffness_n_per_m: float
+    light_force_n: float = 0.0
 
 
 class PairMotion:
@@ -86,7 +92,7 @@ class PairMotion:
         across = ACROSS if self.tilts else ()
         self._bodies = structure.bodies
         moved = (structure.coordinates[i] for i in self._bodies)
-        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *_with_units(moved))
+        self.internal_names = (*pair_internal_names(law.slots, contact), *MOTION, *across, *with_units(moved))
         self._pairs = pair_table(law)
         self._step_s = step_s
         self._speed_input = speed_input
@@ -214,14 +220,10 @@ class PairMotion:
         if self.tilts:
             approach += [pairs[:, 0, columns.TILT], pairs[:, :, columns.MOMENT].sum(axis=1)]
         moved = (states[:, :n] + self.equations.static_deflection)[:, self._bodies]
+        if self.structure.flanks.side < 0.0:
+            found = as_back_flanks(found, self.law.slots, self.law.line_of_action_m, self.contact)
+            approach[:2] = [-self.law.backlash_m - approach[0], -approach[1]]
         return np.concatenate([found, np.stack(approach, axis=1), moved], axis=1)
-
-
-def _with_units(coordinates: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of coordinates with their units."""
-    units = {True: "rad", False: "m"}
-    turning = ("theta", "phi")
-    return tuple(f"{name}_{units[name.startswith(turning)]}" for name in coordinates)
 
 
 @njit(cache=True)

@@ -51,8 +51,9 @@ class Run:
         return np.arange(first, first + count) / (self.fs_hz * self.steps_per_sample)
 
     def pitches(self, first: int, count: int) -> FloatArray:
-        """Return the pinion angle in base pitches at `count` steps from step `first`."""
-        return self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+        """Return the angle of the mesh law in base pitches at `count` steps from step `first`."""
+        turned = self.drive.angle_rad(self.time_s(first, count)) * (self.motion.teeth / (2.0 * np.pi))
+        return turned + self.motion.structure.flanks.ahead_pitches
 
     def inputs(self, first: int, pitches: FloatArray) -> FloatArray:
         """Return the external inputs (k, m) at the steps from step `first` whose pinion angles are given."""

@@ -1,0 +1,126 @@
+"""Torques of 0 and below: a gearbox that is its own mirror image, idle flanks, and damage that nothing touches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from siggen.arrays import FloatArray
+from siggen.config import Config, parse
+from siggen.planning.specimen import OperatingPoint, draw_specimen
+from siggen.record.simulation import SpecimenState, specimen_state
+from siggen.specimen.motion import specimen_motion
+from tests.config.minimal import minimal
+
+EVEN = {"bearing_stiffness_x_n_per_m": 1.6e8, "bearing_stiffness_y_n_per_m": 2e8, "mass_kg": 1.2}
+STEP_S, STEPS = 1.0 / 51_200.0, 2_000
+
+
+def own_mirror(friction: str = "off") -> Config:
+    """Return a gearbox of two equal gears on equal shafts: with the gear in front it is itself."""
+    parsed = parse(
+        minimal(
+            gears__pinion__teeth=25,
+            gears__gear={"teeth": 25, "bore_radius_mm": 10.0},
+            stiffness__coupling="body",
+            dynamics={
+                "model": "8dof",
+                "pinion": EVEN,
+                "gear": EVEN,
+                "motor_inertia_kg_m2": 4e-3,
+                "load_inertia_kg_m2": 4e-3,
+                "input_coupling": {"stiffness_nm_per_rad": 6e3, "damping_nm_s_per_rad": 0.1},
+                "output_coupling": {"stiffness_nm_per_rad": 6e3, "damping_nm_s_per_rad": 0.1},
+                "backlash_um": 80.0,
+                "mesh": {"law": "pairs", "damage": "geometry", "tip_relief_um": 8.0},
+                "friction": {"model": friction},
+            },
+        )
+    )
+    assert parsed.config is not None, [str(problem) for problem in parsed.problems]
+    return parsed.config
+
+
+def state_of(config: Config, state_id: int = 0) -> SpecimenState:
+    return specimen_state(config, draw_specimen(config, 0), state_id)
+
+
+def moved(config: Config, state: SpecimenState, torque_nm: float, internals: bool = False) -> FloatArray:
+    """Return states (k, 2n) from rest, or internals (k, names), with the mesh law at the same angles."""
+    dynamics = draw_specimen(config, 0).dynamics
+    motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+    pitches = 0.4 + 25 * 30.0 * STEP_S * np.arange(STEPS + 1)
+    states = np.empty((STEPS + 1, 2 * len(motion.structure.coordinates)))
+    states[0] = motion.start(pitches[0])
+    motion.advance(pitches, np.empty((pitches.size, 0)), states)
+    return motion.internals(states, pitches) if internals else states
+
+
+def in_the_mirror(states: FloatArray) -> FloatArray:
+    """Return states with both sides exchanged; coordinates are θ_m, x_1, y_1, θ_1, x_2, y_2, θ_2, θ_L."""
+    other, signs = [7, 4, 5, 6, 1, 2, 3, 0], np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
+    n = len(other)
+    return np.concatenate([states[:, :n][:, other] * signs, states[:, n:][:, other] * signs], axis=1)
+
+
+def apart(one: FloatArray, other: FloatArray) -> float:
+    """Return by how much velocities differ, over their size."""
+    return float(np.sqrt(((one - other)[:, 8:] ** 2).sum() / (other[:, 8:] ** 2).sum()))
+
+
+def test_a_gearbox_that_is_its_own_mirror_image_moves_in_it_under_the_opposite_torque():
+    """Exact but for rounding, which the threshold of a touch makes larger: 1e-9 would be too."""
+    config = own_mirror()
+    state = state_of(config)
+    forth, back = moved(config, state, 40.0), moved(config, state, -40.0)
+    assert apart(in_the_mirror(back), forth) < 1e-6
+    # not the same motion by chance: without the mirror they differ by their own size
+    assert apart(back, forth) > 0.5
+
+
+def test_friction_brakes_back_flanks_as_it_brakes_drive_flanks():
+    """But for what holds the mean speed, the load in both cases, which the mirror makes a motor: friction's torque."""
+    config, smooth = own_mirror("mixed_ehl"), own_mirror()
+    state, without = state_of(config), state_of(smooth)
+    forth, back = moved(config, state, 40.0), moved(config, state, -40.0)
+    rubbed = apart(moved(smooth, without, 40.0), forth)
+    assert apart(in_the_mirror(back), forth) < 0.2 * rubbed
+
+
+def test_both_torques_push_the_gears_apart_and_turn_them_against_each_other():
+    config = own_mirror()
+    state = state_of(config)
+    dynamics = draw_specimen(config, 0).dynamics
+    for torque_nm in (40.0, -40.0):
+        motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+        at = dict(zip(motion.structure.coordinates, motion.equations.static_deflection, strict=True))
+        force_n = abs(torque_nm) / state.pair.pinion.base_radius_m
+        apart = force_n * np.sin(state.pair.working_pressure_angle_rad) / 1.6e8
+        up = np.sign(torque_nm) * force_n * np.cos(state.pair.working_pressure_angle_rad) / 2e8
+        assert (at["x_1"], at["x_2"]) == pytest.approx((-apart, apart), rel=1e-9)
+        assert (at["y_1"], at["y_2"]) == pytest.approx((-up, up), rel=1e-9)
+
+
+@pytest.mark.parametrize("torque_nm", [0.0, -25.0])
+def test_internals_of_any_torque_are_told_for_the_drive_flanks(torque_nm: float):
+    config = own_mirror()
+    state = state_of(config)
+    dynamics = draw_specimen(config, 0).dynamics
+    motion = specimen_motion(dynamics, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
+    found = dict(zip(motion.internal_names, moved(config, state, torque_nm, internals=True).T, strict=True))
+    assert np.isfinite(found["mesh_force_n"]).all()
+    if torque_nm < 0.0:
+        mean_n = torque_nm / state.pair.pinion.base_radius_m
+        assert found["mesh_force_n"][-1000:].mean() == pytest.approx(mean_n, rel=0.05)
+        assert found["approach_m"].max() < -80e-6
+    else:
+        # at rest between the flanks, where nothing pushes
+        assert np.abs(found["mesh_force_n"]).max() < 1e-9
+
+
+def test_damage_of_drive_flanks_is_not_met_under_a_torque_below_0():
+    config = own_mirror()
+    healthy, damaged = state_of(config, 0), state_of(config, 1)
+    assert damaged.static.largest_loss(40.0) > 1e-3
+    assert damaged.static.largest_loss(-40.0) == 0.0
+    assert np.array_equal(moved(config, healthy, -40.0), moved(config, damaged, -40.0))
