@@ -5,7 +5,8 @@ Memory is bounded but for the stored channels (docs/understand/blocks.md).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -19,9 +20,11 @@ from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
 from siggen.record.disturbance import ChannelDisturbance
+from siggen.seeding import Stage, named_generator
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
-from siggen.specimen.drive import record_rotation, start_angle_rad
+from siggen.sensors.transducer import Running
+from siggen.specimen.drive import record_owner, record_rotation, start_angle_rad
 from siggen.specimen.gears import gear_pair
 from siggen.specimen.instrument import Instrument, specimen_instrument
 
@@ -37,15 +40,20 @@ def measured_channels(
     Raises
     ------
     SolverFailure, ValueError
-        As the response, where it is stepped as it is taken.
+        As the response, where it is stepped as it is taken; a SolverFailure too where a sensor cannot read it.
     """
     instrument = instrument or specimen_instrument(config, specimen)
     inputs = BlockInputs(config, specimen, record, response, instrument)
     recorders = {channel.name: Recorder(config.samples, channel.gain) for channel in instrument.channels}
+    rotation = _rotation(config, specimen, record)
+    whole: dict[str, list[FloatArray]] = {c.name: [] for c in instrument.channels if c.transducer is not None}
     for seen in inputs.seen():
         for name, values in seen.items():
-            recorders[name].take(values)
-    rotation = _rotation(config, specimen, record)
+            (whole[name].append if name in whole else recorders[name].take)(values)
+    if whole:
+        running = partial(_running, config, specimen, record, rotation)
+        for name, reading in _readings(instrument, whole, running):
+            recorders[name].take(reading)
     disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
     for first in range(0, config.samples, BLOCK_SAMPLES):
         count = min(BLOCK_SAMPLES, config.samples - first)
@@ -60,6 +68,27 @@ def measured_channels(
         signals[channel.name] = measured.values
         labels |= {**channel_labels(channel, measured), **disturbances[channel.name].labels}
     return signals, {**labels, **inputs.labels}
+
+
+def _readings(
+    instrument: Instrument, whole: Mapping[str, Sequence[FloatArray]], running: Callable[[str], Running]
+) -> Iterator[tuple[str, FloatArray]]:
+    """Yield channels that are read as a whole, with their readings (n,)."""
+    for channel in instrument.channels:
+        if channel.transducer is not None:
+            yield channel.name, channel.transducer.reading(np.concatenate(whole[channel.name]), running(channel.name))
+
+
+def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation, channel: str) -> Running:
+    """Return how a record runs, with the generator of a channel."""
+    point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    return Running(
+        config.fs_hz,
+        _angle_rad(rotation, config.fs_hz, 0, config.samples),
+        specimen.gears.pinion.teeth / specimen.gears.gear.teeth,
+        point.torque_nm,
+        named_generator(config.seed, Stage.NOISE, *record_owner(record), name=f"{channel} transducer"),
+    )
 
 
 def _disturbances(

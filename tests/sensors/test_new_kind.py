@@ -82,7 +82,7 @@ def test_the_plan_takes_it_and_mistakes_in_it_are_named(folder: Path) -> None:
     assert "range [N]" in doubted
     changes = {
         "sensors.0.range_n=0.5": "allowed: at least 1",
-        "sensors.0.kind=encoder": "allowed: one of accelerometer, toy_force_washer",
+        "sensors.0.kind=thermometer": "allowed: one of accelerometer, encoder, toy_force_washer",
         "dynamics.model=torsional": "allowed: one of pinion_rim, gear_rim",
     }
     for change, allowed in changes.items():

@@ -1,4 +1,4 @@
-"""ResponseStream: accelerations and bearing forces of a gear stage at the output rate, piece after piece.
+"""ResponseStream: accelerations, bearing forces and readings of shafts at the output rate, piece after piece.
 
 Transient and record are stepped in blocks, whose states are filtered and forgotten: memory does not grow with the
 record.
@@ -18,10 +18,10 @@ from siggen.compiled import njit
 from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.drive.excitation import Excitation
 from siggen.dynamics.drive.sampled_excitation import SampledExcitation
-from siggen.dynamics.time.decimation import Decimator, half_length
+from siggen.dynamics.time.decimation import half_length
 from siggen.dynamics.time.equations import Equations, approach_of, no_inputs
 from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response_filters import acceleration_decimator, force_decimator
+from siggen.dynamics.time.response_filters import ValueDecimator, acceleration_decimator
 from siggen.errors import SolverFailure
 
 APPROACH_LIMIT_PITCHES = 0.1
@@ -62,14 +62,18 @@ class Run:
 
 
 class Piece(NamedTuple):
-    """Accelerations (motions, k) and bearing forces (places, k), static ones included, at the next samples."""
+    """Accelerations (motions, k), bearing forces (places, k) and readings of shafts (readings, k) at the next samples.
+
+    Static forces and readings are included.
+    """
 
     acceleration_m_s2: FloatArray
     bearing_force_n: FloatArray
+    shaft_reading: FloatArray
 
 
 class Pieces(Protocol):
-    """Pieces of the named motions and bearing forces, the first one from `before` samples before sample 0."""
+    """Pieces of the named motions, forces and readings, the first one from `before` samples before sample 0."""
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -78,6 +82,10 @@ class Pieces(Protocol):
     @property
     def places(self) -> tuple[str, ...]:
         """Names of the rows of bearing forces."""
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Names of the rows of readings of shafts."""
 
     @property
     def before(self) -> int:
@@ -102,11 +110,13 @@ class ResponseStream:
         history: int = 0,
         ahead: int = 0,
         bearing_forces: bool = True,
+        shafts: bool = False,
         internals: bool = False,
     ) -> None:
         self.run, self.samples, self.before, self.ahead = run, samples, history, ahead
         self.motions: tuple[str, ...] = run.motions
         self.places: tuple[str, ...] = tuple(run.motion.structure.bearing_forces) if bearing_forces else ()
+        self.readings: tuple[str, ...] = tuple(run.motion.structure.shaft_readings) if shafts else ()
         self.inner: list[FloatArray] = []
         self._settle, self._with_internals, self._lost = settle, internals, 0
 
@@ -130,22 +140,16 @@ class ResponseStream:
         for _ in stepped_blocks(run, state, -half - self._settle, begin):
             pass
         accelerations = acceleration_decimator(structure, run.motions, run.fs_hz, steps)
-        forces = force_decimator(structure, steps) if self.places else None
+        static = run.motion.equations.static_deflection
+        shafts = structure.shaft_readings
+        forces = ValueDecimator((structure.bearing_forces[name] for name in self.places), static, steps)
+        readings = ValueDecimator((shafts[name] for name in self.readings), static, steps)
         end = (self.samples + self.ahead - 1) * steps + half + 1
         for first, states, apart in stepped_blocks(run, state, begin, end):
-            piece = Piece(accelerations.take(states), self._forces(forces, states))
+            piece = Piece(accelerations.take(states), forces.take(states), readings.take(states))
             self._count(first, states, apart)
             if piece.acceleration_m_s2.shape[1]:
                 yield piece
-
-    def _forces(self, decimator: Decimator | None, states: FloatArray) -> FloatArray:
-        """Return bearing forces, which are filtered about their static values, with what they are at rest."""
-        if decimator is None:
-            return np.empty((0, 0))
-        motion = self.run.motion
-        static, pairs = motion.equations.static_deflection, motion.structure.bearing_forces
-        at_rest = np.array([(stiffness * static).sum() for stiffness, _ in pairs.values()]).reshape(-1, 1)
-        return np.asarray(decimator.take(states) + at_rest)
 
     def _count(self, first: int, states: FloatArray, apart: NDArray[np.bool_] | None) -> None:
         recorded = slice(max(0, -first), max(0, self.samples * self.run.steps_per_sample - first))

@@ -1,0 +1,47 @@
+"""Transducers: sensors whose reading is not a filter's of what the model gives, but made of a whole record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from siggen.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """How the gearbox runs in a record, beside its vibration.
+
+    Attributes
+    ----------
+    fs_hz : sampling rate
+    pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
+    gear_ratio : turns of the gear per turn of the pinion
+    torque_nm : of the operating point, on the pinion's shaft
+    rng : of the record and the channel, for what is drawn anew each time
+    """
+
+    fs_hz: float
+    pinion_rad: FloatArray
+    gear_ratio: float
+    torque_nm: float
+    rng: np.random.Generator
+
+    def shaft_rad(self, shaft: str) -> FloatArray:
+        """Return the prescribed angle (n,) of `motor` or `pinion`, or of `gear` or `load`."""
+        return self.pinion_rad if shaft in {"motor", "pinion"} else self.gear_ratio * self.pinion_rad
+
+
+class Transducer(Protocol):
+    """A channel of one gearbox."""
+
+    def reading(self, shown: FloatArray, running: Running) -> FloatArray:
+        """Return what the channel reads (n,) of what it shows of the model (n,).
+
+        Raises
+        ------
+        SolverFailure
+            If it cannot read this record; says why.
+        """
