@@ -31,6 +31,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         _fault_names,
         _tooth_indices,
         _sensor_places,
+        _sensors_beside,
         _sensor_turns,
         _mesh_law,
         _manufacture,
@@ -81,6 +82,13 @@ def _sensor_places(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
         model = PLATES
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.model_problems(model):
+            yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
+
+
+def _sensors_beside(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    sensors = sections.get("sensors", {})
+    for index, sensor in sensors.items():
+        for problem in sensor.beside_problems({one.name: one for one in sensors.values()}):
             yield Problem(f"sensors.{index}.{problem.path}", problem.received, problem.allowed)
 
 

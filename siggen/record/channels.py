@@ -5,8 +5,8 @@ Memory is bounded but for the stored channels (docs/understand/blocks.md).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from siggen.planning.specimen import Specimen, draw_operating_point
 from siggen.record.block_inputs import BlockInputs
 from siggen.record.channel_facts import channel_draws, channel_labels, white_noise
 from siggen.record.disturbance import ChannelDisturbance
-from siggen.seeding import Stage, named_generator
+from siggen.seeding import Stage, named_uniforms
 from siggen.sensing.block_filter import BLOCK_SAMPLES
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.transducer import Running
@@ -51,8 +51,7 @@ def measured_channels(
         for name, values in seen.items():
             (whole[name].append if name in whole else recorders[name].take)(values)
     if whole:
-        running = partial(_running, config, specimen, record, rotation)
-        for name, reading in _readings(instrument, whole, running):
+        for name, reading in _readings(instrument, whole, _running(config, specimen, record, rotation)):
             recorders[name].take(reading)
     disturbances = _disturbances(config, specimen, record, instrument, recorders, rotation)
     for first in range(0, config.samples, BLOCK_SAMPLES):
@@ -71,23 +70,27 @@ def measured_channels(
 
 
 def _readings(
-    instrument: Instrument, whole: Mapping[str, Sequence[FloatArray]], running: Callable[[str], Running]
+    instrument: Instrument, whole: Mapping[str, Sequence[FloatArray]], running: Running
 ) -> Iterator[tuple[str, FloatArray]]:
-    """Yield channels that are read as a whole, with their readings (n,)."""
-    for channel in instrument.channels:
+    """Yield channels that are read as a whole, with their readings (n,); last those that read other channels alone."""
+    found: dict[str, FloatArray] = {}
+    for channel in sorted(instrument.channels, key=lambda one: not one.seen):
         if channel.transducer is not None:
-            yield channel.name, channel.transducer.reading(np.concatenate(whole[channel.name]), running(channel.name))
+            shown = np.concatenate(whole[channel.name]) if channel.seen else np.empty(0)
+            found[channel.name] = channel.transducer.reading(shown, replace(running, readings=found))
+            yield channel.name, found[channel.name]
 
 
-def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation, channel: str) -> Running:
-    """Return how a record runs, with the generator of a channel."""
+def _running(config: Config, specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> Running:
     point = draw_operating_point(config, record.specimen_id, record.operating_point_id)
+    pair = gear_pair(specimen.gears)
     return Running(
         config.fs_hz,
         _angle_rad(rotation, config.fs_hz, 0, config.samples),
         specimen.gears.pinion.teeth / specimen.gears.gear.teeth,
         point.torque_nm,
-        named_generator(config.seed, Stage.NOISE, *record_owner(record), name=f"{channel} transducer"),
+        (pair.pinion.base_radius_m, pair.gear.base_radius_m),
+        2.0 * np.pi * named_uniforms(config.seed, Stage.NOISE, *record_owner(record))("line.phase"),
     )
 
 

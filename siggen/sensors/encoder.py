@@ -58,7 +58,7 @@ class Encoder(Sensor):
         default=5e-4, description="of the disc over the radius of its marks, in a direction drawn per gearbox"
     )
     bits: Annotated[Whole, Field(ge=4, le=24)] | None = Field(
-        default=None, description="of the stored speed; null: not quantised beyond the counter"
+        default=None, description="of what is stored; null: not quantised beyond the counter"
     )
 
     def model_problems(self, model: str) -> Iterator[Problem]:

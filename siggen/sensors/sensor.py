@@ -63,6 +63,10 @@ class AxisDraws:
         """Return the value of a number of the section."""
         return at(number, self.uniform(f"{self.path}.{name}"))
 
+    def of_sensor(self, number: Number, name: str) -> float:
+        """Return the value of a number that all axes of the sensor share."""
+        return at(number, self.uniform(f"{self.path.rpartition('.')[0]}.{name}"))
+
     def generator(self, name: str) -> np.random.Generator:
         """Return the generator of what takes many numbers."""
         return self.named(f"{self.path}.{name}")
@@ -197,6 +201,10 @@ class Sensor(Section):
 
     def duration_problems(self, turns: Mapping[str, float]) -> Iterator[Problem]:  # noqa: ARG002
         """Yield what does not go with how often shafts turn in the slowest record, by shaft."""
+        yield from ()
+
+    def beside_problems(self, others: Mapping[str, Sensor]) -> Iterator[Problem]:  # noqa: ARG002
+        """Yield what does not go with the other sensors of the set, by name."""
         yield from ()
 
     @property

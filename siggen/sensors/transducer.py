@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Protocol
-
-import numpy as np
 
 from siggen.arrays import FloatArray
 
@@ -20,14 +19,18 @@ class Running:
     pinion_rad : (n,) prescribed angle of the pinion's shaft at the samples
     gear_ratio : turns of the gear per turn of the pinion
     torque_nm : of the operating point, on the pinion's shaft
-    rng : of the record and the channel, for what is drawn anew each time
+    base_radii_m : of pinion and gear
+    line_rad : phase of the electrical line at the first sample, one for all sensors
+    readings : channel -> (n,) of those that show something of the model and were read as a whole already
     """
 
     fs_hz: float
     pinion_rad: FloatArray
     gear_ratio: float
     torque_nm: float
-    rng: np.random.Generator
+    base_radii_m: tuple[float, float]
+    line_rad: float
+    readings: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def shaft_rad(self, shaft: str) -> FloatArray:
         """Return the prescribed angle (n,) of `motor` or `pinion`, or of `gear` or `load`."""
